@@ -1,0 +1,118 @@
+//! What a pipeline gives.
+
+use crate::error::EnvelopeError;
+
+/// Fewest peaks that give a line and its error.
+pub(crate) const FEWEST_PEAKS: usize = 3;
+
+/// The decay of a record's peaks: all that an estimator of the decay rate gets to see.
+///
+/// Times start at the first peak. Invariants: at least three peaks, finite, times increasing.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Envelope {
+    times_s: Vec<f64>,
+    log_amplitudes: Vec<f64>,
+    omega_rad_s: f64,
+}
+
+impl Envelope {
+    /// Makes an envelope from times in seconds, natural logarithms of amplitudes, and the angular
+    /// frequency in rad/s; the times are shifted to start at zero.
+    ///
+    /// # Errors
+    /// [`EnvelopeError::TooFewPeaks`] for fewer than three usable peaks: peaks that are not finite, or
+    /// whose time does not increase, make the envelope unusable as a whole.
+    pub fn new(
+        times_s: Vec<f64>,
+        log_amplitudes: Vec<f64>,
+        omega_rad_s: f64,
+    ) -> Result<Self, EnvelopeError> {
+        let finite = times_s.iter().chain(&log_amplitudes).all(|number| number.is_finite());
+        let increasing = times_s.iter().zip(times_s.iter().skip(1)).all(|(one, next)| one < next);
+        let usable = finite
+            && increasing
+            && times_s.len() == log_amplitudes.len()
+            && omega_rad_s.is_finite()
+            && omega_rad_s > 0.0;
+        let found = if usable { times_s.len() } else { 0 };
+        if found < FEWEST_PEAKS {
+            return Err(EnvelopeError::TooFewPeaks {
+                pipeline: "given",
+                found,
+                needed: FEWEST_PEAKS,
+                remedy: "Expected finite peaks at increasing times and a positive frequency."
+                    .to_owned(),
+            });
+        }
+        let first = times_s.first().copied().unwrap_or_default();
+        let times_s = times_s.into_iter().map(|time| time - first).collect();
+        Ok(Self { times_s, log_amplitudes, omega_rad_s })
+    }
+
+    /// Number of peaks.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.times_s.len()
+    }
+
+    /// Whether there are no peaks: never so, by the invariants.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.times_s.is_empty()
+    }
+
+    /// Times of the peaks after the first one, in seconds, increasing.
+    #[must_use]
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// Natural logarithms of the peaks' amplitudes, the amplitude in the record's unit.
+    #[must_use]
+    pub fn log_amplitudes(&self) -> &[f64] {
+        &self.log_amplitudes
+    }
+
+    /// Angular frequency, 2π over the median period, in rad/s.
+    #[must_use]
+    pub fn omega_rad_s(&self) -> f64 {
+        self.omega_rad_s
+    }
+
+    /// Damping ratio that belongs to a decay rate in 1/s: ζ = λ/ω.
+    #[must_use]
+    pub fn damping_ratio(&self, decay_rate: f64) -> f64 {
+        decay_rate / self.omega_rad_s
+    }
+}
+
+/// An envelope and what was found on the way to it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extraction {
+    /// The envelope.
+    pub envelope: Envelope,
+    /// Time of the first peak after the first sample, in seconds.
+    pub first_peak_s: f64,
+    /// Median period, in seconds.
+    pub period_s: f64,
+    /// The rest position that was removed, in the record's unit.
+    pub offset: f64,
+    /// Samples that the peaks were looked for in.
+    pub samples: usize,
+}
+
+/// The median; of an even number of entries the mean of the middle two. `None` for no entries.
+pub(crate) fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let middle = values.len() / 2;
+    let upper = *values.get(middle)?;
+    if values.len() % 2 == 1 {
+        return Some(upper);
+    }
+    Some((values.get(middle.checked_sub(1)?)? + upper) / 2.0)
+}
+
+/// Differences between entries `lag` apart.
+pub(crate) fn differences(values: &[f64], lag: usize) -> Vec<f64> {
+    values.iter().zip(values.iter().skip(lag)).map(|(one, next)| next - one).collect()
+}

@@ -1,0 +1,107 @@
+//! The paper's pipeline.
+
+use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, differences, median};
+use crate::error::EnvelopeError;
+use crate::interpolation::resample;
+use crate::peaks::find_peaks;
+use crate::savitzky_golay::savitzky_golay;
+use record::{Clock, Record};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+
+/// Most points of the interpolation grid.
+const MOST_POINTS: usize = 50_000_000;
+
+/// The paper's pipeline: linear interpolation to an even step, smoothing, removal of the late-time mean,
+/// peaks with a least distance and prominence, upper half-cycles only.
+///
+/// With the defaults and the host's clock it gives the numbers of the paper's Table 3 on its record.
+/// Interpolating on stamps that repeat puts the jumps of the host's bursts into the values; that is
+/// part of what the paper did, and part of why [`crate::RecommendedPipeline`] gives other numbers.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PaperPipeline {
+    /// Step of the interpolation grid, in seconds.
+    pub interpolation_step_s: f64,
+    /// Window of the Savitzky–Golay smoothing, in grid points; 0 for none.
+    pub smoothing_window: usize,
+    /// Order of the smoothing polynomial.
+    pub smoothing_order: usize,
+    /// Share of the record's end whose mean is the rest position.
+    pub late_fraction: f64,
+    /// Least distance between peaks, in grid points.
+    pub peak_distance: usize,
+    /// Least prominence of a peak, in the record's unit.
+    pub prominence: f64,
+}
+
+impl PaperPipeline {
+    /// Extracts the envelope of a record under a clock.
+    ///
+    /// # Errors
+    /// [`EnvelopeError`]: fewer than three peaks, a peak below the rest position, a grid or a smoothing
+    /// window that does not fit.
+    pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
+        let first = clock.times_s.first().copied().unwrap_or_default();
+        let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
+        let step = self.interpolation_step_s;
+        let duration = times.last().copied().unwrap_or_default();
+        if duration / step > MOST_POINTS as f64 {
+            return Err(EnvelopeError::GridTooFine {
+                duration_s: duration,
+                step_s: step,
+                points: duration / step,
+                most: MOST_POINTS,
+            });
+        }
+        let grid = resample(&times, record.values(), step);
+        let mut smooth = savitzky_golay(&grid, self.smoothing_window, self.smoothing_order)?;
+
+        // At least one point, at most all of them.
+        let late = ((smooth.len() as f64 * self.late_fraction).ceil() as usize).clamp(1, smooth.len());
+        let tail = smooth.iter().skip(smooth.len() - late);
+        let offset = tail.sum::<f64>() / late as f64;
+        for value in &mut smooth {
+            *value -= offset;
+        }
+
+        let peaks = find_peaks(&smooth, self.peak_distance, self.prominence);
+        if peaks.len() < FEWEST_PEAKS {
+            return Err(EnvelopeError::TooFewPeaks {
+                pipeline: "paper",
+                found: peaks.len(),
+                needed: FEWEST_PEAKS,
+                remedy: format!(
+                    "Peaks are at least {} points of {step} s apart and {} {} prominent; lower \
+                     envelope.paper.peak_distance or envelope.paper.prominence, or give a longer record.",
+                    self.peak_distance,
+                    self.prominence,
+                    record.unit()
+                ),
+            });
+        }
+        let peak_times: Vec<f64> = peaks.iter().map(|&peak| peak as f64 * step).collect();
+        let mut log_amplitudes = Vec::with_capacity(peaks.len());
+        for ((number, &peak), &time_s) in peaks.iter().enumerate().zip(&peak_times) {
+            let amplitude = smooth.get(peak).copied().unwrap_or_default();
+            if amplitude <= 0.0 {
+                return Err(EnvelopeError::AmplitudeNotPositive {
+                    number: number + 1,
+                    time_s,
+                    amplitude,
+                    unit: record.unit(),
+                });
+            }
+            log_amplitudes.push(amplitude.ln());
+        }
+        let period_s = median(differences(&peak_times, 1)).unwrap_or_default();
+        let first_peak_s = peak_times.first().copied().unwrap_or_default();
+        Ok(Extraction {
+            envelope: Envelope::new(peak_times, log_amplitudes, TAU / period_s)?,
+            first_peak_s,
+            period_s,
+            offset,
+            samples: smooth.len(),
+        })
+    }
+}

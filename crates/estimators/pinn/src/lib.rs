@@ -1,0 +1,1 @@
+//! Physics-informed neural network for the envelope's decay rate.

@@ -1,0 +1,1 @@
+//! What the networks share on burn: double precision, affine-skip networks, Levenberg-Marquardt, safetensors.

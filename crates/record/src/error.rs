@@ -1,0 +1,149 @@
+//! What can be wrong with a record.
+
+use thiserror::Error;
+
+/// A record that cannot be used, with the file it was read from.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{file}{}: {fault}", fault.place())]
+pub struct RecordError {
+    /// The file, as it was named.
+    pub file: String,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+/// What is wrong with a record, without the name of its file.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum Fault {
+    /// The file could not be read.
+    #[error("cannot be read: {problem}; expected a record file")]
+    Unreadable {
+        /// What the system says.
+        problem: String,
+    },
+    /// The path names a folder.
+    #[error("is a folder; expected a record file, name the file inside it")]
+    Folder,
+    /// There is nothing in it.
+    #[error("is empty; expected a header and at least {needed} samples")]
+    Empty {
+        /// Fewest samples that make a record.
+        needed: usize,
+    },
+    /// The text is not UTF-8.
+    #[error("is not UTF-8 text (byte {offset}); expected comma-separated text")]
+    NotText {
+        /// Offset of the first byte that is not text.
+        offset: usize,
+    },
+    /// The header is not what the format prescribes.
+    #[error("the header is `{found}`; expected {expected}")]
+    BadHeader {
+        /// Line, from 1.
+        line: u64,
+        /// The line as written.
+        found: String,
+        /// What the format prescribes.
+        expected: String,
+    },
+    /// A column is not there.
+    #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]
+    MissingColumn {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The column's name, or the names that are looked for.
+        wanted: String,
+        /// The header's names.
+        found: String,
+        /// The configuration key that names the column.
+        key: &'static str,
+    },
+    /// A line has fewer fields than the header.
+    #[error("the line has {found} fields; expected {expected}")]
+    MissingField {
+        /// Line, from 1.
+        line: u64,
+        /// Fields found.
+        found: usize,
+        /// Fields expected.
+        expected: usize,
+    },
+    /// A field is not a number.
+    #[error("`{text}` in column `{column}` is not a number")]
+    NotANumber {
+        /// Line, from 1.
+        line: u64,
+        /// The column's name.
+        column: String,
+        /// The field as written.
+        text: String,
+    },
+    /// A number is infinite or no number.
+    #[error(
+        "column `{column}` holds a value that is not finite; drop the line or repair the value"
+    )]
+    NotFinite {
+        /// Line, from 1.
+        line: u64,
+        /// The column's name.
+        column: String,
+    },
+    /// Time runs backward.
+    #[error(
+        "time runs backward, from {previous} s to {stamp} s; expected stamps that never decrease: \
+         split the file where a new recording starts"
+    )]
+    TimeDecreases {
+        /// Line of the later stamp, from 1.
+        line: u64,
+        /// The stamp before, in seconds.
+        previous: f64,
+        /// The stamp, in seconds.
+        stamp: f64,
+    },
+    /// Too short to be a record.
+    #[error("has {found} sample{}; a record needs at least {needed}", if *found == 1 { "" } else { "s" })]
+    TooFewSamples {
+        /// Samples found.
+        found: usize,
+        /// Fewest samples that make a record.
+        needed: usize,
+    },
+    /// Every stamp is the same.
+    #[error("every stamp is {stamp} s; expected time to pass")]
+    NoTimePasses {
+        /// The stamp, in seconds.
+        stamp: f64,
+    },
+    /// Columns of different lengths.
+    #[error("column `{column}` has {found} entries for {stamps} stamps")]
+    UnequalColumns {
+        /// Which column.
+        column: &'static str,
+        /// Its entries.
+        found: usize,
+        /// The stamps.
+        stamps: usize,
+    },
+}
+
+impl Fault {
+    /// `:LINE` where the fault has a line, otherwise nothing.
+    fn place(&self) -> String {
+        match self {
+            Self::BadHeader { line, .. }
+            | Self::MissingColumn { line, .. }
+            | Self::MissingField { line, .. }
+            | Self::NotANumber { line, .. }
+            | Self::NotFinite { line, .. }
+            | Self::TimeDecreases { line, .. } => format!(":{line}"),
+            _ => String::new(),
+        }
+    }
+
+    /// The fault with the name of its file.
+    #[must_use]
+    pub fn in_file(self, file: &str) -> RecordError {
+        RecordError { file: file.to_owned(), fault: self }
+    }
+}

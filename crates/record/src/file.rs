@@ -1,0 +1,148 @@
+//! Reading a file into a record and its source.
+
+use crate::csv_file::{self, CsvColumns};
+use crate::error::{Fault, RecordError};
+use crate::host_log;
+use crate::record::{Quantity, Record};
+use crate::statement::Statements;
+use crate::unit::Unit;
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::path::Path;
+
+/// Format of a record file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Format {
+    /// A header with column names, then comma-separated numbers; lines that start with `#` are
+    /// comments, of which `# origin: …`, `# sample_rate_hz: …` and `# samples: …` are statements.
+    #[default]
+    Csv,
+    /// Two header lines, then `wall clock, elapsed s, angle deg`.
+    HostLog,
+}
+
+impl Format {
+    /// Every format's name as configurations write it.
+    pub const NAMES: &'static [&'static str] = &["csv", "host-log"];
+}
+
+/// How to read a file.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct ReadOptions {
+    /// Format of the file.
+    pub format: Format,
+    /// Columns and units of a `csv` file; a `host-log` has its own.
+    pub columns: CsvColumns,
+    /// What the sensor observes.
+    pub quantity: Quantity,
+}
+
+/// Where a record came from: what is shown to people and kept from estimators and diagnosis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Source {
+    /// The path as it was named.
+    pub path: String,
+    /// SHA-256 of the file's bytes: `sha256:` and 64 hexadecimal digits.
+    pub digest: String,
+    /// What the file states of itself.
+    pub statements: Statements,
+    /// What was noticed while reading: sentences.
+    pub findings: Vec<String>,
+}
+
+/// Reads a record file.
+///
+/// # Errors
+/// [`RecordError`] with the path, the line where there is one, what was found and what was expected.
+pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source), RecordError> {
+    let name = path.display().to_string();
+    if path.is_dir() {
+        return Err(Fault::Folder.in_file(&name));
+    }
+    let bytes = std::fs::read(path).map_err(|error| {
+        Fault::Unreadable { problem: error.to_string() }.in_file(&name)
+    })?;
+    read_text(&name, &bytes, options)
+}
+
+/// Reads a record from the bytes of a file; `name` is what messages call it.
+///
+/// # Errors
+/// As [`read_file`].
+pub fn read_text(
+    name: &str,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<(Record, Source), RecordError> {
+    let parse = || {
+        let text = std::str::from_utf8(bytes)
+            .map_err(|error| Fault::NotText { offset: error.valid_up_to() })?;
+        // Spreadsheets put a byte-order mark in front.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim().is_empty() {
+            return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
+        }
+        match options.format {
+            Format::Csv => csv_file::parse(text, &options.columns),
+            Format::HostLog => host_log::parse(text),
+        }?
+        .finish(options.quantity)
+    };
+    let (record, statements, findings) = parse().map_err(|fault| fault.in_file(name))?;
+    let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
+    let source = Source {
+        path: name.to_owned(),
+        digest: format!("sha256:{digest}"),
+        statements,
+        findings,
+    };
+    Ok((record, source))
+}
+
+/// What a reader of one format collects.
+pub(crate) struct Parsed {
+    unit: Unit,
+    stamps_s: Vec<f64>,
+    values: Vec<f64>,
+    input: Vec<f64>,
+    statements: Statements,
+    pub(crate) findings: Vec<String>,
+}
+
+impl Parsed {
+    pub(crate) fn new(unit: Unit, statements: Statements) -> Self {
+        Self {
+            unit,
+            stamps_s: Vec::new(),
+            values: Vec::new(),
+            input: Vec::new(),
+            statements,
+            findings: Vec::new(),
+        }
+    }
+
+    pub(crate) fn len(&self) -> usize {
+        self.stamps_s.len()
+    }
+
+    /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
+    pub(crate) fn push(&mut self, line: u64, stamp: f64, value: f64) -> Result<(), Fault> {
+        if let Some(&previous) = self.stamps_s.last().filter(|&&previous| stamp < previous) {
+            return Err(Fault::TimeDecreases { line, previous, stamp });
+        }
+        self.stamps_s.push(stamp);
+        self.values.push(value);
+        Ok(())
+    }
+
+    pub(crate) fn push_input(&mut self, value: f64) {
+        self.input.push(value);
+    }
+
+    fn finish(self, quantity: Quantity) -> Result<(Record, Statements, Vec<String>), Fault> {
+        let input = (!self.input.is_empty()).then_some(self.input);
+        let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
+        Ok((record, self.statements, self.findings))
+    }
+}

@@ -1,0 +1,95 @@
+//! The `host-log` format: two header lines, then `wall clock, elapsed s, angle deg`.
+
+use crate::csv_file::number;
+use crate::error::Fault;
+use crate::file::Parsed;
+use crate::statement::Statements;
+use crate::unit::Unit;
+
+const FIELDS: usize = 3;
+const DAY_S: f64 = 86_400.0;
+
+/// Reads the text of a host log.
+pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
+    let mut lines = text.lines().zip(1_u64..);
+    let (header, _) = lines.next().ok_or(Fault::Empty { needed: crate::FEWEST_SAMPLES })?;
+    let names: Vec<String> = header.split(',').map(|name| name.trim().to_lowercase()).collect();
+    let is_header = names.len() == FIELDS
+        && names.get(1).is_some_and(|name| name.contains("elapsed"))
+        && names.get(2).is_some_and(|name| name.contains("angle"));
+    if !is_header {
+        return Err(Fault::BadHeader {
+            line: 1,
+            found: header.chars().take(60).collect(),
+            expected: "`Timestamp, Time_Elapsed(s), Angle(deg)` as a host log has it; for a file with \
+                       column names set data.format = \"csv\""
+                .to_owned(),
+        });
+    }
+    let mut parsed = Parsed::new(Unit::Degree, Statements::default());
+    let mut wall = WallClock::default();
+    // The second line of the header is a rule of dashes.
+    for (content, line) in lines.skip(1).filter(|(content, _)| !content.trim().is_empty()) {
+        let fields: Vec<&str> = content.split(',').collect();
+        let &[wall_clock, elapsed, angle] = fields.as_slice() else {
+            return Err(Fault::MissingField { line, found: fields.len(), expected: FIELDS });
+        };
+        let stamp = number(elapsed, line, "Time_Elapsed(s)")?;
+        let angle = number(angle, line, "Angle(deg)")?;
+        wall.add(wall_clock_seconds(wall_clock, line)?, stamp);
+        parsed.push(line, stamp, angle * Unit::Degree.to_si())?;
+    }
+    parsed.findings.extend(wall.finding());
+    Ok(parsed)
+}
+
+/// Compares the log's two clocks as it is read.
+#[derive(Default)]
+struct WallClock {
+    first: Option<(f64, f64)>,
+    last: Option<(f64, f64)>,
+    days: f64,
+}
+
+impl WallClock {
+    fn add(&mut self, seconds_of_day: f64, elapsed: f64) {
+        if self.last.is_some_and(|(wall, _)| seconds_of_day + self.days < wall - DAY_S / 2.0) {
+            self.days += DAY_S; // past midnight
+        }
+        let now = (seconds_of_day + self.days, elapsed);
+        self.first.get_or_insert(now);
+        self.last = Some(now);
+    }
+
+    /// A sentence where the two clocks disagree on the record's length by more than 1 % and 0.1 s: a
+    /// host stamps a line when it writes it, so some tens of milliseconds are its ordinary delay.
+    fn finding(&self) -> Option<String> {
+        let ((first_wall, first), (last_wall, last)) = (self.first?, self.last?);
+        let (wall, elapsed) = (last_wall - first_wall, last - first);
+        ((wall - elapsed).abs() > 0.1 + 0.01 * elapsed.abs()).then(|| {
+            format!("the wall clock spans {wall:.3} s, the elapsed time {elapsed:.3} s: one of them is wrong")
+        })
+    }
+}
+
+/// `HH:MM:SS.mmm` as seconds of the day.
+fn wall_clock_seconds(text: &str, line: u64) -> Result<f64, Fault> {
+    let bad = || Fault::NotANumber {
+        line,
+        column: "Timestamp (HH:MM:SS.mmm)".to_owned(),
+        text: text.trim().chars().take(40).collect(),
+    };
+    let mut parts = text.trim().split(':');
+    let mut next = |limit: f64| {
+        parts
+            .next()
+            .and_then(|part| part.parse::<f64>().ok())
+            .filter(|part| (0.0..limit).contains(part))
+            .ok_or_else(bad)
+    };
+    let (hours, minutes, seconds) = (next(24.0)?, next(60.0)?, next(61.0)?);
+    if parts.next().is_some() {
+        return Err(bad());
+    }
+    Ok(hours * 3600.0 + minutes * 60.0 + seconds)
+}

@@ -1,0 +1,117 @@
+//! Finding the step of an encoder (or of a text file's last digit) from the values alone.
+
+/// Values lie on a lattice: whole multiples of a step, apart from a common offset.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Lattice {
+    /// The step, in the values' unit.
+    pub step: f64,
+    /// Root mean square distance of the distinct values from the lattice, in steps. Values that know of
+    /// no lattice lie 0.289 = 1/√12 steps away; values rounded once more in a text file a few
+    /// hundredths.
+    pub misfit_steps: f64,
+}
+
+/// Largest misfit that still counts as a lattice, in steps: half of what values without one have.
+const LARGEST_MISFIT: f64 = 0.145;
+
+/// Fewest distinct values from which a step can be told.
+const FEWEST_VALUES: usize = 8;
+
+impl Lattice {
+    /// The lattice of some values, or `None` where they lie on none. Costs one sort.
+    ///
+    /// A first step comes from the small gaps between distinct values. Then the values are numbered
+    /// gap by gap, and a regression of value on number gives the step to a small part of itself.
+    #[must_use]
+    pub fn find(values: &[f64]) -> Option<Self> {
+        let mut sorted: Vec<f64> = values.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        let span = sorted.last()? - sorted.first()?;
+        // The same position, written by way of a unit, can differ in its last bits.
+        let same = span * 1e-12;
+        sorted.dedup_by(|later, earlier| *later - *earlier <= same);
+        if sorted.len() < FEWEST_VALUES {
+            return None;
+        }
+        let gaps: Vec<f64> = sorted.windows(2).map(gap).collect();
+        let mut ordered = gaps.clone();
+        ordered.sort_by(f64::total_cmp);
+        let smallest = *ordered.get(ordered.len() / 20)?;
+        // Rounding in a text file spreads one step over neighboring decimals: average the cluster.
+        let cluster: Vec<f64> =
+            ordered.iter().copied().filter(|gap| (0.5..1.5).contains(&(gap / smallest))).collect();
+        let first_step = cluster.iter().sum::<f64>() / cluster.len() as f64;
+
+        let mut number = 0.0;
+        let mut step = first_step;
+        let origin = *sorted.first()?;
+        let mut points = vec![(0.0, 0.0)];
+        let (mut products, mut squares) = (0.0, 0.0);
+        for (value, gap) in sorted.iter().skip(1).zip(&gaps) {
+            number += (gap / step).round().max(1.0);
+            points.push((number, value - origin));
+            products += number * (value - origin);
+            squares += number * number;
+            // Long gaps are counted with the step as known so far, which sharpens with the span.
+            step = products / squares;
+        }
+        let misfit = line_misfit(&points)?;
+        (misfit.1 <= LARGEST_MISFIT)
+            .then_some(Self { step: misfit.0, misfit_steps: misfit.1 })
+    }
+}
+
+fn gap(pair: &[f64]) -> f64 {
+    match pair {
+        &[earlier, later] => later - earlier,
+        _ => 0.0,
+    }
+}
+
+/// Slope of the line through the points and the root mean square distance from it in slopes.
+fn line_misfit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
+    let count = points.len() as f64;
+    let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
+    let mean_y = points.iter().map(|point| point.1).sum::<f64>() / count;
+    let sxx: f64 = points.iter().map(|point| (point.0 - mean_x).powi(2)).sum();
+    let sxy: f64 = points.iter().map(|point| (point.0 - mean_x) * (point.1 - mean_y)).sum();
+    let slope = sxy / sxx;
+    let squares: f64 = points
+        .iter()
+        .map(|point| (point.1 - mean_y - slope * (point.0 - mean_x)).powi(2))
+        .sum();
+    let misfit = (squares / count).sqrt() / slope;
+    (slope.is_finite() && slope > 0.0 && misfit.is_finite()).then_some((slope, misfit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Lattice;
+
+    fn wave(count: usize) -> impl Iterator<Item = f64> {
+        (0..count).map(|i| (-(i as f64) * 2e-4).exp() * (i as f64 * 0.137).sin())
+    }
+
+    #[test]
+    fn finds_an_encoder_step_through_rounded_text() {
+        let step = 360.0 / 4096.0;
+        let values: Vec<f64> =
+            wave(5000).map(|x| ((x * 40.0 / step).round() * step * 100.0).round() / 100.0).collect();
+        let lattice = Lattice::find(&values).unwrap();
+        assert!((lattice.step / step - 1.0).abs() < 1e-4, "{lattice:?}");
+        assert!(lattice.misfit_steps < 0.05, "{lattice:?}");
+    }
+
+    #[test]
+    fn finds_none_in_continuous_values() {
+        let values: Vec<f64> = wave(5000).collect();
+        assert_eq!(Lattice::find(&values), None);
+    }
+
+    #[test]
+    fn finds_none_in_too_few_values() {
+        assert_eq!(Lattice::find(&[0.0, 1.0, 0.0, 1.0, 2.0, 3.0]), None);
+        assert_eq!(Lattice::find(&[]), None);
+        assert_eq!(Lattice::find(&[1.0; 50]), None);
+    }
+}

@@ -1,0 +1,33 @@
+//! A measured record: raw stamps, coordinate, input, units, resolution; readers, clocks, digests.
+//!
+//! A [`Record`] holds what the file says, in SI units and with the stamps as written. What is believed
+//! of the stamps is a decision with a name ([`Clock`]), and so is the sensor's step ([`Lattice`]).
+//! Where a record came from ([`Source`]) is kept beside it, never in it: whoever is handed a record
+//! cannot tell its file's name or whether it was measured or simulated.
+
+#![cfg_attr(
+    test,
+    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
+)]
+
+mod clock;
+mod csv_file;
+mod error;
+mod file;
+mod host_log;
+mod lattice;
+mod record;
+mod statement;
+mod unit;
+
+pub use clock::{Clock, ClockChoice, ClockKind, StampStatistics};
+pub use csv_file::CsvColumns;
+pub use error::{Fault, RecordError};
+pub use file::{Format, ReadOptions, Source, read_file, read_text};
+pub use lattice::Lattice;
+pub use record::{Quantity, Record};
+pub use statement::{Origin, Statements};
+pub use unit::{TimeUnit, Unit};
+
+/// Fewest samples that make a record.
+pub const FEWEST_SAMPLES: usize = 8;

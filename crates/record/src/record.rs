@@ -1,0 +1,129 @@
+//! The record itself.
+
+use crate::FEWEST_SAMPLES;
+use crate::error::Fault;
+use crate::lattice::Lattice;
+use serde::{Deserialize, Serialize};
+
+/// What the sensor observes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Quantity {
+    /// Angle or displacement itself.
+    #[default]
+    Position,
+    /// Its first derivative: a gyroscope, a laser vibrometer.
+    Velocity,
+    /// Its second derivative: an accelerometer.
+    Acceleration,
+}
+
+/// A record in SI units, stamps as written.
+///
+/// Invariants, checked when it is made: at least [`FEWEST_SAMPLES`] samples, every number finite,
+/// stamps never decreasing (equal ones are kept: they tell how the logger worked), one value and, where
+/// there is an input, one input for each stamp.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record {
+    stamps_s: Vec<f64>,
+    values: Vec<f64>,
+    input: Option<Vec<f64>>,
+    quantity: Quantity,
+    unit: &'static str,
+}
+
+impl Record {
+    /// Makes a record from columns in SI units.
+    ///
+    /// `stamps_s` are in seconds; `values` in `unit`, the SI symbol of the observed quantity; `input`,
+    /// where there is one, in N·m, N or the input's own unit.
+    ///
+    /// # Errors
+    /// The first [`Fault`] met: too few samples, columns of different lengths, a number that is not
+    /// finite, a stamp before its predecessor. Lines are counted from 1, as in a file without a header.
+    pub fn new(
+        stamps_s: Vec<f64>,
+        values: Vec<f64>,
+        input: Option<Vec<f64>>,
+        quantity: Quantity,
+        unit: &'static str,
+    ) -> Result<Self, Fault> {
+        if stamps_s.len() < FEWEST_SAMPLES {
+            return Err(Fault::TooFewSamples { found: stamps_s.len(), needed: FEWEST_SAMPLES });
+        }
+        for (what, column) in
+            [("values", Some(&values)), ("input", input.as_ref())].into_iter().filter_map(
+                |(what, column)| column.map(|column| (what, column)),
+            )
+        {
+            if column.len() != stamps_s.len() {
+                return Err(Fault::UnequalColumns {
+                    column: what,
+                    found: column.len(),
+                    stamps: stamps_s.len(),
+                });
+            }
+            if let Some(at) = column.iter().position(|number| !number.is_finite()) {
+                return Err(Fault::NotFinite { line: at as u64 + 1, column: what.to_owned() });
+            }
+        }
+        if let Some(at) = stamps_s.iter().position(|stamp| !stamp.is_finite()) {
+            return Err(Fault::NotFinite { line: at as u64 + 1, column: "time".to_owned() });
+        }
+        let backward = stamps_s.iter().zip(stamps_s.iter().skip(1)).enumerate();
+        for (at, (&previous, &stamp)) in backward {
+            if stamp < previous {
+                return Err(Fault::TimeDecreases { line: at as u64 + 2, previous, stamp });
+            }
+        }
+        Ok(Self { stamps_s, values, input, quantity, unit })
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.stamps_s.len()
+    }
+
+    /// Whether there are no samples: never so, by the invariants.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.stamps_s.is_empty()
+    }
+
+    /// The stamps as written, in seconds, never decreasing.
+    #[must_use]
+    pub fn stamps_s(&self) -> &[f64] {
+        &self.stamps_s
+    }
+
+    /// The observed values, in [`Record::unit`].
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The measured input, where there is one, in its own unit.
+    #[must_use]
+    pub fn input(&self) -> Option<&[f64]> {
+        self.input.as_deref()
+    }
+
+    /// What the sensor observes.
+    #[must_use]
+    pub fn quantity(&self) -> Quantity {
+        self.quantity
+    }
+
+    /// SI symbol of the observed values, such as `rad`.
+    #[must_use]
+    pub fn unit(&self) -> &'static str {
+        self.unit
+    }
+
+    /// The step of the sensor's lattice, where the values lie on one.
+    #[must_use]
+    pub fn lattice(&self) -> Option<Lattice> {
+        Lattice::find(&self.values)
+    }
+}

@@ -1,0 +1,99 @@
+//! What a file or a configuration states of a record, and whether the stamps bear it out.
+
+use crate::clock::Clock;
+use serde::{Deserialize, Serialize};
+
+/// Where the numbers of a record came from, as stated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Origin {
+    /// A sensor.
+    Measured,
+    /// A program.
+    Simulated,
+    /// Nobody says.
+    #[default]
+    Unstated,
+}
+
+impl Origin {
+    /// Every origin's name as files and configurations write it.
+    pub const NAMES: &'static [&'static str] = &["measured", "simulated", "unstated"];
+
+    /// The name as files and configurations write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Simulated => "simulated",
+            Self::Unstated => "unstated",
+        }
+    }
+}
+
+/// Statements about a record. They are compared with the record, never used in its place.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Statements {
+    /// Where the numbers came from.
+    pub origin: Option<Origin>,
+    /// Sampling rate, in hertz.
+    pub sample_rate_hz: Option<f64>,
+    /// Number of samples.
+    pub samples: Option<usize>,
+}
+
+impl Statements {
+    /// Reads one comment line of a CSV file, without its `#`: `origin: simulated`,
+    /// `sample_rate_hz: 260`, `samples: 6500`. Anything else is prose and left alone.
+    pub(crate) fn read_comment(&mut self, comment: &str) {
+        let Some((key, value)) = comment.split_once(':') else {
+            return;
+        };
+        let word = value.split_whitespace().next().unwrap_or("");
+        match key.trim() {
+            "origin" => {
+                self.origin = match word {
+                    "measured" => Some(Origin::Measured),
+                    "simulated" => Some(Origin::Simulated),
+                    _ => self.origin,
+                }
+            }
+            "sample_rate_hz" => self.sample_rate_hz = word.parse().ok().or(self.sample_rate_hz),
+            "samples" => self.samples = word.parse().ok().or(self.samples),
+            _ => {}
+        }
+    }
+
+    /// These statements, completed by others where these are silent.
+    #[must_use]
+    pub fn or(self, others: &Self) -> Self {
+        Self {
+            origin: self.origin.or(others.origin),
+            sample_rate_hz: self.sample_rate_hz.or(others.sample_rate_hz),
+            samples: self.samples.or(others.samples),
+        }
+    }
+
+    /// Compares the statements with what was found; a sentence for each that does not hold.
+    ///
+    /// A rate is contradicted when it is off by more than one part in a hundred *and* by more than four
+    /// standard errors: labels are rounded ("about 100 Hz"), and a short record knows its rate poorly.
+    #[must_use]
+    pub fn contradictions(&self, samples: usize, clock: &Clock) -> Vec<String> {
+        let mut found = Vec::new();
+        if let Some(stated) = self.samples.filter(|&stated| stated != samples) {
+            found.push(format!("stated are {stated} samples; the file holds {samples}"));
+        }
+        if let Some(stated) = self.sample_rate_hz {
+            let off = (stated - clock.sample_rate_hz).abs();
+            if off > 0.01 * clock.sample_rate_hz && off > 4.0 * clock.sample_rate_std_error_hz {
+                found.push(format!(
+                    "stated is a sampling rate of {stated} Hz; the stamps give {:.2} Hz (standard \
+                     error {:.2} Hz)",
+                    clock.sample_rate_hz, clock.sample_rate_std_error_hz
+                ));
+            }
+        }
+        found
+    }
+}

@@ -1,0 +1,408 @@
+//! The plots of a run: what each shows, in a sentence, and its data as CSV.
+
+use runs::result::{EnvelopeRow, TraceRow};
+
+use crate::format;
+use crate::parse::Run;
+use crate::plot::{Axis, Drawing, Hue, LegendEntry, Mark, Plot, Series};
+
+/// Rows of CSV under one plot, beyond which only every so-manieth is kept.
+const MOST_ROWS: usize = 2_000;
+/// Entries of one legend, beyond which the rest is counted.
+const MOST_ENTRIES: usize = 10;
+
+/// A plot with everything that stands around it.
+pub(crate) struct Figure {
+    /// Name of its anchor in the page.
+    pub(crate) id: &'static str,
+    pub(crate) title: &'static str,
+    /// What it shows and how to read it.
+    pub(crate) explanation: String,
+    /// What is missing from it.
+    pub(crate) notes: Vec<String>,
+    pub(crate) legend: Vec<LegendEntry>,
+    pub(crate) wide: String,
+    pub(crate) narrow: String,
+    /// What is drawn, as a table, and how many rows that is.
+    pub(crate) csv: String,
+    pub(crate) rows: String,
+}
+
+pub(crate) fn figures(run: &Run) -> Vec<Figure> {
+    [
+        envelope(run),
+        residuals(run),
+        loss(run),
+        decay_rate(run),
+        distance(run),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn envelope(run: &Run) -> Option<Figure> {
+    let rows = &run.envelope;
+    let plot = Plot {
+        x: time_axis(),
+        y: Axis::linear(format!("ln(A / {})", run.result.data.unit)),
+        series: vec![
+            estimate(run, Mark::ThickLine, rows.iter().map(|r| (r.time_s, r.estimate))),
+            oracle(Mark::Dashes, rows.iter().map(|r| (r.time_s, r.oracle))),
+            Series {
+                label: "peaks of the record".into(),
+                hue: Hue::Data,
+                mark: Mark::Dots,
+                points: rows.iter().map(|r| (r.time_s, r.log_amplitude)).collect(),
+            },
+        ],
+        shaded: vec![],
+    };
+    let title = "Envelope";
+    let explanation = "Each dot is a peak of the record. On this scale the decay of a single \
+                       damping ratio is a straight line, and its slope is −λ.";
+    let csv = csv(
+        &["time_s", "log_amplitude", "oracle", "estimate"],
+        rows,
+        |r: &EnvelopeRow| numbers(&[r.time_s, r.log_amplitude, r.oracle, r.estimate]),
+    );
+    figure("envelope", title, explanation, &plot, csv)
+}
+
+fn residuals(run: &Run) -> Option<Figure> {
+    let rows = &run.envelope;
+    let plot = Plot {
+        x: time_axis(),
+        y: Axis::linear("ln A less the oracle's line"),
+        series: vec![
+            estimate(
+                run,
+                Mark::ThickLine,
+                rows.iter().map(|r| (r.time_s, r.estimate - r.oracle)),
+            ),
+            oracle(Mark::Level, [(0.0, 0.0)].into_iter()),
+            Series {
+                label: "peaks of the record".into(),
+                hue: Hue::Data,
+                mark: Mark::Dots,
+                points: rows
+                    .iter()
+                    .map(|r| (r.time_s, r.log_amplitude - r.oracle))
+                    .collect(),
+            },
+        ],
+        shaded: vec![],
+    };
+    let title = "Residuals";
+    let explanation = "The same with the oracle's line taken away: dots scattered evenly about \
+                       zero speak for a single damping ratio, a bend or a wave against it. Where \
+                       the estimator agrees with the oracle its line lies on zero.";
+    let csv = csv(
+        &["time_s", "residual", "estimate_less_oracle"],
+        rows,
+        |r: &EnvelopeRow| {
+            numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
+        },
+    );
+    figure("residuals", title, explanation, &plot, csv)
+}
+
+fn loss(run: &Run) -> Option<Figure> {
+    let mut names: Vec<&str> = Vec::new();
+    let mut series = Vec::new();
+    for phase in phases(&run.trace) {
+        let name = phase.name();
+        let index = names.iter().position(|n| *n == name).unwrap_or(names.len());
+        if index == names.len() {
+            names.push(name);
+        }
+        series.push(Series {
+            label: name.to_owned(),
+            hue: Hue::of_series(index),
+            // The hues repeat after four phases; the next four are told apart by their dashes.
+            mark: if (index / 4).is_multiple_of(2) {
+                Mark::Line
+            } else {
+                Mark::Dashes
+            },
+            points: phase.points(|row| row.loss),
+        });
+    }
+    let plot = Plot {
+        x: step_axis(),
+        y: Axis::log("loss (scaled units)"),
+        series,
+        shaded: shaded(&run.trace),
+    };
+    let title = "Loss";
+    let explanation = "What the training minimizes. Each phase weighs its terms differently, so \
+                       the fall within a phase counts, not the jump between two.";
+    let csv = trace_csv(run, "loss", |row| row.loss);
+    figure("loss", title, explanation, &plot, csv)
+}
+
+fn decay_rate(run: &Run) -> Option<Figure> {
+    let first = run.trace.first()?;
+    #[allow(clippy::cast_precision_loss)]
+    let level = [(first.step as f64, run.result.oracle.decay_rate)];
+    let plot = Plot {
+        x: step_axis(),
+        y: Axis::linear("λ (1/s)"),
+        series: vec![
+            estimate_steps(run, |row| row.decay_rate),
+            oracle(Mark::Level, level.into_iter()),
+        ],
+        shaded: shaded(&run.trace),
+    };
+    let title = "Decay rate";
+    let explanation = "λ as the training moves it; the dashed line is the value of closed-form \
+                       least squares, which the training is not told.";
+    let csv = trace_csv(run, "decay_rate", |row| row.decay_rate);
+    figure("decay-rate", title, explanation, &plot, csv)
+}
+
+fn distance(run: &Run) -> Option<Figure> {
+    let first = run.trace.first()?;
+    let reference = run.result.oracle.decay_rate;
+    let relative = move |row: &TraceRow| (row.decay_rate / reference - 1.0).abs();
+    let level = |label: &str, hue, mark, height: f64| Series {
+        label: label.to_owned(),
+        hue,
+        mark,
+        #[allow(clippy::cast_precision_loss)]
+        points: vec![(first.step as f64, height)],
+    };
+    let plot = Plot {
+        x: step_axis(),
+        y: Axis::log("|λ / oracle's λ − 1|"),
+        series: vec![
+            estimate_steps(run, relative),
+            level(
+                "stated tolerance",
+                Hue::Data,
+                Mark::Level,
+                run.result.tolerance_percent / 100.0,
+            ),
+            level(
+                "standard error of the oracle's λ",
+                Hue::Oracle,
+                Mark::DottedLevel,
+                (run.result.oracle.std_error / reference).abs(),
+            ),
+        ],
+        shaded: shaded(&run.trace),
+    };
+    let title = "Digits gained";
+    let explanation = "The distance of λ from the oracle's: each decade down is one more digit \
+                       that both share. Below the dotted line the digits tell how well the \
+                       training solves the fit, and nothing more about the oscillator.";
+    let csv = trace_csv(run, "relative_distance", relative);
+    figure("digits", title, explanation, &plot, csv)
+}
+
+fn figure(
+    id: &'static str,
+    title: &'static str,
+    explanation: &str,
+    plot: &Plot,
+    (csv, rows): (String, String),
+) -> Option<Figure> {
+    let description = format!("{title}: {} against {}.", plot.y.label, plot.x.label);
+    let Drawing {
+        wide,
+        narrow,
+        mut legend,
+        left_out,
+        thinned,
+    } = plot.draw(&description)?;
+    let mut notes = Vec::new();
+    if legend.len() > MOST_ENTRIES {
+        notes.push(format!(
+            "{} more phases are not in the legend.",
+            legend.len() - MOST_ENTRIES
+        ));
+        legend.truncate(MOST_ENTRIES);
+    }
+    if left_out > 0 {
+        notes.push(format!(
+            "Values without a place on these axes (not finite, or not positive on a logarithmic \
+             axis) are left out: {left_out}."
+        ));
+    }
+    if thinned {
+        notes.push(
+            "Drawn with fewer points than there are; of every stretch the lowest and the highest \
+             are kept."
+                .to_owned(),
+        );
+    }
+    Some(Figure {
+        id,
+        title,
+        explanation: explanation.to_owned(),
+        notes,
+        legend,
+        wide,
+        narrow,
+        csv,
+        rows,
+    })
+}
+
+fn time_axis() -> Axis {
+    Axis::linear("time after the first peak (s)")
+}
+
+fn step_axis() -> Axis {
+    Axis::linear("training step")
+}
+
+fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
+    Series {
+        label: "closed-form least squares (oracle)".into(),
+        hue: Hue::Oracle,
+        mark,
+        points: points.collect(),
+    }
+}
+
+fn estimate(run: &Run, mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
+    Series {
+        label: run.result.estimator_title.clone(),
+        hue: Hue::Estimate,
+        mark,
+        points: points.collect(),
+    }
+}
+
+fn estimate_steps(run: &Run, value: impl Fn(&TraceRow) -> f64) -> Series {
+    #[allow(clippy::cast_precision_loss)]
+    let points = run.trace.iter().map(|row| (row.step as f64, value(row)));
+    estimate(run, Mark::Line, points)
+}
+
+/// Consecutive rows of a trace that are part of the same phase; never empty.
+struct Phase<'a> {
+    rows: &'a [TraceRow],
+}
+
+impl<'a> Phase<'a> {
+    fn name(&self) -> &'a str {
+        self.rows.first().map_or("", |row| row.phase.as_str())
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn start(&self) -> f64 {
+        self.rows.first().map_or(0.0, |row| row.step as f64)
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn end(&self) -> f64 {
+        self.rows.last().map_or(0.0, |row| row.step as f64)
+    }
+
+    #[allow(clippy::cast_precision_loss)]
+    fn points(&self, value: impl Fn(&TraceRow) -> f64) -> Vec<(f64, f64)> {
+        self.rows
+            .iter()
+            .map(|row| (row.step as f64, value(row)))
+            .collect()
+    }
+}
+
+fn phases(trace: &[TraceRow]) -> Vec<Phase<'_>> {
+    trace
+        .chunk_by(|one, next| one.phase == next.phase)
+        .map(|rows| Phase { rows })
+        .collect()
+}
+
+/// Every other phase, from its first step to the next phase's.
+fn shaded(trace: &[TraceRow]) -> Vec<(f64, f64)> {
+    let phases = phases(trace);
+    phases
+        .iter()
+        .enumerate()
+        .filter(|(index, _)| !index.is_multiple_of(2))
+        .map(|(index, phase)| {
+            let end = phases.get(index + 1).map_or(phase.end(), Phase::start);
+            (phase.start(), end)
+        })
+        .collect()
+}
+
+fn trace_csv(run: &Run, column: &str, value: impl Fn(&TraceRow) -> f64) -> (String, String) {
+    csv(&["step", "phase", column], &run.trace, |row| {
+        vec![
+            row.step.to_string(),
+            row.phase.clone(),
+            value(row).to_string(),
+        ]
+    })
+}
+
+fn numbers(values: &[f64]) -> Vec<String> {
+    values.iter().map(f64::to_string).collect()
+}
+
+/// The table as text, and how many rows of it that is, in words.
+fn csv<Row>(
+    header: &[&str],
+    rows: &[Row],
+    fields: impl Fn(&Row) -> Vec<String>,
+) -> (String, String) {
+    let stride = rows.len().div_ceil(MOST_ROWS).max(1);
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    // Writing to memory fails on no input; where it did, the table would end early.
+    let mut written = writer.write_record(header).is_ok();
+    for row in rows.iter().step_by(stride) {
+        written = written && writer.write_record(fields(row)).is_ok();
+    }
+    let bytes = writer.into_inner().unwrap_or_default();
+    let text = String::from_utf8_lossy(&bytes).into_owned();
+    let total = format::count(u64::try_from(rows.len()).unwrap_or(u64::MAX));
+    let shown = match (written, stride) {
+        (false, _) => "incomplete".to_owned(),
+        (true, 1) => format!("{total} rows"),
+        (true, _) => format!("one row in {stride} of {total}"),
+    };
+    (text, shown)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn row(step: u64, phase: &str) -> TraceRow {
+        TraceRow {
+            step,
+            phase: phase.into(),
+            loss: 1.0,
+            decay_rate: 0.1,
+        }
+    }
+
+    #[test]
+    fn every_other_phase_is_shaded_up_to_the_next() {
+        let trace = [
+            row(0, "a"),
+            row(1, "b"),
+            row(2, "b"),
+            row(3, "c"),
+            row(4, "d"),
+            row(5, "d"),
+        ];
+        assert_eq!(shaded(&trace), [(1.0, 3.0), (4.0, 5.0)]);
+    }
+
+    #[test]
+    fn long_tables_keep_every_so_many_rows() {
+        let trace: Vec<_> = (0..5_000).map(|step| row(step, "a,b")).collect();
+        let (text, shown) = csv(&["step", "phase"], &trace, |r| {
+            vec![r.step.to_string(), r.phase.clone()]
+        });
+        assert_eq!(shown, "one row in 3 of 5000");
+        assert_eq!(text.lines().count(), 1 + 1_667);
+        assert!(text.starts_with("step,phase\n0,\"a,b\"\n3,"));
+    }
+}

@@ -1,0 +1,205 @@
+//! From the texts of a run folder to typed values.
+
+use runs::result::{EnvelopeRow, EstimationResult, RESULT_SCHEMA, TraceRow};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use crate::{ReportError, RunTexts};
+
+/// The parsed content of a run folder.
+pub(crate) struct Run {
+    pub(crate) result: EstimationResult,
+    /// Empty where the method takes no steps.
+    pub(crate) trace: Vec<TraceRow>,
+    pub(crate) envelope: Vec<EnvelopeRow>,
+}
+
+/// The one field that every schema has.
+#[derive(Deserialize)]
+struct Tag {
+    schema: String,
+}
+
+pub(crate) fn parse(texts: &RunTexts<'_>) -> Result<Run, ReportError> {
+    let envelope: Vec<EnvelopeRow> = table("envelope.csv", texts.envelope)?;
+    if envelope.is_empty() {
+        return Err(ReportError::Empty {
+            file: "envelope.csv",
+        });
+    }
+    Ok(Run {
+        result: result(texts.result)?,
+        // No rows is a valid trace: a closed-form method takes no steps.
+        trace: table("trace.csv", texts.trace)?,
+        envelope,
+    })
+}
+
+fn result(text: &str) -> Result<EstimationResult, ReportError> {
+    if text.trim().is_empty() {
+        return Err(ReportError::Empty {
+            file: "result.json",
+        });
+    }
+    // The tag first: a result of another schema is to be named as such, not by the first field
+    // that it happens to lack.
+    let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
+    if tag.schema != RESULT_SCHEMA {
+        return Err(ReportError::Schema {
+            expected: RESULT_SCHEMA,
+            found: tag.schema,
+        });
+    }
+    serde_json::from_str(text).map_err(json_error)
+}
+
+fn json_error(error: serde_json::Error) -> ReportError {
+    let full = error.to_string();
+    let suffix = format!(" at line {} column {}", error.line(), error.column());
+    ReportError::Json {
+        line: error.line(),
+        column: error.column(),
+        reason: full.strip_suffix(&suffix).unwrap_or(&full).to_owned(),
+    }
+}
+
+fn table<Row: DeserializeOwned>(file: &'static str, text: &str) -> Result<Vec<Row>, ReportError> {
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().cloned().unwrap_or_default();
+    reader
+        .deserialize()
+        .map(|row| row.map_err(|error| table_error(file, &headers, &error)))
+        .collect()
+}
+
+fn table_error(
+    file: &'static str,
+    headers: &csv::StringRecord,
+    error: &csv::Error,
+) -> ReportError {
+    let line = error.position().map(csv::Position::line);
+    let (column, reason) = match error.kind() {
+        csv::ErrorKind::Deserialize { err, .. } => (
+            err.field()
+                .and_then(|field| usize::try_from(field).ok())
+                .and_then(|field| headers.get(field)),
+            err.kind().to_string(),
+        ),
+        csv::ErrorKind::UnequalLengths {
+            expected_len, len, ..
+        } => (
+            None,
+            format!("the row has {len} fields, the header {expected_len}"),
+        ),
+        _ => (None, error.to_string()),
+    };
+    let place = match (line, column) {
+        (Some(line), Some(column)) => format!("line {line}, column `{column}`"),
+        (Some(line), None) => format!("line {line}"),
+        _ => "somewhere".to_owned(),
+    };
+    ReportError::Table {
+        file,
+        place,
+        reason,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::sample::Sample;
+    use crate::{ReportError, render_run};
+
+    fn message(change: impl FnOnce(&mut Sample)) -> String {
+        let mut sample = Sample::new();
+        change(&mut sample);
+        render_run(&sample.texts()).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_missing_result_is_named() {
+        assert_eq!(
+            message(|s| s.result_text = Some(String::new())),
+            "result.json is missing or empty: the run may have ended before it was written; run \
+             the experiment again, or report on another run folder"
+        );
+    }
+
+    #[test]
+    fn a_missing_envelope_is_named() {
+        assert!(
+            message(|s| s.envelope_text = Some("\n".into())).starts_with("envelope.csv is missing")
+        );
+        assert!(
+            message(|s| s.envelope_text = Some("time_s,log_amplitude,oracle,estimate\n".into()))
+                .starts_with("envelope.csv is missing or empty")
+        );
+    }
+
+    #[test]
+    fn garbled_json_is_located() {
+        let text = message(|s| s.result_text = Some("{\n  \"schema\": oops\n}".into()));
+        assert!(
+            text.starts_with("result.json, line 2, column 13: expected value; "),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_missing_field_is_named() {
+        let text = message(|s| {
+            s.result_text = Some(s.json().replace("\"tolerance_percent\"", "\"tolerance\""));
+        });
+        assert!(text.contains("missing field `tolerance_percent`"), "{text}");
+    }
+
+    #[test]
+    fn a_number_that_was_not_finite_is_explained() {
+        let text = message(|s| s.result.error_percent = f64::NAN);
+        assert!(text.contains("invalid type: null, expected f64"), "{text}");
+        assert!(text.contains("not finite"), "{text}");
+    }
+
+    #[test]
+    fn another_schema_is_named_before_any_field() {
+        assert_eq!(
+            message(|s| s.result_text = Some("{\"schema\": \"ringdown.result/9\"}".into())),
+            "result.json, field `schema`: this program reads \"ringdown.result/1\", the file says \
+             \"ringdown.result/9\"; make the report with the program that made the run"
+        );
+    }
+
+    #[test]
+    fn a_garbled_table_is_located() {
+        let text = message(|s| {
+            s.trace_text = Some("step,phase,loss,decay_rate\n0,a,1.0,0.1\n1,a,one,0.1\n".into());
+        });
+        assert!(
+            text.starts_with("trace.csv, line 3, column `loss`: invalid float literal; "),
+            "{text}"
+        );
+        let text = message(|s| {
+            s.envelope_text = Some("time_s,log_amplitude,oracle,estimate\n0,1,2\n".into());
+        });
+        assert!(
+            text.starts_with("envelope.csv, line 2: the row has 3 fields, the header 4; "),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn a_table_without_a_column_is_located() {
+        let text = message(|s| s.trace_text = Some("step,phase,loss\n0,a,1.0\n".into()));
+        assert!(text.contains("trace.csv, line 2: missing field `decay_rate`"), "{text}");
+    }
+
+    #[test]
+    fn errors_are_of_their_kind() {
+        let mut sample = Sample::new();
+        sample.result_text = Some("[]".into());
+        assert!(matches!(
+            render_run(&sample.texts()),
+            Err(ReportError::Json { .. })
+        ));
+    }
+}

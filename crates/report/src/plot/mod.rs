@@ -1,0 +1,227 @@
+//! Plots as inline SVG: the one place that draws.
+//!
+//! A [`Plot`] says what is to be seen; [`Plot::draw`] gives a [`Drawing`], for which the style
+//! sheet of the page supplies the colors (see [`Hue`]). Each plot is drawn twice, for a wide and
+//! for a narrow page, because text in an SVG shrinks with it: the page shows one of the two.
+//!
+//! The legend is not part of the SVG. The page sets it in HTML, where it wraps and where the
+//! names in it, which come from files, are escaped like all other text.
+
+mod axis;
+mod hue;
+mod svg;
+mod thin;
+
+pub use axis::{Axis, Scale};
+pub use hue::Hue;
+
+/// Beyond this many points a line looks the same with fewer.
+const MOST_POINTS: usize = 1_200;
+
+/// What is to be seen in one plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plot {
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The series, drawn in this order: the last is on top.
+    pub series: Vec<Series>,
+    /// Stretches of the horizontal axis that are shaded, in units of that axis.
+    pub shaded: Vec<(f64, f64)>,
+}
+
+/// One series of a plot.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; series of the same name, hue and mark share one entry.
+    pub label: String,
+    /// Its color.
+    pub hue: Hue,
+    /// How its points are drawn.
+    pub mark: Mark,
+    /// Horizontal and vertical coordinates, in the units of the axes. What an axis cannot show
+    /// (not finite; not positive on a logarithmic axis) interrupts a line.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// How the points of a series are drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mark {
+    /// A dot each.
+    Dots,
+    /// A line through them.
+    Line,
+    /// A thick line, to lie beneath another that may cover it.
+    ThickLine,
+    /// A dashed line.
+    Dashes,
+    /// A dotted line.
+    DottedLine,
+    /// A dashed horizontal line across the whole plot, at the first point's height.
+    Level,
+    /// A dotted horizontal line across the whole plot, at the first point's height.
+    DottedLevel,
+}
+
+/// One entry of a legend.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LegendEntry {
+    /// The series' name, not escaped.
+    pub label: String,
+    /// A small SVG that shows its color and its mark; holds nothing from outside this crate.
+    pub swatch: String,
+}
+
+/// A finished plot.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Drawing {
+    /// SVG for a page that gives it about 720 CSS pixels.
+    pub wide: String,
+    /// SVG for a phone, which gives it about 350.
+    pub narrow: String,
+    /// The entries of the legend, in the order of the series.
+    pub legend: Vec<LegendEntry>,
+    /// How many points the axes could not show.
+    pub left_out: usize,
+    /// Whether a line was drawn with fewer points than it has.
+    pub thinned: bool,
+}
+
+impl Plot {
+    /// Draws the plot. `description` is what a screen reader says instead.
+    ///
+    /// `None` where no series has a point that the axes can show.
+    #[must_use]
+    pub fn draw(&self, description: &str) -> Option<Drawing> {
+        let runs: Vec<Vec<Vec<(f64, f64)>>> = self.series.iter().map(|s| self.runs(s)).collect();
+        let longest = runs.iter().flatten().map(Vec::len).max()?;
+        let left_out = self
+            .series
+            .iter()
+            .flat_map(|series| &series.points)
+            .filter(|point| !self.can_show(**point))
+            .count();
+        let runs: Vec<Vec<Vec<(f64, f64)>>> = runs
+            .into_iter()
+            .zip(&self.series)
+            .map(|(runs, series)| match series.mark {
+                Mark::Dots => runs,
+                _ => runs.iter().map(|run| thin::thin(run, MOST_POINTS)).collect(),
+            })
+            .collect();
+        Some(Drawing {
+            wide: svg::render(self, &runs, &svg::WIDE, description)?,
+            narrow: svg::render(self, &runs, &svg::NARROW, description)?,
+            legend: self.legend(),
+            left_out,
+            thinned: longest > MOST_POINTS,
+        })
+    }
+
+    fn can_show(&self, point: (f64, f64)) -> bool {
+        self.x.can_show(point.0) && self.y.can_show(point.1)
+    }
+
+    /// The unbroken stretches of a series that can be shown.
+    fn runs(&self, series: &Series) -> Vec<Vec<(f64, f64)>> {
+        series
+            .points
+            .split(|point| !self.can_show(*point))
+            .filter(|run| !run.is_empty())
+            .map(<[_]>::to_vec)
+            .collect()
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let mut entries: Vec<LegendEntry> = Vec::new();
+        for series in &self.series {
+            let entry = LegendEntry {
+                label: series.label.clone(),
+                swatch: svg::swatch(series),
+            };
+            if !series.points.is_empty() && !entries.contains(&entry) {
+                entries.push(entry);
+            }
+        }
+        entries
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn plot(points: Vec<(f64, f64)>) -> Plot {
+        Plot {
+            x: Axis::linear("step"),
+            y: Axis::log("loss"),
+            series: vec![Series {
+                label: "one".into(),
+                hue: Hue::Estimate,
+                mark: Mark::Line,
+                points,
+            }],
+            shaded: vec![],
+        }
+    }
+
+    #[test]
+    fn nothing_to_show_is_no_drawing() {
+        assert!(plot(vec![]).draw("").is_none());
+        assert!(plot(vec![(0.0, f64::NAN), (1.0, -1.0)]).draw("").is_none());
+    }
+
+    #[test]
+    fn what_cannot_be_shown_interrupts_the_line_and_is_counted() {
+        let drawing = plot(vec![
+            (0.0, 1.0),
+            (1.0, 0.1),
+            (2.0, f64::NAN),
+            (3.0, f64::INFINITY),
+            (4.0, 0.0),
+            (5.0, 0.01),
+            (6.0, 1e-30),
+        ])
+        .draw("a plot")
+        .unwrap();
+        assert_eq!(drawing.left_out, 3);
+        assert_eq!(drawing.wide.matches("<path").count(), 2);
+        assert!(!drawing.wide.contains("NaN") && !drawing.wide.contains("inf"));
+    }
+
+    #[test]
+    fn a_single_point_is_seen() {
+        let drawing = plot(vec![(0.0, 1.0)]).draw("").unwrap();
+        assert!(drawing.narrow.contains("<circle"));
+    }
+
+    #[test]
+    fn long_lines_are_thinned() {
+        let points = (0..100_000).map(|i| (f64::from(i), 1.0 + f64::from(i % 7)));
+        let drawing = plot(points.collect()).draw("").unwrap();
+        assert!(drawing.thinned);
+        assert!(drawing.wide.len() < 60_000, "{}", drawing.wide.len());
+    }
+
+    #[test]
+    fn drawings_of_one_plot_are_equal() {
+        let plot = plot(vec![(0.0, 1.0), (1.0, 2.0)]);
+        assert_eq!(plot.draw("x"), plot.draw("x"));
+    }
+
+    #[test]
+    fn series_of_one_kind_share_a_legend_entry() {
+        let mut plot = plot(vec![(0.0, 1.0), (1.0, 2.0)]);
+        plot.series.push(plot.series[0].clone());
+        assert_eq!(plot.draw("").unwrap().legend.len(), 1);
+    }
+
+    #[test]
+    fn labels_are_escaped() {
+        let mut plot = plot(vec![(0.0, 1.0), (1.0, 2.0)]);
+        plot.y.label = "<script>$x$</script>".into();
+        let drawing = plot.draw("\"><script>").unwrap();
+        assert!(!drawing.wide.contains("<script"));
+    }
+}

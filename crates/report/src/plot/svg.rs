@@ -1,0 +1,220 @@
+//! From a plot to SVG text, by kuva.
+
+use std::sync::Arc;
+
+use kuva::backend::svg::SvgBackend;
+use kuva::plot::{LinePlot, ScatterPlot};
+use kuva::render::annotations::ShadedRegion;
+use kuva::render::layout::{AxisLabelOverlap, Layout, TickFormat};
+use kuva::render::plots::Plot as KuvaPlot;
+use kuva::render::render::{Primitive, render_multiple};
+use kuva::render::theme::Theme;
+
+use super::axis::Ticks;
+use super::{Hue, Mark, Plot, Series};
+
+/// The canvas, in SVG units that are CSS pixels where the page shows it full size.
+pub(super) struct Canvas {
+    class: &'static str,
+    width: f64,
+    height: f64,
+    /// Font sizes of the axis labels and of the ticks.
+    label_size: u32,
+    tick_size: u32,
+    /// About how many ticks there is room for.
+    x_ticks: f64,
+    y_ticks: f64,
+    dot_radius: f64,
+    line_width: f64,
+}
+
+pub(super) const WIDE: Canvas = Canvas {
+    class: "plot wide",
+    width: 720.0,
+    height: 400.0,
+    label_size: 14,
+    tick_size: 13,
+    x_ticks: 8.0,
+    y_ticks: 6.0,
+    dot_radius: 3.2,
+    line_width: 2.0,
+};
+
+pub(super) const NARROW: Canvas = Canvas {
+    class: "plot narrow",
+    width: 360.0,
+    height: 290.0,
+    label_size: 13,
+    tick_size: 12,
+    x_ticks: 4.0,
+    y_ticks: 5.0,
+    dot_radius: 2.6,
+    line_width: 1.8,
+};
+
+/// Dash patterns, shared by the plots and the swatches.
+const DASHES: &str = "7 4";
+const DOTS: &str = "2 3";
+
+/// `runs` holds the points of each series of the plot, in unbroken stretches.
+pub(super) fn render(
+    plot: &Plot,
+    runs: &[Vec<Vec<(f64, f64)>>],
+    canvas: &Canvas,
+    description: &str,
+) -> Option<String> {
+    let points = || runs.iter().flatten().flatten();
+    let x_ticks = plot.x.ticks(points().map(|p| p.0), canvas.x_ticks)?;
+    let y_ticks = plot.y.ticks(points().map(|p| p.1), canvas.y_ticks)?;
+
+    let mut layers = Vec::new();
+    for (series, runs) in plot.series.iter().zip(runs) {
+        for run in runs {
+            let placed = run
+                .iter()
+                .map(|(x, y)| (x_ticks.place(*x), y_ticks.place(*y)))
+                .collect();
+            layers.push(layer(series, placed, &x_ticks, canvas));
+        }
+    }
+    let mut layout = layout(plot, canvas, &x_ticks, &y_ticks);
+    for (from, to) in &plot.shaded {
+        if plot.x.can_show(*from) && plot.x.can_show(*to) {
+            layout = layout.with_shaded_region(
+                ShadedRegion::vertical(
+                    x_ticks.place(*from).clamp(0.0, x_ticks.steps),
+                    x_ticks.place(*to).clamp(0.0, x_ticks.steps),
+                )
+                .with_color(Hue::Shade.light())
+                .with_opacity(0.14),
+            );
+        }
+    }
+
+    let mut scene = render_multiple(layers, layout);
+    // kuva numbers its clip paths with a counter of the process, which would make the text depend
+    // on what was drawn before. Nothing here lies outside the axes, so nothing is to be clipped.
+    scene.defs.clear();
+    scene
+        .elements
+        .retain(|e| !matches!(e, Primitive::ClipStart { .. } | Primitive::ClipEnd));
+    let svg = SvgBackend::new().render_scene(&scene);
+
+    // kuva's opening tag fixes the size and the font; the page is to choose both.
+    let body = svg.split_once('>').map(|(_, body)| body)?;
+    Some(format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{}\" viewBox=\"0 0 {} {}\" \
+         font-family=\"sans-serif\" fill=\"{}\" role=\"img\" aria-label=\"{}\">{body}",
+        canvas.class,
+        canvas.width,
+        canvas.height,
+        Hue::Ink.light(),
+        escape(description),
+    ))
+}
+
+fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
+    let theme = Theme {
+        background: "none".into(),
+        axis_color: Hue::Axis.light().into(),
+        tick_color: Hue::Axis.light().into(),
+        grid_color: Hue::Grid.light().into(),
+        text_color: Hue::Ink.light().into(),
+        ..Theme::light()
+    };
+    let labels = |ticks: &Ticks| {
+        let ticks = ticks.clone();
+        TickFormat::Custom(Arc::new(move |position| ticks.label(position)))
+    };
+    Layout::new((0.0, x.steps), (0.0, y.steps))
+        .with_theme(theme)
+        .with_width(canvas.width)
+        .with_height(canvas.height)
+        .with_label_size(canvas.label_size)
+        .with_tick_size(canvas.tick_size)
+        .with_x_axis_min(0.0)
+        .with_x_axis_max(x.steps)
+        .with_y_axis_min(0.0)
+        .with_y_axis_max(y.steps)
+        .with_x_tick_step(1.0)
+        .with_y_tick_step(1.0)
+        .with_x_tick_format(labels(x))
+        .with_y_tick_format(labels(y))
+        .with_x_label_overlap(AxisLabelOverlap::Thin)
+        .with_x_label(plain(&plot.x.label))
+        .with_y_label(plain(&plot.y.label))
+}
+
+fn layer(series: &Series, points: Vec<(f64, f64)>, x: &Ticks, canvas: &Canvas) -> KuvaPlot {
+    let level = || {
+        let height = points.first().map_or(0.0, |point| point.1);
+        vec![(0.0, height), (x.steps, height)]
+    };
+    let line = |points: Vec<(f64, f64)>, width: f64, dashes: Option<&str>| {
+        let line = LinePlot::new()
+            .with_data(points)
+            .with_color(series.hue.light())
+            .with_stroke_width(width);
+        KuvaPlot::Line(match dashes {
+            Some(dashes) => {
+                line.with_line_style(kuva::plot::LineStyle::Custom(dashes.to_owned()))
+            }
+            None => line,
+        })
+    };
+    let width = canvas.line_width;
+    match series.mark {
+        Mark::Level => line(level(), width, Some(DASHES)),
+        Mark::DottedLevel => line(level(), width, Some(DOTS)),
+        // A line needs two points; a single one is to be seen all the same.
+        Mark::Dots | Mark::Line | Mark::ThickLine | Mark::Dashes | Mark::DottedLine
+            if series.mark == Mark::Dots || points.len() == 1 =>
+        {
+            KuvaPlot::Scatter(
+                ScatterPlot::new()
+                    .with_data(points)
+                    .with_color(series.hue.light())
+                    .with_size(canvas.dot_radius),
+            )
+        }
+        Mark::ThickLine => line(points, 2.4 * width, None),
+        Mark::Dashes => line(points, width, Some(DASHES)),
+        Mark::DottedLine => line(points, width, Some(DOTS)),
+        Mark::Dots | Mark::Line => line(points, width, None),
+    }
+}
+
+/// What stands before a series' name in the legend.
+pub(super) fn swatch(series: &Series) -> String {
+    let color = series.hue.light();
+    let line = |width: &str, dashes: &str| {
+        format!(
+            "<line x1=\"1\" y1=\"6\" x2=\"27\" y2=\"6\" stroke=\"{color}\" \
+             stroke-width=\"{width}\"{dashes} />"
+        )
+    };
+    let dashed = |pattern: &str| line("2", &format!(" stroke-dasharray=\"{pattern}\""));
+    let shape = match series.mark {
+        Mark::Dots => format!("<circle cx=\"14\" cy=\"6\" r=\"3.5\" fill=\"{color}\" />"),
+        Mark::Line => line("2", ""),
+        Mark::ThickLine => line("4.8", ""),
+        Mark::Dashes | Mark::Level => dashed(DASHES),
+        Mark::DottedLine | Mark::DottedLevel => dashed(DOTS),
+    };
+    format!(
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"swatch\" viewBox=\"0 0 28 12\" \
+         aria-hidden=\"true\">{shape}</svg>"
+    )
+}
+
+/// Axis labels may quote a unit from a file. kuva escapes them, but reads `$…$` as mathematics.
+fn plain(label: &str) -> String {
+    label.chars().filter(|c| *c != '$').take(60).collect()
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;")
+        .replace('<', "&lt;")
+        .replace('>', "&gt;")
+        .replace('"', "&quot;")
+}

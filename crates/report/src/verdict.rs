@@ -1,0 +1,277 @@
+//! What a run came to, in one sentence, and what kind of record it is about.
+
+use runs::result::EstimationResult;
+
+use crate::format;
+
+/// How the page colors a statement. The words carry the meaning; the color repeats it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tone {
+    Good,
+    Caution,
+    Bad,
+}
+
+impl Tone {
+    /// The class in the style sheet.
+    pub(crate) fn class(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Caution => "caution",
+            Self::Bad => "bad",
+        }
+    }
+}
+
+/// What the run came to.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Verdict {
+    pub(crate) tone: Tone,
+    /// Two or three words.
+    pub(crate) label: &'static str,
+    pub(crate) sentence: String,
+}
+
+pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
+    let who = in_a_sentence(&result.estimator_title);
+    let zeta = format::with_uncertainty(
+        result.estimate.zeta,
+        result.estimate.zeta_std_error.unwrap_or(f64::NAN),
+    );
+    let comparison = comparison(result);
+    let steps = format::count(result.steps);
+    match result.estimate.reached.as_str() {
+        "converged" => Verdict {
+            tone: if result.pass { Tone::Good } else { Tone::Bad },
+            label: if result.pass {
+                "Within tolerance"
+            } else {
+                "Outside tolerance"
+            },
+            sentence: format!("The {who} finds a damping ratio of {zeta}; it {comparison}."),
+        },
+        "budget_spent" => Verdict {
+            tone: if result.pass { Tone::Caution } else { Tone::Bad },
+            label: if result.pass {
+                "Within tolerance, not converged"
+            } else {
+                "Not converged"
+            },
+            sentence: format!(
+                "The {who} used up its budget of steps ({steps} taken) before it converged. The \
+                 damping ratio it had reached, {zeta}, {comparison}."
+            ),
+        },
+        "interrupted" => Verdict {
+            tone: Tone::Caution,
+            label: "Interrupted",
+            sentence: format!(
+                "The run was interrupted after {steps} steps, before the {who} had finished. The \
+                 damping ratio it had reached, {zeta}, {comparison}; that is not a result."
+            ),
+        },
+        "diverged" => Verdict {
+            tone: Tone::Bad,
+            label: "Diverged",
+            sentence: format!(
+                "The {who} found no damping ratio: its training diverged after {steps} steps. The \
+                 value it stopped at, {zeta}, {comparison}; that is not a result."
+            ),
+        },
+        other => Verdict {
+            tone: Tone::Caution,
+            label: "State unknown",
+            sentence: format!(
+                "The {who} stopped in a state that this report does not know, “{other}”. Its \
+                 damping ratio, {zeta}, {comparison}."
+            ),
+        },
+    }
+}
+
+/// What follows "it": how far from the oracle, and whether that is within what was stated.
+fn comparison(result: &EstimationResult) -> String {
+    const ORACLE: &str = "closed-form least squares";
+    let tolerance = format::quantity(&format::exact(result.tolerance_percent), "%");
+    if !result.error_percent.is_finite() {
+        return format!("cannot be compared with {ORACLE}");
+    }
+    let distance = if result.error_percent == 0.0 {
+        format!("equals that of {ORACLE} to the last digit")
+    } else {
+        format!(
+            "differs from {ORACLE} by {}",
+            format::percent(result.error_percent)
+        )
+    };
+    if result.error_percent > result.tolerance_percent {
+        return format!("{distance}, more than the stated {tolerance}");
+    }
+    let seeds = result.seeds.len();
+    let worst = format::percent(result.worst_error_percent);
+    if !result.pass && seeds > 1 {
+        format!(
+            "{distance}, within the stated {tolerance}, but the worst of its {seeds} seeds \
+             differs by {worst}, and every seed has to be within"
+        )
+    } else if seeds > 1 {
+        format!(
+            "{distance}, within the stated {tolerance} (the worst of its {seeds} seeds by {worst})"
+        )
+    } else {
+        format!("{distance}, within the stated {tolerance}")
+    }
+}
+
+/// A title as it stands inside a sentence: its first letter small, unless it begins an acronym.
+fn in_a_sentence(title: &str) -> String {
+    let mut letters = title.chars();
+    match (letters.next(), letters.next()) {
+        (Some(first), Some(second)) if second.is_lowercase() => {
+            first.to_lowercase().chain(title.chars().skip(1)).collect()
+        }
+        _ => title.to_owned(),
+    }
+}
+
+/// Whether the record was measured.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Origin {
+    /// The class in the style sheet.
+    pub(crate) class: &'static str,
+    /// In two or three words.
+    pub(crate) label: &'static str,
+    /// What that means for the numbers.
+    pub(crate) note: &'static str,
+}
+
+pub(crate) fn origin(stated: &str) -> Origin {
+    match stated {
+        "measured" => Origin {
+            class: "measured",
+            label: "Measured record",
+            note: "Recorded from an oscillator.",
+        },
+        "simulated" => Origin {
+            class: "simulated",
+            label: "Simulated record",
+            note: "Computed, not measured: nothing here is evidence about a real oscillator.",
+        },
+        _ => Origin {
+            class: "unstated",
+            label: "Origin not stated",
+            note: "Nobody has said whether this record was measured or simulated: do not cite it \
+                   as a measurement.",
+        },
+    }
+}
+
+/// What the reader has to know before believing the numbers.
+pub(crate) fn warnings(result: &EstimationResult) -> Vec<String> {
+    let mut warnings = Vec::new();
+    let correlation = result.oracle.residual_autocorrelation;
+    if correlation.abs() > 0.5 {
+        let consequence = if correlation > 0.0 {
+            "are therefore too small"
+        } else {
+            "therefore do not hold"
+        };
+        warnings.push(format!(
+            "Neighboring residuals are correlated (lag-one autocorrelation {}): the standard \
+             errors and intervals on this page assume independent residuals and {consequence}.",
+            format::fixed(correlation, 2)
+        ));
+    }
+    warnings
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::Sample;
+
+    fn sentence(change: impl FnOnce(&mut EstimationResult)) -> (&'static str, String) {
+        let mut result = Sample::new().result;
+        result.seeds.truncate(1);
+        change(&mut result);
+        let verdict = verdict(&result);
+        (verdict.label, verdict.sentence.replace('\u{a0}', " "))
+    }
+
+    #[test]
+    fn a_pass() {
+        assert_eq!(
+            sentence(|_| ()),
+            (
+                "Within tolerance",
+                "The physics-informed neural network finds a damping ratio of 0.00875 ± 0.00021; \
+                 it differs from closed-form least squares by 3.1 × 10⁻⁷ %, within the stated \
+                 0.1 %."
+                    .to_owned()
+            )
+        );
+    }
+
+    #[test]
+    fn a_miss() {
+        let (label, text) = sentence(|r| {
+            r.estimator_title = "PINN".into();
+            r.error_percent = 2.345;
+            r.pass = false;
+        });
+        assert_eq!(label, "Outside tolerance");
+        assert!(text.starts_with("The PINN finds"), "{text}");
+        assert!(text.ends_with("by 2.3 %, more than the stated 0.1 %."), "{text}");
+    }
+
+    #[test]
+    fn one_bad_seed() {
+        let mut result = Sample::new().result;
+        result.pass = false;
+        result.worst_error_percent = 0.25;
+        let text = verdict(&result).sentence.replace('\u{a0}', " ");
+        assert!(
+            text.contains("but the worst of its 5 seeds differs by 0.25 %"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn what_did_not_finish_is_no_result() {
+        let (label, text) = sentence(|r| r.estimate.reached = "interrupted".into());
+        assert_eq!(label, "Interrupted");
+        assert!(text.ends_with("that is not a result."), "{text}");
+        let (label, text) = sentence(|r| {
+            r.estimate.reached = "diverged".into();
+            r.estimate.zeta = f64::NAN;
+            r.error_percent = f64::NAN;
+        });
+        assert_eq!(label, "Diverged");
+        assert!(text.contains("not finite, cannot be compared"), "{text}");
+        let (label, text) = sentence(|r| r.estimate.reached = "budget_spent".into());
+        assert_eq!(label, "Within tolerance, not converged");
+        assert!(text.contains("before it converged"), "{text}");
+        let (_, text) = sentence(|r| r.estimate.reached = "asleep".into());
+        assert!(text.contains("“asleep”"), "{text}");
+    }
+
+    #[test]
+    fn an_origin_that_is_not_known_is_not_stated() {
+        assert_eq!(origin("measured").class, "measured");
+        assert_eq!(origin("simulated").class, "simulated");
+        assert_eq!(origin("unstated").class, "unstated");
+        assert_eq!(origin("dreamt").class, "unstated");
+    }
+
+    #[test]
+    fn correlated_residuals_are_warned_about() {
+        let mut result = Sample::new().result;
+        result.oracle.residual_autocorrelation = 0.5;
+        assert!(warnings(&result).is_empty());
+        result.oracle.residual_autocorrelation = 0.61;
+        assert!(warnings(&result)[0].contains("0.61): the standard errors"));
+        assert!(warnings(&result)[0].contains("too small"));
+        result.oracle.residual_autocorrelation = -0.7;
+        assert!(warnings(&result)[0].contains("do not hold"));
+    }
+}

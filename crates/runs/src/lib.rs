@@ -1,0 +1,2 @@
+//! Run folders: the only crate that writes to disk.
+pub mod result;

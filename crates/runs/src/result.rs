@@ -1,0 +1,229 @@
+//! The schema of `result.json` and of the tables beside it: plain data, written by the trainer and
+//! read by the report.
+//!
+//! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
+//! is not.
+
+use serde::{Deserialize, Serialize};
+
+/// The `schema` field of an estimation's `result.json`.
+pub const RESULT_SCHEMA: &str = "ringdown.result/1";
+
+/// What one estimation found: the content of `result.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimationResult {
+    /// Always [`RESULT_SCHEMA`].
+    pub schema: String,
+    /// What was asked for: `"estimate"`.
+    pub task: String,
+    /// Identifier of the estimator, such as `"pinn"`.
+    pub estimator: String,
+    /// Its name in words.
+    pub estimator_title: String,
+    /// The seed of the fit that `estimate` holds.
+    pub seed: u64,
+    /// Where the record came from and what its file was found to be.
+    pub data: DataSummary,
+    /// The envelope that every method was given.
+    pub envelope: EnvelopeSummary,
+    /// Closed-form least squares on that envelope.
+    pub oracle: OracleSummary,
+    /// What the estimator found on that envelope.
+    pub estimate: EstimateSummary,
+    /// |ζ − ζ_oracle| / ζ_oracle · 100.
+    pub error_percent: f64,
+    /// The largest `error_percent` that passes.
+    pub tolerance_percent: f64,
+    /// Whether every seed's error is within the tolerance.
+    pub pass: bool,
+    /// Wall time of the fit, in seconds.
+    pub seconds: f64,
+    /// Training steps taken.
+    pub steps: u64,
+    /// Number of trained parameters.
+    pub parameters: usize,
+    /// One row for each seed that was fitted, `seed` first.
+    pub seeds: Vec<SeedRow>,
+    /// The largest `error_percent` over `seeds`.
+    pub worst_error_percent: f64,
+    /// The same record through each pipeline and clock, by closed-form least squares.
+    pub pipelines: Vec<PipelineRow>,
+}
+
+/// Where the record came from and what its file was found to be.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DataSummary {
+    /// The path as configured.
+    pub path: String,
+    /// SHA-256 of the file's bytes, hexadecimal, prefixed `sha256:`.
+    pub digest: String,
+    /// `"measured"`, `"simulated"` or `"unstated"`.
+    pub origin: String,
+    /// Samples in the file.
+    pub samples: usize,
+    /// The clock in force: `"host"` or `"uniform-index"`.
+    pub clock: String,
+    /// Why that clock is in force, in a sentence.
+    pub clock_reason: String,
+    /// The rate of the sensor by a regression of time on the sample index, in hertz.
+    pub sample_rate_hz: f64,
+    /// Its standard error, in hertz.
+    pub sample_rate_std_error_hz: f64,
+    /// The step of the sensor's lattice in SI units, where one was found.
+    pub resolution: Option<f64>,
+    /// Unit of the observed quantity: `"rad"`, `"m"`, `"rad/s"`, …
+    pub unit: String,
+    /// What was noticed about the file: sentences for the reader.
+    pub findings: Vec<String>,
+}
+
+/// The envelope that every method was given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EnvelopeSummary {
+    /// `"paper"` or `"recommended"`.
+    pub pipeline: String,
+    /// Number of peaks.
+    pub peaks: usize,
+    /// Samples after interpolation (equal to `data.samples` where nothing is interpolated).
+    pub samples: usize,
+    /// Median period, in seconds.
+    pub period_s: f64,
+    /// 2π / `period_s`, in rad/s.
+    pub omega_rad_s: f64,
+    /// The rest position that was removed, in the record's unit.
+    pub offset: f64,
+    /// Time of the first peak after the first sample, in seconds; the envelope's time starts there.
+    pub first_peak_s: f64,
+}
+
+/// Closed-form least squares of ln A on t.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct OracleSummary {
+    /// λ, in 1/s.
+    pub decay_rate: f64,
+    /// ln A at the first peak.
+    pub log_amplitude: f64,
+    /// Coefficient of determination.
+    pub r_squared: f64,
+    /// λ / ω.
+    pub zeta: f64,
+    /// Standard error of λ under independent residuals, in 1/s.
+    pub std_error: f64,
+    /// 95 % interval of λ under independent residuals, in 1/s.
+    pub interval_95: [f64; 2],
+    /// Standard error of ζ.
+    pub zeta_std_error: f64,
+    /// Two-norm condition number of the column-scaled design matrix.
+    pub condition: f64,
+    /// Significant decimal digits that the arithmetic promises.
+    pub promised_digits: f64,
+    /// Lag-one autocorrelation of the residuals: far from zero, the standard errors are too small.
+    pub residual_autocorrelation: f64,
+}
+
+/// What the estimator found.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EstimateSummary {
+    /// λ, in 1/s.
+    pub decay_rate: f64,
+    /// ln A at the first peak.
+    pub log_amplitude: f64,
+    /// λ / ω.
+    pub zeta: f64,
+    /// Standard error of λ, in 1/s, where the estimator states one.
+    pub std_error: Option<f64>,
+    /// 95 % interval of λ, in 1/s, where the estimator states one.
+    pub interval_95: Option<[f64; 2]>,
+    /// Standard error of ζ, where the estimator states one.
+    pub zeta_std_error: Option<f64>,
+    /// 95 % interval of ζ, where the estimator states one.
+    pub zeta_interval_95: Option<[f64; 2]>,
+    /// `"converged"`, `"budget_spent"`, `"diverged"` or `"interrupted"`.
+    pub reached: String,
+    /// What stopped the training, in a sentence.
+    pub stopped_because: String,
+}
+
+/// One seed's fit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SeedRow {
+    /// The seed.
+    pub seed: u64,
+    /// λ, in 1/s.
+    pub decay_rate: f64,
+    /// λ / ω.
+    pub zeta: f64,
+    /// |ζ − ζ_oracle| / ζ_oracle · 100.
+    pub error_percent: f64,
+    /// As in [`EstimateSummary::reached`].
+    pub reached: String,
+    /// Training steps taken.
+    pub steps: u64,
+    /// Wall time, in seconds.
+    pub seconds: f64,
+}
+
+/// The same record through one pipeline and one clock.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PipelineRow {
+    /// `"paper"` or `"recommended"`.
+    pub pipeline: String,
+    /// `"host"` or `"uniform-index"`.
+    pub clock: String,
+    /// Whether the fits of this run used this row's envelope.
+    pub in_force: bool,
+    /// What came out, or why nothing did.
+    pub outcome: PipelineOutcome,
+}
+
+/// What a pipeline gave.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum PipelineOutcome {
+    /// Closed-form least squares on the envelope.
+    Fit {
+        /// Number of peaks.
+        peaks: usize,
+        /// 2π / median period, in rad/s.
+        omega_rad_s: f64,
+        /// λ, in 1/s.
+        decay_rate: f64,
+        /// λ / ω.
+        zeta: f64,
+        /// Standard error of ζ under independent residuals.
+        zeta_std_error: f64,
+        /// Coefficient of determination.
+        r_squared: f64,
+    },
+    /// The pipeline does not apply to this record.
+    Failed {
+        /// Why.
+        reason: String,
+    },
+}
+
+/// One row of `trace.csv`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TraceRow {
+    /// Step, from 0 (untrained).
+    pub step: u64,
+    /// What the step was part of, such as `"physics weight 100"`.
+    pub phase: String,
+    /// The loss that the training minimizes, in the method's own scaled units.
+    pub loss: f64,
+    /// λ at this step, in 1/s.
+    pub decay_rate: f64,
+}
+
+/// One row of `envelope.csv`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EnvelopeRow {
+    /// Time after the first peak, in seconds.
+    pub time_s: f64,
+    /// Natural logarithm of the peak's amplitude.
+    pub log_amplitude: f64,
+    /// The oracle's line at this time.
+    pub oracle: f64,
+    /// The estimator's fitted function at this time.
+    pub estimate: f64,
+}

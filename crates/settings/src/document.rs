@@ -1,0 +1,179 @@
+//! A configuration as written: its leaves, each with the place it comes from.
+
+use crate::error::SettingsError;
+use std::fmt;
+use toml::Value;
+use toml::de::{DeTable, DeValue};
+
+/// Where a value comes from.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Origin {
+    /// A place in a file.
+    File {
+        /// Name of the file.
+        file: String,
+        /// Line, from 1.
+        line: usize,
+        /// Column, from 1.
+        column: usize,
+    },
+    /// An override on the command line, as given.
+    Override(String),
+    /// The declaration's default.
+    Default,
+}
+
+impl fmt::Display for Origin {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::File { file, line, column } => write!(f, "{file}:{line}:{column}"),
+            Self::Override(argument) => write!(f, "command line: `{argument}`"),
+            Self::Default => f.write_str("default"),
+        }
+    }
+}
+
+/// A value that is not a table.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leaf {
+    /// The dotted key, such as `estimator.hidden`.
+    pub key: String,
+    /// The value as written.
+    pub value: Value,
+    /// Where it was written.
+    pub origin: Origin,
+}
+
+/// A configuration as written, overrides included: an ordered list of leaves, each key once.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Document {
+    file: String,
+    leaves: Vec<Leaf>,
+}
+
+impl Document {
+    /// Reads TOML text; `file` is the name that messages use.
+    ///
+    /// # Errors
+    /// [`SettingsError::Syntax`] with line and column where the text is not TOML.
+    pub fn parse(file: &str, text: &str) -> Result<Self, SettingsError> {
+        let table = DeTable::parse(text).map_err(|error| {
+            let (line, column) = place(text, error.span().map_or(0, |span| span.start));
+            let problem = error.message().trim().replace('\n', ", ");
+            SettingsError::Syntax { file: file.to_owned(), line, column, problem }
+        })?;
+        let mut document = Self { file: file.to_owned(), leaves: Vec::new() };
+        document.collect(text, "", table.get_ref())?;
+        Ok(document)
+    }
+
+    /// Name of the file it was read from.
+    #[must_use]
+    pub fn file(&self) -> &str {
+        &self.file
+    }
+
+    /// Every leaf, in the order written.
+    #[must_use]
+    pub fn leaves(&self) -> &[Leaf] {
+        &self.leaves
+    }
+
+    /// The leaf with a dotted key.
+    #[must_use]
+    pub fn get(&self, key: &str) -> Option<&Leaf> {
+        self.leaves.iter().find(|leaf| leaf.key == key)
+    }
+
+    /// Applies one `key=value` argument; the value is TOML, or plain text where it is not.
+    ///
+    /// # Errors
+    /// [`SettingsError::BadOverride`] where there is no `=` or the key is not a dotted name.
+    pub fn apply_override(&mut self, argument: &str) -> Result<(), SettingsError> {
+        let bad = || SettingsError::BadOverride { argument: argument.to_owned() };
+        let (key, text) = argument.split_once('=').ok_or_else(bad)?;
+        let key = key.trim();
+        let is_name = |part: &str| {
+            !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
+        };
+        if !key.split('.').all(is_name) {
+            return Err(bad());
+        }
+        let value = text
+            .trim()
+            .parse::<Value>()
+            .ok()
+            .filter(|value| !matches!(value, Value::Table(_)))
+            .unwrap_or_else(|| Value::String(text.to_owned()));
+        self.set(Leaf {
+            key: key.to_owned(),
+            value,
+            origin: Origin::Override(argument.to_owned()),
+        });
+        Ok(())
+    }
+
+    fn set(&mut self, leaf: Leaf) {
+        match self.leaves.iter_mut().find(|known| known.key == leaf.key) {
+            Some(known) => *known = leaf,
+            None => self.leaves.push(leaf),
+        }
+    }
+
+    fn collect(
+        &mut self,
+        text: &str,
+        prefix: &str,
+        table: &DeTable<'_>,
+    ) -> Result<(), SettingsError> {
+        for (name, value) in table {
+            let key = if prefix.is_empty() {
+                name.get_ref().to_string()
+            } else {
+                format!("{prefix}.{}", name.get_ref())
+            };
+            let (line, column) = place(text, name.span().start);
+            let origin = Origin::File { file: self.file.clone(), line, column };
+            if let DeValue::Table(inner) = value.get_ref() {
+                self.collect(text, &key, inner)?;
+            } else {
+                let value = plain(value.get_ref()).map_err(|problem| SettingsError::Syntax {
+                    file: self.file.clone(),
+                    line,
+                    column,
+                    problem,
+                })?;
+                self.leaves.push(Leaf { key, value, origin });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A parsed value without its spans. Numbers are decoded here: the parser keeps them as text.
+fn plain(value: &DeValue<'_>) -> Result<Value, String> {
+    Ok(match value {
+        DeValue::String(text) => Value::String(text.to_string()),
+        DeValue::Boolean(flag) => Value::Boolean(*flag),
+        DeValue::Datetime(time) => Value::Datetime(*time),
+        DeValue::Integer(number) => Value::Integer(
+            i64::from_str_radix(number.as_str(), number.radix())
+                .map_err(|_| format!("`{number}` is no 64-bit whole number"))?,
+        ),
+        DeValue::Float(number) => Value::Float(
+            number.as_str().parse().map_err(|_| format!("`{number}` is not a number"))?,
+        ),
+        DeValue::Array(entries) => {
+            Value::Array(entries.iter().map(|entry| plain(entry.get_ref())).collect::<Result<_, _>>()?)
+        }
+        DeValue::Table(_) => return Err("a table inside a list has no meaning here".to_owned()),
+    })
+}
+
+/// Line and column, both from 1, of a byte offset; columns count characters.
+fn place(text: &str, offset: usize) -> (usize, usize) {
+    let before = text.get(..offset).unwrap_or(text);
+    let line = before.matches('\n').count() + 1;
+    let column = before.rsplit('\n').next().map_or(0, |tail| tail.chars().count()) + 1;
+    (line, column)
+}

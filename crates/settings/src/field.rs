@@ -1,0 +1,212 @@
+//! The declaration of a key.
+
+use toml::Value;
+
+/// What a value has to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kind {
+    /// `true` or `false`.
+    Boolean,
+    /// A whole number within bounds, both included.
+    Integer {
+        /// Smallest value allowed.
+        min: i64,
+        /// Largest value allowed.
+        max: i64,
+    },
+    /// A finite number within bounds, both included. Whole numbers are taken as well.
+    Float {
+        /// Smallest value allowed.
+        min: f64,
+        /// Largest value allowed.
+        max: f64,
+    },
+    /// Free text.
+    Text,
+    /// One of a fixed set of words.
+    Choice(&'static [&'static str]),
+    /// A list of whole numbers within bounds.
+    Integers {
+        /// Smallest value allowed for an entry.
+        min: i64,
+        /// Largest value allowed for an entry.
+        max: i64,
+        /// Fewest entries allowed.
+        at_least: usize,
+        /// Most entries allowed.
+        at_most: usize,
+    },
+    /// A list of finite numbers within bounds.
+    Floats {
+        /// Smallest value allowed for an entry.
+        min: f64,
+        /// Largest value allowed for an entry.
+        max: f64,
+        /// Fewest entries allowed.
+        at_least: usize,
+        /// Most entries allowed.
+        at_most: usize,
+    },
+}
+
+/// What holds where a configuration is silent.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Default {
+    /// There is none: the key has to be given.
+    Required,
+    /// The key may be absent and has no value then.
+    Absent,
+    /// A Boolean.
+    Boolean(bool),
+    /// A whole number.
+    Integer(i64),
+    /// A number.
+    Float(f64),
+    /// Text.
+    Text(&'static str),
+    /// A list of whole numbers.
+    Integers(&'static [i64]),
+    /// A list of numbers.
+    Floats(&'static [f64]),
+}
+
+impl Default {
+    /// The default as a TOML value; `None` for [`Default::Required`] and [`Default::Absent`].
+    #[must_use]
+    pub fn value(&self) -> Option<Value> {
+        match *self {
+            Self::Required | Self::Absent => None,
+            Self::Boolean(value) => Some(Value::Boolean(value)),
+            Self::Integer(value) => Some(Value::Integer(value)),
+            Self::Float(value) => Some(Value::Float(value)),
+            Self::Text(value) => Some(Value::String(value.to_owned())),
+            Self::Integers(values) => {
+                Some(Value::Array(values.iter().map(|&value| Value::Integer(value)).collect()))
+            }
+            Self::Floats(values) => {
+                Some(Value::Array(values.iter().map(|&value| Value::Float(value)).collect()))
+            }
+        }
+    }
+}
+
+/// One key of a section.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Field {
+    /// The key within its section.
+    pub key: &'static str,
+    /// What the value has to be.
+    pub kind: Kind,
+    /// What holds where a configuration is silent.
+    pub default: Default,
+    /// The unit of the value; empty where it has none.
+    pub unit: &'static str,
+    /// What the key means: one sentence.
+    pub meaning: &'static str,
+    /// Where the default comes from: a paper, a standard, a measurement.
+    pub source: &'static str,
+}
+
+/// A table of a configuration and the keys it may hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Section {
+    /// The table's dotted name; empty for the keys at the top.
+    pub name: &'static str,
+    /// The keys.
+    pub fields: &'static [Field],
+}
+
+impl Kind {
+    /// Brings a value into the declared kind: whole numbers become floats where floats are declared.
+    ///
+    /// # Errors
+    /// A sentence that says what was expected, for instance `a number from 0 to 1`.
+    pub fn admit(&self, value: &Value) -> Result<Value, String> {
+        let admitted = match (self, value) {
+            (Self::Boolean, Value::Boolean(_)) | (Self::Text, Value::String(_)) => {
+                Some(value.clone())
+            }
+            (&Self::Integer { min, max }, &Value::Integer(number)) => {
+                (min..=max).contains(&number).then(|| value.clone())
+            }
+            (&Self::Float { min, max }, value) => float_within(value, min, max),
+            (Self::Choice(words), Value::String(text)) => {
+                words.contains(&text.as_str()).then(|| value.clone())
+            }
+            (&Self::Integers { min, max, at_least, at_most }, Value::Array(entries)) => {
+                let fits = (at_least..=at_most).contains(&entries.len())
+                    && entries.iter().all(
+                        |entry| matches!(entry, Value::Integer(n) if (min..=max).contains(n)),
+                    );
+                fits.then(|| value.clone())
+            }
+            (&Self::Floats { min, max, at_least, at_most }, Value::Array(entries)) => {
+                (at_least..=at_most)
+                    .contains(&entries.len())
+                    .then(|| entries.iter().map(|entry| float_within(entry, min, max)).collect())
+                    .flatten()
+                    .map(Value::Array)
+            }
+            _ => None,
+        };
+        admitted.ok_or_else(|| self.expected())
+    }
+
+    /// What the kind admits, in words.
+    #[must_use]
+    pub fn expected(&self) -> String {
+        match self {
+            Self::Boolean => "true or false".to_owned(),
+            Self::Integer { min, max } => format!("a whole number {}", range(min, max)),
+            Self::Float { min, max } => format!("a finite number {}", range(min, max)),
+            Self::Text => "text in quotes".to_owned(),
+            Self::Choice(words) => {
+                let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
+                format!("one of {}", quoted.join(", "))
+            }
+            Self::Integers { min, max, at_least, at_most } => {
+                format!("a list of {at_least} to {at_most} whole numbers, each {}", range(min, max))
+            }
+            Self::Floats { min, max, at_least, at_most } => {
+                format!("a list of {at_least} to {at_most} finite numbers, each {}", range(min, max))
+            }
+        }
+    }
+}
+
+fn float_within(value: &Value, min: f64, max: f64) -> Option<Value> {
+    // Beyond 2^53 a whole number would change on its way to a float; no key has use for such.
+    const LARGEST_EXACT: i64 = 1 << 53;
+    let number = match *value {
+        Value::Float(number) => number,
+        Value::Integer(number) if number.abs() <= LARGEST_EXACT => number as f64,
+        _ => return None,
+    };
+    (number.is_finite() && (min..=max).contains(&number)).then_some(Value::Float(number))
+}
+
+/// `from MIN to MAX`, leaving out a bound that bounds nothing.
+fn range<T: std::fmt::Display + Bound>(min: &T, max: &T) -> String {
+    match (min.is_open(), max.is_open()) {
+        (true, true) => "of any size".to_owned(),
+        (true, false) => format!("up to {max}"),
+        (false, true) => format!("from {min} up"),
+        (false, false) => format!("from {min} to {max}"),
+    }
+}
+
+trait Bound {
+    fn is_open(&self) -> bool;
+}
+
+impl Bound for i64 {
+    fn is_open(&self) -> bool {
+        matches!(*self, i64::MIN | i64::MAX)
+    }
+}
+
+impl Bound for f64 {
+    fn is_open(&self) -> bool {
+        self.abs() == f64::MAX || self.is_infinite()
+    }
+}

@@ -1,0 +1,22 @@
+//! Declared configuration keys: defaults, ranges, units, and checks that point at line and column.
+//!
+//! A part that can be configured declares its keys as data ([`Field`]): kind and range, default, unit,
+//! meaning, source of the default. The checks, the resolved configuration and the help text all come
+//! from that declaration, so that they cannot part from each other.
+//!
+//! The way of a configuration: text → [`Document`] (leaves with their origin) → overrides applied →
+//! [`Resolved`] (every key known, typed, in range, defaults filled in) → a plain struct by serde.
+
+mod document;
+mod error;
+mod field;
+mod resolved;
+
+pub use document::{Document, Leaf, Origin};
+pub use error::SettingsError;
+pub use field::{Default, Field, Kind, Section};
+pub use resolved::{Resolved, Setting};
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests;

@@ -1,0 +1,182 @@
+//! A configuration with every key known, typed, in range, and defaults filled in.
+
+use crate::document::{Document, Origin};
+use crate::error::SettingsError;
+use crate::field::{Field, Section};
+use serde::de::DeserializeOwned;
+use toml::{Table, Value};
+
+/// One key's value in force.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Setting {
+    /// The section's dotted name; empty at the top.
+    pub section: &'static str,
+    /// The declaration.
+    pub field: &'static Field,
+    /// The value in force; `None` for an optional key that was not given.
+    pub value: Option<Value>,
+    /// Where the value comes from.
+    pub origin: Origin,
+}
+
+/// Every declared key with its value in force, in the order of declaration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resolved {
+    settings: Vec<Setting>,
+}
+
+impl Resolved {
+    /// Checks a document against the declared sections and fills in the defaults.
+    ///
+    /// # Errors
+    /// [`SettingsError::UnknownKey`], [`SettingsError::BadValue`] and [`SettingsError::Missing`], the
+    /// first that is met in the order of the document.
+    pub fn new(document: &Document, sections: &[Section]) -> Result<Self, SettingsError> {
+        let mut settings: Vec<Setting> = sections
+            .iter()
+            .flat_map(|section| section.fields.iter().map(move |field| (section.name, field)))
+            .map(|(section, field)| Setting {
+                section,
+                field,
+                value: field.default.value(),
+                origin: Origin::Default,
+            })
+            .collect();
+        for leaf in document.leaves() {
+            let Some(setting) = settings.iter_mut().find(|setting| setting.key() == leaf.key) else {
+                return Err(unknown_key(&leaf.key, leaf.origin.clone(), &settings));
+            };
+            let value = setting.field.kind.admit(&leaf.value).map_err(|expected| {
+                let unit = setting.field.unit;
+                SettingsError::BadValue {
+                    origin: leaf.origin.clone(),
+                    key: leaf.key.clone(),
+                    found: leaf.value.to_string(),
+                    expected,
+                    unit: if unit.is_empty() { String::new() } else { format!(" ({unit})") },
+                }
+            })?;
+            setting.value = Some(value);
+            setting.origin = leaf.origin.clone();
+        }
+        let missing = settings.iter().find(|setting| {
+            setting.value.is_none() && setting.field.default == crate::Default::Required
+        });
+        match missing {
+            Some(setting) => Err(SettingsError::Missing {
+                file: document.file().to_owned(),
+                key: setting.key(),
+                meaning: setting.field.meaning.to_owned(),
+                expected: setting.field.kind.expected(),
+            }),
+            None => Ok(Self { settings }),
+        }
+    }
+
+    /// Every setting, in the order of declaration.
+    #[must_use]
+    pub fn settings(&self) -> &[Setting] {
+        &self.settings
+    }
+
+    /// Reads one section into a struct.
+    ///
+    /// # Errors
+    /// [`SettingsError::Declaration`] where the struct and the declaration part: a fault of the
+    /// program, found by the test of whoever declares the section.
+    pub fn section<T: DeserializeOwned>(&self, name: &str) -> Result<T, SettingsError> {
+        let table: Table = self
+            .settings
+            .iter()
+            .filter(|setting| setting.section == name)
+            .filter_map(|setting| Some((setting.field.key.to_owned(), setting.value.clone()?)))
+            .collect();
+        table.try_into().map_err(|error: toml::de::Error| SettingsError::Declaration {
+            section: name.to_owned(),
+            problem: error.message().to_owned(),
+        })
+    }
+
+    /// The configuration as TOML, every value in force, with unit and origin as comments.
+    ///
+    /// Read again, it resolves to the same values.
+    #[must_use]
+    pub fn to_toml(&self) -> String {
+        let mut text = String::new();
+        let mut current = "";
+        for setting in &self.settings {
+            if setting.section != current {
+                current = setting.section;
+                text.push_str(&format!("\n[{current}]\n"));
+            }
+            let Some(value) = &setting.value else {
+                continue;
+            };
+            let mut remarks = Vec::new();
+            if !setting.field.unit.is_empty() {
+                remarks.push(setting.field.unit.to_owned());
+            }
+            if setting.origin != Origin::Default {
+                remarks.push(format!("from {}", setting.origin));
+            }
+            let line = format!("{} = {value}", setting.field.key);
+            if remarks.is_empty() {
+                text.push_str(&format!("{line}\n"));
+            } else {
+                // An override may hold a line break; a comment may not.
+                let remark = remarks.join("; ").replace(char::is_control, " ");
+                text.push_str(&format!("{line:<36} # {remark}\n"));
+            }
+        }
+        text
+    }
+}
+
+impl Setting {
+    /// The dotted key.
+    #[must_use]
+    pub fn key(&self) -> String {
+        if self.section.is_empty() {
+            self.field.key.to_owned()
+        } else {
+            format!("{}.{}", self.section, self.field.key)
+        }
+    }
+}
+
+fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError {
+    let keys: Vec<String> = settings.iter().map(Setting::key).collect();
+    let section = key.rsplit_once('.').map_or("", |(section, _)| section);
+    let known = settings
+        .iter()
+        .filter(|setting| setting.section == section)
+        .map(Setting::key)
+        .collect();
+    SettingsError::UnknownKey { origin, nearest: nearest(key, &keys), key: key.to_owned(), known }
+}
+
+/// The known name that is spelled most alike, if one is close enough to be a slip of the hand.
+#[must_use]
+pub(crate) fn nearest(name: &str, known: &[String]) -> Option<String> {
+    known
+        .iter()
+        .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))
+        .min_by_key(|(distance, _)| *distance)
+        // A third of the letters wrong is no slip any more.
+        .filter(|(distance, _)| *distance * 3 <= name.chars().count())
+        .map(|(_, candidate)| candidate.clone())
+}
+
+impl SettingsError {
+    /// An unknown name among those known at run time, with the nearest one suggested.
+    #[must_use]
+    pub fn unknown_name(origin: Origin, what: &str, found: &str, known: Vec<String>) -> Self {
+        Self::UnknownName {
+            origin,
+            what: what.to_owned(),
+            found: found.to_owned(),
+            nearest: nearest(found, &known),
+            known,
+        }
+    }
+}

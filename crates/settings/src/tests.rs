@@ -1,0 +1,155 @@
+//! Tests of the whole way from text to struct.
+
+use crate::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
+use serde::Deserialize;
+
+const SECTIONS: &[Section] = &[
+    Section {
+        name: "",
+        fields: &[Field {
+            key: "seed",
+            kind: Kind::Integer { min: 0, max: i64::MAX },
+            default: Default::Integer(0),
+            unit: "",
+            meaning: "Root of every random draw.",
+            source: "",
+        }],
+    },
+    Section {
+        name: "fit",
+        fields: &[
+            Field {
+                key: "hidden",
+                kind: Kind::Integers { min: 1, max: 512, at_least: 1, at_most: 8 },
+                default: Default::Integers(&[16, 16]),
+                unit: "",
+                meaning: "Widths of the hidden layers.",
+                source: "",
+            },
+            Field {
+                key: "duration",
+                kind: Kind::Float { min: 0.0, max: 1e3 },
+                default: Default::Required,
+                unit: "s",
+                meaning: "How long.",
+                source: "",
+            },
+            Field {
+                key: "mode",
+                kind: Kind::Choice(&["slow", "fast"]),
+                default: Default::Text("slow"),
+                unit: "",
+                meaning: "How.",
+                source: "",
+            },
+            Field {
+                key: "note",
+                kind: Kind::Text,
+                default: Default::Absent,
+                unit: "",
+                meaning: "Anything.",
+                source: "",
+            },
+        ],
+    },
+];
+
+#[derive(Debug, Deserialize, PartialEq)]
+#[serde(deny_unknown_fields)]
+struct Fit {
+    hidden: Vec<usize>,
+    duration: f64,
+    mode: String,
+    note: Option<String>,
+}
+
+fn resolve(text: &str, overrides: &[&str]) -> Result<Resolved, SettingsError> {
+    let mut document = Document::parse("a.toml", text)?;
+    for argument in overrides {
+        document.apply_override(argument)?;
+    }
+    Resolved::new(&document, SECTIONS)
+}
+
+fn message(text: &str, overrides: &[&str]) -> String {
+    resolve(text, overrides).unwrap_err().to_string()
+}
+
+#[test]
+fn defaults_file_and_overrides_meet_in_a_struct() {
+    let resolved = resolve("[fit]\nduration = 3\n", &["fit.hidden=[64]", "fit.mode=fast"]).unwrap();
+    let fit: Fit = resolved.section("fit").unwrap();
+    assert_eq!(fit, Fit { hidden: vec![64], duration: 3.0, mode: "fast".into(), note: None });
+}
+
+#[test]
+fn the_resolved_text_resolves_to_itself() {
+    let first = resolve("seed = 7\n[fit]\nduration = 2.5e-3\n", &["fit.note=a \"b\"\n# c"]).unwrap();
+    let second = resolve(&first.to_toml(), &[]).unwrap();
+    let values = |resolved: &Resolved| -> Vec<_> {
+        resolved.settings().iter().map(|setting| setting.value.clone()).collect()
+    };
+    assert_eq!(values(&first), values(&second), "{}", first.to_toml());
+}
+
+#[test]
+fn an_unknown_key_names_place_and_nearest() {
+    assert_eq!(
+        message("[fit]\nduration = 1\nhiden = [3]\n", &[]),
+        "a.toml:3:1: unknown key `fit.hiden`; did you mean `fit.hidden`?"
+    );
+    assert_eq!(
+        message("[fit]\nduration = 1\n  zzz = 1\n", &[]),
+        "a.toml:3:3: unknown key `fit.zzz`; known are fit.hidden, fit.duration, fit.mode, fit.note"
+    );
+    assert_eq!(
+        message("[fit]\nduration = 1", &["fit.mod=fast"]),
+        "command line: `fit.mod=fast`: unknown key `fit.mod`; did you mean `fit.mode`?"
+    );
+}
+
+#[test]
+fn a_bad_value_names_what_was_expected() {
+    assert_eq!(
+        message("[fit]\nduration = -1\n", &[]),
+        "a.toml:2:1: `fit.duration` is -1; expected a finite number from 0 to 1000 (s)"
+    );
+    assert_eq!(
+        message("[fit]\nduration = nan\n", &[]),
+        "a.toml:2:1: `fit.duration` is nan; expected a finite number from 0 to 1000 (s)"
+    );
+    assert_eq!(
+        message("[fit]\nduration = 1\nmode = 'quick'", &[]),
+        "a.toml:3:1: `fit.mode` is \"quick\"; expected one of \"slow\", \"fast\""
+    );
+    assert_eq!(
+        message("seed = -1", &[]),
+        "a.toml:1:1: `seed` is -1; expected a whole number from 0 up"
+    );
+}
+
+#[test]
+fn a_missing_key_says_what_it_means() {
+    assert_eq!(
+        message("seed = 1", &[]),
+        "a.toml: `fit.duration` is missing: How long. Expected a finite number from 0 to 1000."
+    );
+}
+
+#[test]
+fn broken_toml_has_line_and_column() {
+    let message = message("seed = 1\n[fit\n", &[]);
+    assert!(message.starts_with("a.toml:2:"), "{message}");
+}
+
+#[test]
+fn an_override_without_a_key_is_refused() {
+    for argument in ["seed", "=3", "a..b=1", "a b=1"] {
+        assert!(message("", &[argument]).contains("is no override"), "{argument}");
+    }
+}
+
+#[test]
+fn a_section_given_as_a_number_is_an_unknown_key() {
+    assert_eq!(message("fit = 3", &[]), "a.toml:1:1: unknown key `fit`; known are seed");
+}
