@@ -57,9 +57,11 @@ impl PaperPipeline {
         let grid = resample(&times, record.values(), step);
         let mut smooth = savitzky_golay(&grid, self.smoothing_window, self.smoothing_order)?;
 
-        // At least one point, at most all of them.
-        let late = ((smooth.len() as f64 * self.late_fraction).ceil() as usize).clamp(1, smooth.len());
-        let tail = smooth.iter().skip(smooth.len() - late);
+        // At least one point, at most all of them. The product is a rounding error above a whole number
+        // for some lengths, which must not add a point.
+        let late = (smooth.len() as f64 * self.late_fraction - 1e-9).ceil() as usize;
+        let late = late.clamp(1, smooth.len().max(1));
+        let tail = smooth.iter().skip(smooth.len().saturating_sub(late));
         let offset = tail.sum::<f64>() / late as f64;
         for value in &mut smooth {
             *value -= offset;

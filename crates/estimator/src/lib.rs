@@ -1,1 +1,18 @@
-//! The contract every estimator fulfills.
+//! The contract every estimator of a decay rate fulfills.
+//!
+//! An estimator is handed an [`Envelope`](envelope::Envelope) and a [`FitContext`] and gives an
+//! [`Estimate`] or a [`FitError`]. It draws random numbers only from the context's named seeds, knows
+//! no clock, no disk and no other estimator, and cannot reach the oracle or the truth: its crate does
+//! not depend on them, which a test checks.
+//!
+//! A new estimator is one crate with one [`Entry`]; `crates/estimators/baseline` is the one to copy.
+
+mod context;
+mod entry;
+mod error;
+mod estimate;
+
+pub use context::{Cancel, FitContext, Observer, Silent, Step};
+pub use entry::{Entry, Estimator, Tag};
+pub use error::FitError;
+pub use estimate::{Estimate, ModelFile, Reached, Stop, Uncertainty};

@@ -1,1 +1,24 @@
 //! Closed-form least squares with certified digits: what every estimator is compared with.
+//!
+//! The oracle computes in double-double arithmetic of its own (about 31 decimal digits), states how
+//! many digits of its answer the conditioning of the problem leaves, and refuses to answer where fewer
+//! than four remain. It shares the envelope with the estimators and no arithmetic.
+
+#![cfg_attr(
+    test,
+    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
+)]
+
+mod certified;
+mod decay;
+mod double_double;
+mod error;
+mod library;
+
+pub use certified::{Intercept, LinearFit, least_squares};
+pub use decay::{DecayFit, decay_rate};
+pub use error::OracleError;
+pub use library::linfa_decay_rate;
+
+/// Fewest significant digits that an answer must have.
+pub const FEWEST_DIGITS: f64 = 4.0;

@@ -7,7 +7,7 @@ use crate::parse::Run;
 use crate::plot::{Axis, Drawing, Hue, LegendEntry, Mark, Plot, Series};
 
 /// Rows of CSV under one plot, beyond which only every so-manieth is kept.
-const MOST_ROWS: usize = 2_000;
+const MOST_ROWS: usize = 3_000;
 /// Entries of one legend, beyond which the rest is counted.
 const MOST_ENTRIES: usize = 10;
 
@@ -47,7 +47,7 @@ fn envelope(run: &Run) -> Option<Figure> {
         x: time_axis(),
         y: Axis::linear(format!("ln(A / {})", run.result.data.unit)),
         series: vec![
-            estimate(run, Mark::ThickLine, rows.iter().map(|r| (r.time_s, r.estimate))),
+            estimate(run, Mark::Line, rows.iter().map(|r| (r.time_s, r.estimate))),
             oracle(Mark::Dashes, rows.iter().map(|r| (r.time_s, r.oracle))),
             Series {
                 label: "peaks of the record".into(),
@@ -73,11 +73,11 @@ fn residuals(run: &Run) -> Option<Figure> {
     let rows = &run.envelope;
     let plot = Plot {
         x: time_axis(),
-        y: Axis::linear("ln A less the oracle's line"),
+        y: Axis::linear("ln A less the oracle’s line"),
         series: vec![
             estimate(
                 run,
-                Mark::ThickLine,
+                Mark::Line,
                 rows.iter().map(|r| (r.time_s, r.estimate - r.oracle)),
             ),
             oracle(Mark::Level, [(0.0, 0.0)].into_iter()),
@@ -94,15 +94,13 @@ fn residuals(run: &Run) -> Option<Figure> {
         shaded: vec![],
     };
     let title = "Residuals";
-    let explanation = "The same with the oracle's line taken away: dots scattered evenly about \
+    let explanation = "The same with the oracle’s line taken away: dots scattered evenly about \
                        zero speak for a single damping ratio, a bend or a wave against it. Where \
                        the estimator agrees with the oracle its line lies on zero.";
     let csv = csv(
         &["time_s", "residual", "estimate_less_oracle"],
         rows,
-        |r: &EnvelopeRow| {
-            numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
-        },
+        |r: &EnvelopeRow| numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle]),
     );
     figure("residuals", title, explanation, &plot, csv)
 }
@@ -135,7 +133,7 @@ fn loss(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Loss";
-    let explanation = "What the training minimizes. Each phase weighs its terms differently, so \
+    let explanation = "What the training minimizes. Phases may weigh its terms differently, so \
                        the fall within a phase counts, not the jump between two.";
     let csv = trace_csv(run, "loss", |row| row.loss);
     figure("loss", title, explanation, &plot, csv)
@@ -156,7 +154,7 @@ fn decay_rate(run: &Run) -> Option<Figure> {
     };
     let title = "Decay rate";
     let explanation = "λ as the training moves it; the dashed line is the value of closed-form \
-                       least squares, which the training is not told.";
+                       least squares on the same envelope.";
     let csv = trace_csv(run, "decay_rate", |row| row.decay_rate);
     figure("decay-rate", title, explanation, &plot, csv)
 }
@@ -174,7 +172,7 @@ fn distance(run: &Run) -> Option<Figure> {
     };
     let plot = Plot {
         x: step_axis(),
-        y: Axis::log("|λ / oracle's λ − 1|"),
+        y: Axis::log("|λ / oracle’s λ − 1|"),
         series: vec![
             estimate_steps(run, relative),
             level(
@@ -184,7 +182,7 @@ fn distance(run: &Run) -> Option<Figure> {
                 run.result.tolerance_percent / 100.0,
             ),
             level(
-                "standard error of the oracle's λ",
+                "standard error of the oracle’s λ",
                 Hue::Oracle,
                 Mark::DottedLevel,
                 (run.result.oracle.std_error / reference).abs(),
@@ -193,7 +191,7 @@ fn distance(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Digits gained";
-    let explanation = "The distance of λ from the oracle's: each decade down is one more digit \
+    let explanation = "The distance of λ from the oracle’s: each decade down is one more digit \
                        that both share. Below the dotted line the digits tell how well the \
                        training solves the fit, and nothing more about the oscillator.";
     let csv = trace_csv(run, "relative_distance", relative);
@@ -333,16 +331,21 @@ fn shaded(trace: &[TraceRow]) -> Vec<(f64, f64)> {
 
 fn trace_csv(run: &Run, column: &str, value: impl Fn(&TraceRow) -> f64) -> (String, String) {
     csv(&["step", "phase", column], &run.trace, |row| {
-        vec![
-            row.step.to_string(),
-            row.phase.clone(),
-            value(row).to_string(),
-        ]
+        vec![row.step.to_string(), row.phase.clone(), number(value(row))]
     })
 }
 
 fn numbers(values: &[f64]) -> Vec<String> {
-    values.iter().map(f64::to_string).collect()
+    values.iter().map(|value| number(*value)).collect()
+}
+
+/// As few digits as read back as the same double.
+fn number(value: f64) -> String {
+    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
+        value.to_string()
+    } else {
+        format!("{value:e}")
+    }
 }
 
 /// The table as text, and how many rows of it that is, in words.
@@ -401,8 +404,8 @@ mod tests {
         let (text, shown) = csv(&["step", "phase"], &trace, |r| {
             vec![r.step.to_string(), r.phase.clone()]
         });
-        assert_eq!(shown, "one row in 3 of 5000");
-        assert_eq!(text.lines().count(), 1 + 1_667);
-        assert!(text.starts_with("step,phase\n0,\"a,b\"\n3,"));
+        assert_eq!(shown, "one row in 2 of 5000");
+        assert_eq!(text.lines().count(), 1 + 2_500);
+        assert!(text.starts_with("step,phase\n0,\"a,b\"\n2,"));
     }
 }

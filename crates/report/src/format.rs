@@ -200,10 +200,7 @@ fn to_i32(digits: usize) -> i32 {
 }
 
 fn times_power(mantissa: &str, exponent: i32) -> String {
-    format!(
-        "{mantissa}{NO_BREAK}×{NO_BREAK}10{}",
-        superscript(exponent)
-    )
+    format!("{mantissa}{NO_BREAK}×{NO_BREAK}10{}", superscript(exponent))
 }
 
 fn superscript(exponent: i32) -> String {
@@ -305,12 +302,18 @@ mod tests {
             plain(&with_uncertainty(0.008_753_04, 0.000_207)),
             "0.00875 ± 0.00021"
         );
-        assert_eq!(plain(&with_uncertainty(0.190_961, 0.004_54)), "0.1910 ± 0.0045");
+        assert_eq!(
+            plain(&with_uncertainty(0.190_961, 0.004_54)),
+            "0.1910 ± 0.0045"
+        );
         assert_eq!(
             plain(&with_uncertainty(3.123e-7, 5.4e-9)),
             "(3.123 ± 0.054) × 10⁻⁷"
         );
-        assert_eq!(plain(&with_uncertainty(50.001_234, 0.000_099_7)), "50.00123 ± 0.00010");
+        assert_eq!(
+            plain(&with_uncertainty(50.001_234, 0.000_099_7)),
+            "50.00123 ± 0.00010"
+        );
         assert_eq!(plain(&with_uncertainty(1.0, 250.0)), "1 ± 250");
     }
 

@@ -72,11 +72,7 @@ fn table<Row: DeserializeOwned>(file: &'static str, text: &str) -> Result<Vec<Ro
         .collect()
 }
 
-fn table_error(
-    file: &'static str,
-    headers: &csv::StringRecord,
-    error: &csv::Error,
-) -> ReportError {
+fn table_error(file: &'static str, headers: &csv::StringRecord, error: &csv::Error) -> ReportError {
     let line = error.position().map(csv::Position::line);
     let (column, reason) = match error.kind() {
         csv::ErrorKind::Deserialize { err, .. } => (
@@ -107,13 +103,13 @@ fn table_error(
 
 #[cfg(test)]
 mod tests {
+    use crate::ReportError;
     use crate::sample::Sample;
-    use crate::{ReportError, render_run};
 
     fn message(change: impl FnOnce(&mut Sample)) -> String {
         let mut sample = Sample::new();
         change(&mut sample);
-        render_run(&sample.texts()).unwrap_err().to_string()
+        sample.render().unwrap_err().to_string()
     }
 
     #[test]
@@ -190,16 +186,16 @@ mod tests {
     #[test]
     fn a_table_without_a_column_is_located() {
         let text = message(|s| s.trace_text = Some("step,phase,loss\n0,a,1.0\n".into()));
-        assert!(text.contains("trace.csv, line 2: missing field `decay_rate`"), "{text}");
+        assert!(
+            text.contains("trace.csv, line 2: missing field `decay_rate`"),
+            "{text}"
+        );
     }
 
     #[test]
     fn errors_are_of_their_kind() {
         let mut sample = Sample::new();
         sample.result_text = Some("[]".into());
-        assert!(matches!(
-            render_run(&sample.texts()),
-            Err(ReportError::Json { .. })
-        ));
+        assert!(matches!(sample.render(), Err(ReportError::Json { .. })));
     }
 }

@@ -51,7 +51,11 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             sentence: format!("The {who} finds a damping ratio of {zeta}; it {comparison}."),
         },
         "budget_spent" => Verdict {
-            tone: if result.pass { Tone::Caution } else { Tone::Bad },
+            tone: if result.pass {
+                Tone::Caution
+            } else {
+                Tone::Bad
+            },
             label: if result.pass {
                 "Within tolerance, not converged"
             } else {
@@ -67,7 +71,7 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             label: "Interrupted",
             sentence: format!(
                 "The run was interrupted after {steps} steps, before the {who} had finished. The \
-                 damping ratio it had reached, {zeta}, {comparison}; that is not a result."
+                 damping ratio it had reached, {zeta}, {comparison}. An unfinished run is no result."
             ),
         },
         "diverged" => Verdict {
@@ -75,7 +79,7 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
             label: "Diverged",
             sentence: format!(
                 "The {who} found no damping ratio: its training diverged after {steps} steps. The \
-                 value it stopped at, {zeta}, {comparison}; that is not a result."
+                 value it stopped at, {zeta}, {comparison}."
             ),
         },
         other => Verdict {
@@ -221,7 +225,10 @@ mod tests {
         });
         assert_eq!(label, "Outside tolerance");
         assert!(text.starts_with("The PINN finds"), "{text}");
-        assert!(text.ends_with("by 2.3 %, more than the stated 0.1 %."), "{text}");
+        assert!(
+            text.ends_with("by 2.3 %, more than the stated 0.1 %."),
+            "{text}"
+        );
     }
 
     #[test]
@@ -240,7 +247,7 @@ mod tests {
     fn what_did_not_finish_is_no_result() {
         let (label, text) = sentence(|r| r.estimate.reached = "interrupted".into());
         assert_eq!(label, "Interrupted");
-        assert!(text.ends_with("that is not a result."), "{text}");
+        assert!(text.ends_with("An unfinished run is no result."), "{text}");
         let (label, text) = sentence(|r| {
             r.estimate.reached = "diverged".into();
             r.estimate.zeta = f64::NAN;

@@ -1,6 +1,6 @@
 //! Axes: which values they span, where their ticks stand, and what the ticks say.
 //!
-//! kuva is given positions in units of ticks, counted from the axis's lower end, never the values
+//! kuva is given positions in units of ticks, counted from the lowest tick, never the values
 //! themselves. So its own arithmetic sees numbers from 0 to about 10 whatever the data are: its
 //! logarithmic axis stops at 1e-10, and its linear ticks are rounded to nine decimals.
 
@@ -69,7 +69,7 @@ impl Axis {
     }
 }
 
-/// Evenly spaced ticks, the first and the last at the axis's ends.
+/// Evenly spaced ticks and the stretch of them that the axis shows.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Ticks {
     scale: Scale,
@@ -77,8 +77,8 @@ pub(crate) struct Ticks {
     low: f64,
     /// Between neighboring ticks: a difference of values or of decimal logarithms.
     step: f64,
-    /// How many steps there are from end to end.
-    pub(crate) steps: f64,
+    /// The axis's ends, in ticks.
+    pub(crate) ends: (f64, f64),
 }
 
 impl Ticks {
@@ -99,7 +99,7 @@ impl Ticks {
             scale: Scale::Linear,
             low: first * step,
             step,
-            steps: (last - first).max(1.0),
+            ends: (0.0, (last - first).max(1.0)),
         }
     }
 
@@ -114,8 +114,24 @@ impl Ticks {
             scale: Scale::Log,
             low: first * step,
             step,
-            steps: (last - first).max(1.0),
+            ends: (0.0, (last - first).max(1.0)),
         }
+    }
+
+    /// The same ticks on an axis that ends just beyond the values rather than at a tick. For a
+    /// horizontal axis: there the room beyond the last value would read as time without data.
+    pub(crate) fn close_to(mut self, values: impl Iterator<Item = f64>) -> Self {
+        let (mut from, mut to) = (f64::INFINITY, f64::NEG_INFINITY);
+        for place in values.map(|value| self.place(value)) {
+            from = from.min(place);
+            to = to.max(place);
+        }
+        // A single value needs an axis around it all the same.
+        if to - from > 0.5 {
+            let room = 0.015 * (to - from);
+            self.ends = (from - room, to + room);
+        }
+        self
     }
 
     /// Where a value that can be shown stands, in ticks from the lower end.
@@ -132,7 +148,7 @@ impl Ticks {
         let value = self.low + position.round() * self.step;
         match self.scale {
             Scale::Linear => {
-                let high = self.low + self.steps * self.step;
+                let high = self.low + self.ends.1 * self.step;
                 format::tick(value, self.low, high, self.step)
             }
             // Exact: a whole number, and no double's exponent exceeds 324.
@@ -160,7 +176,7 @@ mod tests {
     fn labels(axis: &Axis, values: &[f64]) -> Vec<String> {
         let ticks = axis.ticks(values.iter().copied(), 5.0).unwrap();
         #[allow(clippy::cast_possible_truncation)]
-        let count = ticks.steps as i32;
+        let count = ticks.ends.1 as i32;
         (0..=count).map(|k| ticks.label(f64::from(k))).collect()
     }
 
@@ -186,14 +202,37 @@ mod tests {
 
     #[test]
     fn one_value_and_nearly_equal_values_still_span_an_axis() {
-        for values in [&[0.0][..], &[0.190_961], &[0.190_961, 0.190_961 + 1e-14], &[1e140]] {
-            let ticks = Axis::linear("y").ticks(values.iter().copied(), 5.0).unwrap();
+        for values in [
+            &[0.0][..],
+            &[0.190_961],
+            &[0.190_961, 0.190_961 + 1e-14],
+            &[1e140],
+        ] {
+            let ticks = Axis::linear("y")
+                .ticks(values.iter().copied(), 5.0)
+                .unwrap();
             for value in values {
                 let place = ticks.place(*value);
-                assert!((-1e-6..=ticks.steps + 1e-6).contains(&place), "{values:?}");
+                assert!((-1e-6..=ticks.ends.1 + 1e-6).contains(&place), "{values:?}");
             }
-            assert!(ticks.label(0.0).chars().count() < 16, "{}", ticks.label(0.0));
+            assert!(
+                ticks.label(0.0).chars().count() < 24,
+                "{}",
+                ticks.label(0.0)
+            );
         }
+    }
+
+    #[test]
+    fn an_axis_can_end_close_to_its_values() {
+        let axis = Axis::linear("step");
+        let values = [0.0, 2_060.0];
+        let ticks = axis.ticks(values.into_iter(), 5.0).unwrap();
+        assert_eq!(ticks.ends, (0.0, 5.0));
+        let (from, to) = ticks.close_to(values.into_iter()).ends;
+        assert!((-0.1..0.0).contains(&from) && (4.12..4.2).contains(&to));
+        let one = axis.ticks([3.0].into_iter(), 5.0).unwrap();
+        assert_eq!(one.clone().close_to([3.0].into_iter()), one);
     }
 
     #[test]
@@ -202,6 +241,9 @@ mod tests {
         assert!(axis.ticks([f64::NAN, -1.0, 0.0].into_iter(), 5.0).is_none());
         assert!(axis.ticks([f64::NAN, 2.0].into_iter(), 5.0).is_some());
         let axis = Axis::linear("y");
-        assert!(axis.ticks([f64::INFINITY, 1e300].into_iter(), 5.0).is_none());
+        assert!(
+            axis.ticks([f64::INFINITY, 1e300].into_iter(), 5.0)
+                .is_none()
+        );
     }
 }

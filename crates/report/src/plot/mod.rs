@@ -15,8 +15,11 @@ mod thin;
 pub use axis::{Axis, Scale};
 pub use hue::Hue;
 
-/// Beyond this many points a line looks the same with fewer.
-const MOST_POINTS: usize = 1_200;
+/// Beyond this many points in all its lines, a plot looks the same with fewer.
+const MOST_POINTS: usize = 2_000;
+
+/// Neighboring points of a series that can all be shown.
+type Run = Vec<(f64, f64)>;
 
 /// What is to be seen in one plot.
 #[derive(Debug, Clone, PartialEq)]
@@ -52,9 +55,7 @@ pub enum Mark {
     Dots,
     /// A line through them.
     Line,
-    /// A thick line, to lie beneath another that may cover it.
-    ThickLine,
-    /// A dashed line.
+    /// A dashed line; laid over a line that it may coincide with, it leaves that visible.
     Dashes,
     /// A dotted line.
     DottedLine,
@@ -94,28 +95,33 @@ impl Plot {
     /// `None` where no series has a point that the axes can show.
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
-        let runs: Vec<Vec<Vec<(f64, f64)>>> = self.series.iter().map(|s| self.runs(s)).collect();
-        let longest = runs.iter().flatten().map(Vec::len).max()?;
+        let mut runs: Vec<Vec<Run>> = self.series.iter().map(|s| self.runs(s)).collect();
         let left_out = self
             .series
             .iter()
             .flat_map(|series| &series.points)
             .filter(|point| !self.can_show(**point))
             .count();
-        let runs: Vec<Vec<Vec<(f64, f64)>>> = runs
-            .into_iter()
+        let mut thinned = false;
+        let total: usize = runs.iter().flatten().map(Vec::len).sum();
+        let lines = runs
+            .iter_mut()
             .zip(&self.series)
-            .map(|(runs, series)| match series.mark {
-                Mark::Dots => runs,
-                _ => runs.iter().map(|run| thin::thin(run, MOST_POINTS)).collect(),
-            })
-            .collect();
+            .filter(|(_, series)| series.mark != Mark::Dots)
+            .flat_map(|(runs, _)| runs);
+        if total > MOST_POINTS {
+            for run in lines {
+                let kept = thin::thin(run, MOST_POINTS * run.len() / total);
+                thinned |= kept.len() < run.len();
+                *run = kept;
+            }
+        }
         Some(Drawing {
             wide: svg::render(self, &runs, &svg::WIDE, description)?,
             narrow: svg::render(self, &runs, &svg::NARROW, description)?,
             legend: self.legend(),
             left_out,
-            thinned: longest > MOST_POINTS,
+            thinned,
         })
     }
 
@@ -124,7 +130,7 @@ impl Plot {
     }
 
     /// The unbroken stretches of a series that can be shown.
-    fn runs(&self, series: &Series) -> Vec<Vec<(f64, f64)>> {
+    fn runs(&self, series: &Series) -> Vec<Run> {
         series
             .points
             .split(|point| !self.can_show(*point))
@@ -202,6 +208,21 @@ mod tests {
         let drawing = plot(points.collect()).draw("").unwrap();
         assert!(drawing.thinned);
         assert!(drawing.wide.len() < 60_000, "{}", drawing.wide.len());
+    }
+
+    #[test]
+    fn many_short_runs_are_thinned_together() {
+        let points = (0..100_000).map(|i| {
+            let height = if i % 1_000 == 0 {
+                f64::NAN
+            } else {
+                f64::from(1 + i % 7)
+            };
+            (f64::from(i), height)
+        });
+        let drawing = plot(points.collect()).draw("").unwrap();
+        assert!(drawing.thinned);
+        assert!(drawing.wide.len() < 100_000, "{}", drawing.wide.len());
     }
 
     #[test]

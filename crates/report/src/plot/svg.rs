@@ -11,7 +11,7 @@ use kuva::render::render::{Primitive, render_multiple};
 use kuva::render::theme::Theme;
 
 use super::axis::Ticks;
-use super::{Hue, Mark, Plot, Series};
+use super::{Hue, Mark, Plot, Run, Series};
 
 /// The canvas, in SVG units that are CSS pixels where the page shows it full size.
 pub(super) struct Canvas {
@@ -46,25 +46,29 @@ pub(super) const NARROW: Canvas = Canvas {
     height: 290.0,
     label_size: 13,
     tick_size: 12,
-    x_ticks: 4.0,
+    x_ticks: 5.0,
     y_ticks: 5.0,
     dot_radius: 2.6,
     line_width: 1.8,
 };
 
-/// Dash patterns, shared by the plots and the swatches.
-const DASHES: &str = "7 4";
+/// Dash patterns, shared by the plots and the swatches. Dashes and gaps are of equal length: where a
+/// dashed line lies on a drawn-through one, both are seen in turn.
+const DASHES: &str = "8 8";
 const DOTS: &str = "2 3";
 
 /// `runs` holds the points of each series of the plot, in unbroken stretches.
 pub(super) fn render(
     plot: &Plot,
-    runs: &[Vec<Vec<(f64, f64)>>],
+    runs: &[Vec<Run>],
     canvas: &Canvas,
     description: &str,
 ) -> Option<String> {
     let points = || runs.iter().flatten().flatten();
-    let x_ticks = plot.x.ticks(points().map(|p| p.0), canvas.x_ticks)?;
+    let x_ticks = plot
+        .x
+        .ticks(points().map(|p| p.0), canvas.x_ticks)?
+        .close_to(points().map(|p| p.0));
     let y_ticks = plot.y.ticks(points().map(|p| p.1), canvas.y_ticks)?;
 
     let mut layers = Vec::new();
@@ -78,15 +82,13 @@ pub(super) fn render(
         }
     }
     let mut layout = layout(plot, canvas, &x_ticks, &y_ticks);
+    let within = |x| x_ticks.place(x).clamp(x_ticks.ends.0, x_ticks.ends.1);
     for (from, to) in &plot.shaded {
         if plot.x.can_show(*from) && plot.x.can_show(*to) {
             layout = layout.with_shaded_region(
-                ShadedRegion::vertical(
-                    x_ticks.place(*from).clamp(0.0, x_ticks.steps),
-                    x_ticks.place(*to).clamp(0.0, x_ticks.steps),
-                )
-                .with_color(Hue::Shade.light())
-                .with_opacity(0.14),
+                ShadedRegion::vertical(within(*from), within(*to))
+                    .with_color(Hue::Shade.light())
+                    .with_opacity(0.14),
             );
         }
     }
@@ -126,16 +128,16 @@ fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
         let ticks = ticks.clone();
         TickFormat::Custom(Arc::new(move |position| ticks.label(position)))
     };
-    Layout::new((0.0, x.steps), (0.0, y.steps))
+    Layout::new(x.ends, y.ends)
         .with_theme(theme)
         .with_width(canvas.width)
         .with_height(canvas.height)
         .with_label_size(canvas.label_size)
         .with_tick_size(canvas.tick_size)
-        .with_x_axis_min(0.0)
-        .with_x_axis_max(x.steps)
-        .with_y_axis_min(0.0)
-        .with_y_axis_max(y.steps)
+        .with_x_axis_min(x.ends.0)
+        .with_x_axis_max(x.ends.1)
+        .with_y_axis_min(y.ends.0)
+        .with_y_axis_max(y.ends.1)
         .with_x_tick_step(1.0)
         .with_y_tick_step(1.0)
         .with_x_tick_format(labels(x))
@@ -145,20 +147,18 @@ fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
         .with_y_label(plain(&plot.y.label))
 }
 
-fn layer(series: &Series, points: Vec<(f64, f64)>, x: &Ticks, canvas: &Canvas) -> KuvaPlot {
+fn layer(series: &Series, points: Run, x: &Ticks, canvas: &Canvas) -> KuvaPlot {
     let level = || {
         let height = points.first().map_or(0.0, |point| point.1);
-        vec![(0.0, height), (x.steps, height)]
+        vec![(x.ends.0, height), (x.ends.1, height)]
     };
-    let line = |points: Vec<(f64, f64)>, width: f64, dashes: Option<&str>| {
+    let line = |points: Run, width: f64, dashes: Option<&str>| {
         let line = LinePlot::new()
             .with_data(points)
             .with_color(series.hue.light())
             .with_stroke_width(width);
         KuvaPlot::Line(match dashes {
-            Some(dashes) => {
-                line.with_line_style(kuva::plot::LineStyle::Custom(dashes.to_owned()))
-            }
+            Some(dashes) => line.with_line_style(kuva::plot::LineStyle::Custom(dashes.to_owned())),
             None => line,
         })
     };
@@ -167,7 +167,7 @@ fn layer(series: &Series, points: Vec<(f64, f64)>, x: &Ticks, canvas: &Canvas) -
         Mark::Level => line(level(), width, Some(DASHES)),
         Mark::DottedLevel => line(level(), width, Some(DOTS)),
         // A line needs two points; a single one is to be seen all the same.
-        Mark::Dots | Mark::Line | Mark::ThickLine | Mark::Dashes | Mark::DottedLine
+        Mark::Dots | Mark::Line | Mark::Dashes | Mark::DottedLine
             if series.mark == Mark::Dots || points.len() == 1 =>
         {
             KuvaPlot::Scatter(
@@ -177,7 +177,6 @@ fn layer(series: &Series, points: Vec<(f64, f64)>, x: &Ticks, canvas: &Canvas) -
                     .with_size(canvas.dot_radius),
             )
         }
-        Mark::ThickLine => line(points, 2.4 * width, None),
         Mark::Dashes => line(points, width, Some(DASHES)),
         Mark::DottedLine => line(points, width, Some(DOTS)),
         Mark::Dots | Mark::Line => line(points, width, None),
@@ -197,7 +196,6 @@ pub(super) fn swatch(series: &Series) -> String {
     let shape = match series.mark {
         Mark::Dots => format!("<circle cx=\"14\" cy=\"6\" r=\"3.5\" fill=\"{color}\" />"),
         Mark::Line => line("2", ""),
-        Mark::ThickLine => line("4.8", ""),
         Mark::Dashes | Mark::Level => dashed(DASHES),
         Mark::DottedLine | Mark::DottedLevel => dashed(DOTS),
     };

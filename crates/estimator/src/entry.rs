@@ -1,0 +1,63 @@
+//! What a registry knows of an estimator.
+
+use crate::context::FitContext;
+use crate::error::FitError;
+use crate::estimate::Estimate;
+use envelope::Envelope;
+use settings::{Field, Resolved, SettingsError};
+
+/// What an estimator can do, or what it is: read by the test battery and the tables, so that nobody has
+/// to ask for an estimator by name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Tag {
+    /// Trains by steps: with a budget of zero steps it has to be wrong.
+    Iterative,
+    /// Draws random numbers: another seed takes another way.
+    Seeded,
+    /// States an uncertainty.
+    Interval,
+    /// The floor row of tables: not meant to be right.
+    Null,
+}
+
+/// An estimator with its settings in force.
+///
+/// `fit` takes `&self`: nothing learned lives in the estimator, so one can fit any number of
+/// envelopes, from any number of threads.
+pub trait Estimator: Send + Sync {
+    /// Fits an envelope.
+    ///
+    /// # Errors
+    /// [`FitError`] where there is no estimate to give. A fit that ran out of budget, was interrupted or
+    /// diverged is no error: it gives the best estimate it has, and says so.
+    fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError>;
+}
+
+/// A line of the registry: everything that is known of an estimator without building it.
+#[derive(Debug, Clone, Copy)]
+pub struct Entry {
+    /// Identifier in configurations and results, such as `pinn`.
+    pub id: &'static str,
+    /// Number in the paper's tables, where it is one of the paper's.
+    pub paper_number: Option<u8>,
+    /// Name in words.
+    pub title: &'static str,
+    /// What it does, in a sentence.
+    pub summary: &'static str,
+    /// What it can do.
+    pub tags: &'static [Tag],
+    /// The literature it follows.
+    pub citations: &'static [&'static str],
+    /// Its configuration keys, within the section `estimator`.
+    pub fields: &'static [Field],
+    /// Builds it from checked settings.
+    pub build: fn(&Resolved) -> Result<Box<dyn Estimator>, SettingsError>,
+}
+
+impl Entry {
+    /// Whether the estimator carries a tag.
+    #[must_use]
+    pub fn has(&self, tag: Tag) -> bool {
+        self.tags.contains(&tag)
+    }
+}

@@ -1,0 +1,41 @@
+//! Why an estimator gives no estimate.
+
+use thiserror::Error;
+
+/// Why an estimator gives no estimate.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum FitError {
+    /// The envelope has too few peaks for this method.
+    #[error("{estimator} needs at least {needed} peaks; the envelope has {found}")]
+    TooFewPeaks {
+        /// The estimator.
+        estimator: &'static str,
+        /// Peaks found.
+        found: usize,
+        /// Fewest peaks it can work with.
+        needed: usize,
+    },
+    /// Every amplitude is the same, or the spread is not finite: nothing to scale by.
+    #[error(
+        "the amplitudes of the envelope have a spread of {spread:e}: there is no decay to learn from"
+    )]
+    NoSpread {
+        /// Standard deviation of ln A.
+        spread: f64,
+    },
+    /// The loss was not finite from the start.
+    #[error(
+        "the loss is {loss} before the first step; lower estimator.initial_scale or the weights of \
+         the loss"
+    )]
+    NotFinite {
+        /// The loss.
+        loss: f64,
+    },
+    /// The tensor library refused.
+    #[error("the tensor library: {problem}")]
+    Backend {
+        /// What it says.
+        problem: String,
+    },
+}

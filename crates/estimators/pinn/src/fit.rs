@@ -1,0 +1,289 @@
+//! Training.
+
+use crate::config::PinnConfig;
+use crate::objective::Objective;
+use crate::scaling::Scaling;
+use envelope::Envelope;
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty,
+};
+use nalgebra::{Cholesky, DMatrix, DVector};
+use neural::{
+    AffineSkipNetwork, LeastSquares, LevenbergMarquardt, Minimum, NamedTensor, StopReason, device,
+    tensor, to_safetensors, values,
+};
+use rand::RngExt;
+use std::ops::ControlFlow;
+
+/// Fewest peaks from which the interval has a degree of freedom left.
+const FEWEST_PEAKS: usize = 4;
+
+impl Estimator for PinnConfig {
+    fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
+        if envelope.len() < FEWEST_PEAKS {
+            return Err(FitError::TooFewPeaks {
+                estimator: "pinn",
+                found: envelope.len(),
+                needed: FEWEST_PEAKS,
+            });
+        }
+        let scaling = Scaling::of(envelope)?;
+        let device = device()?;
+        let collocation = self.collocation(context);
+        let objective = Objective {
+            hidden: &self.hidden,
+            device: &device,
+            times: &scaling.scaled_times(envelope),
+            targets: &scaling.scaled_logs(envelope),
+            collocation: &collocation,
+            physics_weight: self.physics_weight,
+        };
+        let method = LevenbergMarquardt {
+            max_steps: context.step_limit(self.max_steps),
+            loss_tolerance: self.loss_tolerance,
+        };
+        let phase = format!("Levenberg-Marquardt, physics weight {}", self.physics_weight);
+        let minimum = method.minimize(&objective, self.start(context), |state| {
+            context.observe(&Step {
+                step: state.step,
+                planned: method.max_steps,
+                phase: phase.clone(),
+                loss: state.loss,
+                decay_rate: scaling.rate(rate_of(state.parameters)),
+            });
+            if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        if !minimum.loss.is_finite() {
+            return Err(FitError::NotFinite { loss: minimum.loss });
+        }
+        describe(&scaling, &objective, &minimum)
+    }
+}
+
+impl PinnConfig {
+    /// One point drawn in each equal part of −1..1.
+    fn collocation(&self, context: &FitContext<'_>) -> Vec<f64> {
+        let mut generator = context.seed("collocation").generator();
+        let parts = self.collocation_points as f64;
+        (0..self.collocation_points)
+            .map(|part| {
+                let within: f64 = generator.random();
+                2.0 * (part as f64 + within) / parts - 1.0
+            })
+            .collect()
+    }
+
+    /// Start values: the network's, then λ uniform in −scale..scale (scaled units, in which an envelope
+    /// that is nearly a line has λ near 1.7: the start is never the answer).
+    fn start(&self, context: &FitContext<'_>) -> DVector<f64> {
+        let mut generator = context.seed("initial weights").generator();
+        let mut parameters =
+            AffineSkipNetwork::draw_parameters(&self.hidden, self.initial_scale, &mut generator);
+        let uniform: f64 = context.seed("initial decay rate").generator().random();
+        parameters.push(self.initial_scale * (2.0 * uniform - 1.0));
+        DVector::from_vec(parameters)
+    }
+}
+
+/// λ in scaled units: the last parameter.
+fn rate_of(parameters: &DVector<f64>) -> f64 {
+    parameters.iter().last().copied().unwrap_or(f64::NAN)
+}
+
+fn stop(minimum: &Minimum) -> Stop {
+    let steps = minimum.steps;
+    let (reached, because) = match minimum.reason {
+        StopReason::LossSettled => (
+            Reached::Converged,
+            format!("the last step lowered the loss by {:.0e} of itself", minimum.last_gain),
+        ),
+        StopReason::Stationary => {
+            (Reached::Converged, "no step lowers the loss or its gradient any more".to_owned())
+        }
+        StopReason::StepsSpent => (
+            Reached::BudgetSpent,
+            format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
+        ),
+        StopReason::NotFinite => (
+            Reached::Diverged,
+            format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
+        ),
+        StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
+    };
+    Stop { reached, because }
+}
+
+fn describe(
+    scaling: &Scaling,
+    objective: &Objective<'_>,
+    minimum: &Minimum,
+) -> Result<Estimate, FitError> {
+    let (network, rate) = objective.model(&minimum.parameters)?;
+    let column = tensor(objective.times.to_vec(), [objective.times.len(), 1], objective.device);
+    let fitted: Vec<f64> =
+        values(network.forward(&column))?.into_iter().map(|z| scaling.log_amplitude(z)).collect();
+    let mut tensors = network.named_tensors()?;
+    tensors.push(NamedTensor { name: "decay_rate".to_owned(), shape: vec![1], values: vec![rate] });
+    Ok(Estimate {
+        decay_rate: scaling.rate(rate),
+        // The network's own value at the first peak, where the envelope's time is zero.
+        log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
+        uncertainty: uncertainty(scaling, objective, &minimum.parameters)?,
+        stop: stop(minimum),
+        steps: minimum.steps,
+        parameters: minimum.parameters.len(),
+        fitted_log_amplitudes: fitted,
+        model: Some(ModelFile {
+            name: "weights.safetensors".to_owned(),
+            bytes: to_safetensors(&tensors)?,
+        }),
+    })
+}
+
+/// Laplace approximation about the trained parameters: a Gaussian posterior whose precision is the
+/// loss's Gauss–Newton matrix over the residual variance, the physics term acting as a prior.
+///
+/// The degrees of freedom are the peaks minus the trace of the map from data to fitted values, so that
+/// a network that bends pays for it. `None` before training, where there is no minimum to expand about.
+///
+/// Reference: MacKay, Neural Computation 4 (1992) 448.
+fn uncertainty(
+    scaling: &Scaling,
+    objective: &Objective<'_>,
+    parameters: &DVector<f64>,
+) -> Result<Option<Uncertainty>, FitError> {
+    let linearized = objective.linearize(parameters)?;
+    let jacobian = &linearized.jacobian;
+    let mut precision = jacobian.tr_mul(jacobian);
+    // Directions that neither data nor physics see keep a wide prior.
+    let ridge = 1e-12 * precision.diagonal().max();
+    for at in 0..precision.nrows() {
+        precision[(at, at)] += ridge;
+    }
+    let Some(factor) = Cholesky::new(precision) else {
+        return Ok(None);
+    };
+    let peaks = objective.times.len();
+    let data: DMatrix<f64> = jacobian.rows(0, peaks).into_owned();
+    let effective = (&data * factor.solve(&data.transpose())).trace();
+    let degrees = peaks as f64 - effective;
+    if degrees < 1.0 {
+        return Ok(None);
+    }
+    // The data rows carry 1/√peaks each; undo it for a variance per peak.
+    let mean_square: f64 = linearized.residuals.iter().take(peaks).map(|r| r * r).sum();
+    let variance = mean_square * peaks as f64 / degrees;
+    let last = parameters.len() - 1;
+    let mut unit = DVector::zeros(parameters.len());
+    unit[last] = 1.0;
+    let rate_variance = factor.solve(&unit)[last] * variance / peaks as f64;
+    let decay_rate = scaling.rate(rate_of(parameters));
+    Ok(Uncertainty::students_t(decay_rate, scaling.rate(rate_variance.sqrt()), degrees))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ENTRY;
+    use estimator::{Cancel, Observer, Silent};
+    use seed::Seed;
+    use settings::{Document, Resolved, Section};
+    use std::cell::RefCell;
+
+    fn config() -> PinnConfig {
+        let sections = [Section { name: "estimator", fields: ENTRY.fields }];
+        let resolved = Resolved::new(&Document::default(), &sections).unwrap();
+        resolved.section("estimator").unwrap()
+    }
+
+    /// An envelope that is no exponential: it bends and scatters.
+    fn envelope() -> Envelope {
+        let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
+        let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
+        let logs = times
+            .iter()
+            .enumerate()
+            .map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i))
+            .collect();
+        Envelope::new(times, logs, 21.8).unwrap()
+    }
+
+    /// The slope of the least-squares line, and its standard error, from the textbook.
+    fn line(envelope: &Envelope) -> (f64, f64) {
+        let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
+        let n = t.len() as f64;
+        let (mt, my) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+        let sxx: f64 = t.iter().map(|t| (t - mt).powi(2)).sum();
+        let sxy: f64 = t.iter().zip(y).map(|(t, y)| (t - mt) * (y - my)).sum();
+        let slope = sxy / sxx;
+        let rss: f64 = t.iter().zip(y).map(|(t, y)| (y - my - slope * (t - mt)).powi(2)).sum();
+        (-slope, (rss / (n - 2.0) / sxx).sqrt())
+    }
+
+    fn fit(seed: u64, max_steps: Option<u64>, observer: &dyn Observer) -> Estimate {
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(seed).child("pinn"), max_steps, observer, &cancel);
+        config().fit(&envelope(), &context).unwrap()
+    }
+
+    #[test]
+    fn trained_it_agrees_with_the_line_and_its_error() {
+        let (rate, std_error) = line(&envelope());
+        for seed in 0..3 {
+            let estimate = fit(seed, None, &Silent);
+            let off = (estimate.decay_rate / rate - 1.0).abs();
+            println!("seed {seed}: {off:.1e} {:?} {}", estimate.stop, estimate.steps);
+            assert_eq!(estimate.stop.reached, Reached::Converged, "{:?}", estimate.stop);
+            assert!(off < 1e-6, "{off:e}");
+            let stated = estimate.uncertainty.unwrap().std_error;
+            assert!((stated / std_error - 1.0).abs() < 1e-2, "{stated} {std_error}");
+        }
+    }
+
+    #[test]
+    fn untrained_it_is_wrong_on_every_seed() {
+        let (rate, _) = line(&envelope());
+        for seed in 0..20 {
+            let estimate = fit(seed, Some(0), &Silent);
+            assert!((estimate.decay_rate / rate - 1.0).abs() > 0.01, "seed {seed}");
+            assert_eq!(estimate.stop.reached, Reached::BudgetSpent);
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bits_and_another_another_way() {
+        let [one, same, other] = [1, 1, 2].map(|seed| fit(seed, Some(5), &Silent));
+        assert_eq!(one, same);
+        assert_ne!(one.decay_rate.to_bits(), other.decay_rate.to_bits());
+    }
+
+    #[test]
+    fn every_step_is_told_once() {
+        struct Steps(RefCell<Vec<u64>>);
+        impl Observer for Steps {
+            fn observe(&self, step: &Step) {
+                self.0.borrow_mut().push(step.step);
+            }
+        }
+        let steps = Steps(RefCell::default());
+        let estimate = fit(0, None, &steps);
+        assert_eq!(*steps.0.borrow(), (0..=estimate.steps).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_request_to_stop_is_heard() {
+        let cancel = Cancel::new();
+        cancel.request();
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
+        let estimate = config().fit(&envelope(), &context).unwrap();
+        assert_eq!((estimate.stop.reached, estimate.steps), (Reached::Interrupted, 0));
+    }
+
+    #[test]
+    fn a_constant_envelope_is_refused() {
+        let flat = Envelope::new(vec![0.0, 1.0, 2.0, 3.0], vec![0.3; 4], 6.0).unwrap();
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
+        assert!(matches!(config().fit(&flat, &context), Err(FitError::NoSpread { .. })));
+    }
+}

@@ -1,0 +1,335 @@
+//! Nonlinear least squares by the Levenberg–Marquardt method.
+//!
+//! Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; the damping update of Nielsen, report
+//! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74 (1980).
+
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use std::ops::ControlFlow;
+
+/// Residuals and their Jacobian at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Linearized {
+    /// One entry for each equation.
+    pub residuals: DVector<f64>,
+    /// Equations by parameters.
+    pub jacobian: DMatrix<f64>,
+}
+
+/// A sum of squares to be minimized.
+pub trait LeastSquares {
+    /// Why an evaluation can fail.
+    type Error;
+
+    /// Residuals at a point.
+    ///
+    /// # Errors
+    /// Whatever keeps the problem from being evaluated.
+    fn residuals(&self, parameters: &DVector<f64>) -> Result<DVector<f64>, Self::Error>;
+
+    /// Residuals and Jacobian at a point.
+    ///
+    /// # Errors
+    /// Whatever keeps the problem from being evaluated.
+    fn linearize(&self, parameters: &DVector<f64>) -> Result<Linearized, Self::Error>;
+}
+
+/// The method's settings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LevenbergMarquardt {
+    /// Most steps, rejected ones included.
+    pub max_steps: u64,
+    /// Converged when a step lowers the loss by a smaller share of itself than this, both as predicted
+    /// and in fact. 0 asks for all that rounding leaves.
+    pub loss_tolerance: f64,
+}
+
+/// State after a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Iteration<'a> {
+    /// Steps taken so far.
+    pub step: u64,
+    /// The parameters in force.
+    pub parameters: &'a DVector<f64>,
+    /// Their sum of squares.
+    pub loss: f64,
+}
+
+/// Why the method stopped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum StopReason {
+    /// The last step lowered the loss by less than the tolerance.
+    LossSettled,
+    /// No step lowers the loss or the gradient any more: rounding has the last word.
+    Stationary,
+    /// The steps are used up.
+    StepsSpent,
+    /// The loss is not finite.
+    NotFinite,
+    /// The observer asked to stop.
+    Interrupted,
+}
+
+/// Where the method stopped.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Minimum {
+    /// The best parameters met.
+    pub parameters: DVector<f64>,
+    /// Their sum of squares.
+    pub loss: f64,
+    /// The share of the loss that the last accepted step took off; infinite before there was one.
+    pub last_gain: f64,
+    /// Steps taken.
+    pub steps: u64,
+    /// Why it stopped.
+    pub reason: StopReason,
+}
+
+/// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
+const ROUNDING_SHARE: f64 = 1e-10;
+
+/// Most rejected steps in a row before the point is called stationary.
+const MOST_REJECTIONS: u32 = 12;
+
+struct Point {
+    parameters: DVector<f64>,
+    linearized: Linearized,
+    gradient: DVector<f64>,
+    loss: f64,
+}
+
+/// A step that was taken.
+struct Accepted {
+    next: Point,
+    /// The share of the predicted decrease that came true.
+    gain: f64,
+    /// The decrease, predicted or true, whichever is larger, as a share of the loss.
+    share: f64,
+}
+
+impl Point {
+    fn new<P: LeastSquares>(problem: &P, parameters: DVector<f64>) -> Result<Self, P::Error> {
+        let linearized = problem.linearize(&parameters)?;
+        let gradient = linearized.jacobian.tr_mul(&linearized.residuals);
+        let loss = linearized.residuals.norm_squared();
+        Ok(Self { parameters, linearized, gradient, loss })
+    }
+}
+
+impl LevenbergMarquardt {
+    /// Minimizes a sum of squares from a start; `observe` sees the start and the state after every
+    /// step, and may break.
+    ///
+    /// Far from the minimum a step is accepted when it lowers the loss. Near it, where the loss no
+    /// longer shows the step, it is accepted when it lowers the gradient: the loss is flat to rounding
+    /// over half the digits of the parameters, the gradient is not.
+    ///
+    /// # Errors
+    /// What the problem's evaluation gives.
+    pub fn minimize<P: LeastSquares>(
+        &self,
+        problem: &P,
+        start: DVector<f64>,
+        mut observe: impl FnMut(Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<Minimum, P::Error> {
+        let mut point = Point::new(problem, start)?;
+        let mut steps = 0;
+        let mut normal = Normal::new(&point.linearized.jacobian);
+        let mut damping = 1e-3 * normal.largest_diagonal();
+        let mut growth = 2.0;
+        let mut rejections = 0;
+        let mut last_gain = f64::INFINITY;
+        let reason = loop {
+            let state = Iteration { step: steps, parameters: &point.parameters, loss: point.loss };
+            if observe(state).is_break() {
+                break StopReason::Interrupted;
+            }
+            if !point.loss.is_finite() {
+                break StopReason::NotFinite;
+            }
+            if last_gain <= self.loss_tolerance {
+                break StopReason::LossSettled;
+            }
+            if steps >= self.max_steps {
+                break StopReason::StepsSpent;
+            }
+            steps += 1;
+            let trial = normal.solve(&point, damping).map(|step| (&point.parameters + &step, step));
+            let accepted = match trial {
+                Some((trial, step)) => {
+                    self.try_step(problem, &point, trial, &step, damping)?
+                }
+                None => None,
+            };
+            match accepted {
+                Some(Accepted { next, gain, share }) => {
+                    point = next;
+                    last_gain = share;
+                    normal = Normal::new(&point.linearized.jacobian);
+                    damping *= (1.0 - (2.0 * gain - 1.0).powi(3)).max(1.0 / 3.0);
+                    growth = 2.0;
+                    rejections = 0;
+                }
+                None => {
+                    damping *= growth;
+                    growth *= 2.0;
+                    rejections += 1;
+                    if rejections >= MOST_REJECTIONS {
+                        break StopReason::Stationary;
+                    }
+                }
+            }
+        };
+        Ok(Minimum {
+            last_gain,
+            loss: point.loss,
+            parameters: point.parameters,
+            steps,
+            reason,
+        })
+    }
+
+    /// The point after a step, or `None` where it is worse.
+    fn try_step<P: LeastSquares>(
+        &self,
+        problem: &P,
+        point: &Point,
+        trial: DVector<f64>,
+        step: &DVector<f64>,
+        damping: f64,
+    ) -> Result<Option<Accepted>, P::Error> {
+        // ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
+        let predicted = step.dot(&(step * damping - &point.gradient));
+        if predicted <= ROUNDING_SHARE * point.loss {
+            let next = Point::new(problem, trial)?;
+            let flatter = next.gradient.norm() < point.gradient.norm();
+            let no_worse = next.loss <= point.loss * (1.0 + ROUNDING_SHARE);
+            let share = predicted / point.loss;
+            return Ok((flatter && no_worse).then_some(Accepted { next, gain: 1.0, share }));
+        }
+        let loss = problem.residuals(&trial)?.norm_squared();
+        if loss.is_finite() && loss < point.loss {
+            let gain = ((point.loss - loss) / predicted).min(1.0);
+            let share = predicted.max(point.loss - loss) / point.loss;
+            return Ok(Some(Accepted { next: Point::new(problem, trial)?, gain, share }));
+        }
+        Ok(None)
+    }
+}
+
+/// The normal matrix, on whichever side of the Jacobian is smaller.
+enum Normal {
+    /// JᵀJ, parameters by parameters.
+    Parameters(DMatrix<f64>),
+    /// J·Jᵀ, equations by equations: (JᵀJ + μ)⁻¹Jᵀ = Jᵀ(J·Jᵀ + μ)⁻¹.
+    Equations(DMatrix<f64>),
+}
+
+impl Normal {
+    fn new(jacobian: &DMatrix<f64>) -> Self {
+        if jacobian.nrows() < jacobian.ncols() {
+            Self::Equations(jacobian * jacobian.transpose())
+        } else {
+            Self::Parameters(jacobian.tr_mul(jacobian))
+        }
+    }
+
+    fn largest_diagonal(&self) -> f64 {
+        let (Self::Parameters(matrix) | Self::Equations(matrix)) = self;
+        matrix.diagonal().max()
+    }
+
+    /// The step −(JᵀJ + μ)⁻¹·Jᵀr; `None` where the damped matrix is not positive to rounding.
+    fn solve(&self, point: &Point, damping: f64) -> Option<DVector<f64>> {
+        let factor = |matrix: &DMatrix<f64>| -> Option<Cholesky<f64, Dyn>> {
+            let mut damped = matrix.clone();
+            for at in 0..damped.nrows() {
+                damped[(at, at)] += damping;
+            }
+            Cholesky::new(damped)
+        };
+        Some(match self {
+            Self::Parameters(matrix) => -factor(matrix)?.solve(&point.gradient),
+            Self::Equations(matrix) => {
+                let weights = factor(matrix)?.solve(&point.linearized.residuals);
+                -point.linearized.jacobian.tr_mul(&weights)
+            }
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LeastSquares, LevenbergMarquardt, Linearized, StopReason};
+    use nalgebra::{DMatrix, DVector};
+    use std::convert::Infallible;
+    use std::ops::ControlFlow;
+
+    /// y = p₀·exp(−p₁·t) through points that are not on any such curve.
+    struct Decay;
+
+    const POINTS: [(f64, f64); 5] = [(0.0, 2.1), (1.0, 1.2), (2.0, 0.6), (3.0, 0.5), (4.0, 0.1)];
+
+    impl LeastSquares for Decay {
+        type Error = Infallible;
+
+        fn residuals(&self, p: &DVector<f64>) -> Result<DVector<f64>, Infallible> {
+            Ok(DVector::from_iterator(
+                POINTS.len(),
+                POINTS.iter().map(|(t, y)| p[0] * (-p[1] * t).exp() - y),
+            ))
+        }
+
+        fn linearize(&self, p: &DVector<f64>) -> Result<Linearized, Infallible> {
+            let jacobian = DMatrix::from_fn(POINTS.len(), 2, |row, column| {
+                let t = POINTS[row].0;
+                let e = (-p[1] * t).exp();
+                if column == 0 { e } else { -p[0] * t * e }
+            });
+            Ok(Linearized { residuals: self.residuals(p)?, jacobian })
+        }
+    }
+
+    const METHOD: LevenbergMarquardt = LevenbergMarquardt { max_steps: 100, loss_tolerance: 0.0 };
+
+    #[test]
+    fn it_reaches_a_minimum_with_residuals_to_the_last_digits() {
+        let far = DVector::from_vec(vec![10.0, -0.5]);
+        let near = DVector::from_vec(vec![2.0, 0.5]);
+        let go = |start| METHOD.minimize(&Decay, start, |_| ControlFlow::Continue(())).unwrap();
+        let (one, other) = (go(far), go(near));
+        assert_eq!(one.reason, StopReason::Stationary);
+        assert!((&one.parameters - &other.parameters).norm() < 1e-12, "{one:?} {other:?}");
+        assert!(one.loss > 0.01);
+    }
+
+    #[test]
+    fn it_stops_when_asked_and_when_spent() {
+        let start = DVector::from_vec(vec![10.0, -0.5]);
+        let stopped = METHOD.minimize(&Decay, start.clone(), |state| {
+            if state.step == 2 { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        });
+        let stopped = stopped.unwrap();
+        assert_eq!((stopped.reason, stopped.steps), (StopReason::Interrupted, 2));
+        let none = LevenbergMarquardt { max_steps: 0, ..METHOD };
+        let untouched = none.minimize(&Decay, start.clone(), |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!((untouched.reason, untouched.parameters), (StopReason::StepsSpent, start));
+    }
+
+    #[test]
+    fn fewer_equations_than_parameters_are_solved_as_well() {
+        struct Line;
+        impl LeastSquares for Line {
+            type Error = Infallible;
+            fn residuals(&self, p: &DVector<f64>) -> Result<DVector<f64>, Infallible> {
+                Ok(DVector::from_vec(vec![p[0] + 2.0 * p[1] + 3.0 * p[2] - 7.0]))
+            }
+            fn linearize(&self, p: &DVector<f64>) -> Result<Linearized, Infallible> {
+                let jacobian = DMatrix::from_row_slice(1, 3, &[1.0, 2.0, 3.0]);
+                Ok(Linearized { residuals: self.residuals(p)?, jacobian })
+            }
+        }
+        let minimum =
+            METHOD.minimize(&Line, DVector::zeros(3), |_| ControlFlow::Continue(())).unwrap();
+        assert!(minimum.loss < 1e-20, "{minimum:?}");
+    }
+}

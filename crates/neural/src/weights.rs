@@ -1,0 +1,77 @@
+//! Weights in and out of safetensors files.
+
+use estimator::FitError;
+use safetensors::tensor::{Dtype, SafeTensors, TensorView, serialize};
+
+/// A tensor of doubles with a name.
+#[derive(Debug, Clone, PartialEq)]
+pub struct NamedTensor {
+    /// Its name, such as `layers.0.weight`.
+    pub name: String,
+    /// Its shape.
+    pub shape: Vec<usize>,
+    /// Its values, the last axis fastest.
+    pub values: Vec<f64>,
+}
+
+/// The tensors as the bytes of a safetensors file, type F64.
+///
+/// # Errors
+/// [`FitError::Backend`] where a shape does not fit its values or a name repeats.
+pub fn to_safetensors(tensors: &[NamedTensor]) -> Result<Vec<u8>, FitError> {
+    let refused = |error| FitError::Backend { problem: format!("safetensors: {error}") };
+    let bytes: Vec<Vec<u8>> = tensors
+        .iter()
+        .map(|tensor| tensor.values.iter().flat_map(|value| value.to_le_bytes()).collect())
+        .collect();
+    let mut views = Vec::new();
+    for (tensor, bytes) in tensors.iter().zip(&bytes) {
+        let view = TensorView::new(Dtype::F64, tensor.shape.clone(), bytes).map_err(refused)?;
+        views.push((tensor.name.as_str(), view));
+    }
+    serialize(views, None).map_err(refused)
+}
+
+/// The tensors of a safetensors file that [`to_safetensors`] wrote, by name.
+///
+/// # Errors
+/// [`FitError::Backend`] where the bytes are no such file or hold another type than F64.
+pub fn from_safetensors(bytes: &[u8]) -> Result<Vec<NamedTensor>, FitError> {
+    let refused = |problem: String| FitError::Backend { problem: format!("safetensors: {problem}") };
+    let file = SafeTensors::deserialize(bytes).map_err(|error| refused(error.to_string()))?;
+    let mut tensors = Vec::new();
+    for (name, view) in file.tensors() {
+        if view.dtype() != Dtype::F64 {
+            return Err(refused(format!("`{name}` holds {:?}, expected F64", view.dtype())));
+        }
+        let (words, _) = view.data().as_chunks::<8>();
+        tensors.push(NamedTensor {
+            name,
+            shape: view.shape().to_vec(),
+            values: words.iter().map(|word| f64::from_le_bytes(*word)).collect(),
+        });
+    }
+    tensors.sort_by(|one, other| one.name.cmp(&other.name));
+    Ok(tensors)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NamedTensor, from_safetensors, to_safetensors};
+
+    #[test]
+    fn every_bit_comes_back() {
+        let tensors = [
+            NamedTensor { name: "a".into(), shape: vec![2, 1], values: vec![0.1, -1e-300] },
+            NamedTensor { name: "b".into(), shape: vec![1], values: vec![f64::MIN_POSITIVE] },
+        ];
+        assert_eq!(from_safetensors(&to_safetensors(&tensors).unwrap()).unwrap(), tensors);
+    }
+
+    #[test]
+    fn garbage_is_refused() {
+        assert!(from_safetensors(b"no such file").is_err());
+        let shape = NamedTensor { name: "a".into(), shape: vec![3], values: vec![1.0] };
+        assert!(to_safetensors(&[shape]).is_err());
+    }
+}

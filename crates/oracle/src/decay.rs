@@ -1,0 +1,77 @@
+//! The decay rate of an envelope.
+
+use crate::certified::{Intercept, least_squares};
+use crate::error::OracleError;
+use envelope::Envelope;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Least squares of ln A = ln A₀ − λ·t.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DecayFit {
+    /// λ, in 1/s.
+    pub decay_rate: f64,
+    /// ln A₀, at the first peak.
+    pub log_amplitude: f64,
+    /// Damping ratio ζ = λ/ω.
+    pub zeta: f64,
+    /// Standard error of λ under independent residuals of one variance, in 1/s.
+    pub std_error: f64,
+    /// 95 % interval of λ by Student's t with n − 2 degrees of freedom, in 1/s.
+    pub interval_95: [f64; 2],
+    /// Standard error of ζ, the frequency taken as known.
+    pub zeta_std_error: f64,
+    /// Coefficient of determination.
+    pub r_squared: f64,
+    /// Two-norm condition number of the column-scaled design matrix.
+    pub condition: f64,
+    /// Significant digits promised.
+    pub promised_digits: f64,
+    /// Lag-one autocorrelation of the residuals. Near 0 the standard errors can be believed; near 1
+    /// the envelope is no exponential, and they are too small.
+    pub residual_autocorrelation: f64,
+}
+
+impl DecayFit {
+    /// The line ln A₀ − λ·t at a time in seconds.
+    #[must_use]
+    pub fn log_amplitude_at(&self, time_s: f64) -> f64 {
+        self.log_amplitude - self.decay_rate * time_s
+    }
+}
+
+/// The decay rate of an envelope by closed-form least squares.
+///
+/// # Errors
+/// [`OracleError`] where the envelope does not determine a line to four digits.
+pub fn decay_rate(envelope: &Envelope) -> Result<DecayFit, OracleError> {
+    let ones = vec![1.0; envelope.len()];
+    let columns = [ones.as_slice(), envelope.times_s()];
+    let fit = least_squares(&columns, envelope.log_amplitudes(), Intercept::Included)?;
+    let (&[log_amplitude, slope], &[_, std_error]) =
+        (fit.coefficients.as_slice(), fit.std_errors.as_slice())
+    else {
+        return Err(OracleError::TooFewRows { rows: envelope.len(), columns: 2 });
+    };
+    let degrees = (envelope.len() - 2) as f64;
+    let quantile = StudentsT::new(0.0, 1.0, degrees).map_or(f64::NAN, |t| t.inverse_cdf(0.975));
+    let decay_rate = -slope;
+    Ok(DecayFit {
+        decay_rate,
+        log_amplitude,
+        zeta: envelope.damping_ratio(decay_rate),
+        std_error,
+        interval_95: [decay_rate - quantile * std_error, decay_rate + quantile * std_error],
+        zeta_std_error: envelope.damping_ratio(std_error),
+        r_squared: fit.r_squared,
+        condition: fit.condition,
+        promised_digits: fit.promised_digits,
+        residual_autocorrelation: autocorrelation(&fit.residuals),
+    })
+}
+
+/// Lag-one autocorrelation of residuals (their mean is 0); 0 where there are no residuals to speak of.
+fn autocorrelation(residuals: &[f64]) -> f64 {
+    let square: f64 = residuals.iter().map(|r| r * r).sum();
+    let product: f64 = residuals.iter().zip(residuals.iter().skip(1)).map(|(a, b)| a * b).sum();
+    if square > 0.0 { product / square } else { 0.0 }
+}

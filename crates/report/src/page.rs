@@ -1,0 +1,194 @@
+//! The page on one run: the template and what it is filled with.
+
+use askama::Template;
+
+use crate::figures::{Figure, figures};
+use crate::parse::Run;
+use crate::plot::Hue;
+use crate::tables::{self, ComparisonRow, Fact, PipelineView, SeedView};
+use crate::verdict::{self, Origin, Verdict};
+use crate::{ReportError, RunTexts};
+
+#[derive(Template)]
+#[template(path = "run.html")]
+struct RunPage<'a> {
+    hues: &'static [Hue],
+    texts: &'a RunTexts<'a>,
+    estimator: &'a str,
+    verdict: Verdict,
+    origin: Origin,
+    warnings: Vec<String>,
+    comparison: Vec<ComparisonRow>,
+    /// Titles and facts.
+    cards: [(&'static str, Vec<Fact>); 3],
+    seeds: Vec<SeedView>,
+    pipelines: Vec<PipelineView<'a>>,
+    data: Vec<Fact>,
+    findings: &'a [String],
+    figures: Vec<Figure>,
+    has_trace: bool,
+    /// What the files are, and their texts.
+    files: [(&'static str, &'a str); 3],
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportError> {
+    let result = &run.result;
+    let page = RunPage {
+        hues: &Hue::ALL,
+        texts,
+        estimator: &result.estimator_title,
+        verdict: verdict::verdict(result),
+        origin: verdict::origin(&result.data.origin),
+        warnings: verdict::warnings(result),
+        comparison: tables::comparison(result),
+        cards: [
+            ("Training", tables::training(result)),
+            ("Envelope", tables::envelope(result)),
+            ("Oracle", tables::oracle(result)),
+        ],
+        seeds: tables::seeds(&result.seeds),
+        pipelines: tables::pipelines(&result.pipelines),
+        data: tables::data(&result.data),
+        findings: &result.data.findings,
+        figures: figures(run),
+        has_trace: !run.trace.is_empty(),
+        files: [
+            ("Resolved configuration (config.toml)", texts.config),
+            ("Environment (environment.json)", texts.environment),
+            ("Every number, unrounded (result.json)", texts.result),
+        ],
+    };
+    Ok(page.render()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::plot::Hue;
+    use crate::sample::Sample;
+
+    #[test]
+    fn two_renders_are_equal_bytes() {
+        let sample = Sample::new();
+        assert_eq!(sample.render().unwrap(), sample.render().unwrap());
+    }
+
+    #[test]
+    fn what_comes_from_files_is_escaped() {
+        const EVIL: &str = "<script>alert(1)</script>\"'&$x$";
+        let mut sample = Sample::new();
+        sample.name = EVIL.into();
+        sample.config = EVIL.into();
+        sample.environment = EVIL.into();
+        let result = &mut sample.result;
+        result.estimator_title = EVIL.into();
+        result.data.path = EVIL.into();
+        result.data.digest = EVIL.into();
+        result.data.origin = EVIL.into();
+        result.data.clock = EVIL.into();
+        result.data.clock_reason = EVIL.into();
+        result.data.unit = EVIL.into();
+        result.data.findings = vec![EVIL.into()];
+        result.envelope.pipeline = EVIL.into();
+        result.estimate.reached = EVIL.into();
+        result.estimate.stopped_because = EVIL.into();
+        result.seeds[0].reached = EVIL.into();
+        result.pipelines[0].pipeline = EVIL.into();
+        result.pipelines[0].clock = EVIL.into();
+        if let Some(row) = sample.trace.last_mut() {
+            row.phase = EVIL.into();
+        }
+        let html = sample.render().unwrap();
+        assert!(!html.contains("<script"));
+        assert!(html.contains("&#60;script&#62;alert(1)"));
+    }
+
+    #[test]
+    fn the_page_loads_nothing_and_runs_nothing() {
+        let html = Sample::new().render().unwrap();
+        let rest = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
+        for forbidden in [
+            "http://",
+            "https://",
+            "<script",
+            "<link rel=\"stylesheet",
+            "@import",
+            "url(",
+            "src=",
+            "javascript:",
+            "onload",
+        ] {
+            assert!(!rest.contains(forbidden), "{forbidden}");
+        }
+    }
+
+    #[test]
+    fn every_color_of_a_plot_follows_the_color_scheme() {
+        let html = Sample::new().render().unwrap();
+        for hue in Hue::ALL {
+            for attribute in ["fill", "stroke"] {
+                let rule = format!("[{attribute}=\"{}\"]", hue.light());
+                assert!(html.contains(&rule), "{rule}");
+            }
+        }
+        for attribute in ["fill=\"#", "stroke=\"#"] {
+            for (at, _) in html.match_indices(attribute) {
+                let start = at + attribute.len() - 1;
+                let color = &html[start..start + 7];
+                assert!(Hue::ALL.iter().any(|hue| hue.light() == color), "{color}");
+            }
+        }
+    }
+
+    #[test]
+    fn values_that_are_not_finite_break_no_plot() {
+        let mut sample = Sample::new();
+        for (index, row) in sample.trace.iter_mut().enumerate() {
+            match index % 5 {
+                0 => row.loss = f64::NAN,
+                1 => row.loss = f64::INFINITY,
+                2 => row.decay_rate = f64::NEG_INFINITY,
+                3 => row.decay_rate = f64::NAN,
+                _ => (),
+            }
+        }
+        sample.envelope[3].estimate = f64::NAN;
+        let html = sample.render().unwrap();
+        assert!(html.contains("are left out"));
+        let drawn = html
+            .split("<svg")
+            .skip(1)
+            .filter_map(|rest| rest.split_once("</svg>"));
+        for (svg, _) in drawn {
+            assert!(!svg.contains("NaN") && !svg.contains("inf\"") && !svg.contains("inf "));
+        }
+        // A trace of nothing but NaN leaves its plots out, and says so.
+        for row in &mut sample.trace {
+            row.loss = f64::NAN;
+            row.decay_rate = f64::NAN;
+        }
+        assert!(!sample.render().unwrap().contains("id=\"loss\""));
+    }
+
+    #[test]
+    fn a_method_without_steps_has_no_training_plots() {
+        let mut sample = Sample::new();
+        sample.trace.clear();
+        let html = sample.render().unwrap();
+        assert!(html.contains("no steps were recorded"));
+        assert!(!html.contains("id=\"loss\""));
+        assert!(html.contains("id=\"residuals\""));
+    }
+
+    #[test]
+    fn the_origin_is_loud() {
+        for (origin, label) in [
+            ("measured", "Measured record"),
+            ("simulated", "Simulated record"),
+            ("unstated", "Origin not stated"),
+        ] {
+            let mut sample = Sample::new();
+            sample.result.data.origin = origin.into();
+            assert!(sample.render().unwrap().contains(label));
+        }
+    }
+}

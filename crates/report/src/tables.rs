@@ -1,0 +1,305 @@
+//! The tables of the page: which number stands where, and to how many digits.
+
+use runs::result::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow};
+
+use crate::format::{
+    count, exact, fixed, interval, percent, quantity, significant, with_uncertainty,
+};
+
+/// A quantity and its value, both as they stand on the page.
+pub(crate) struct Fact {
+    pub(crate) name: &'static str,
+    pub(crate) value: String,
+}
+
+fn fact(name: &'static str, value: impl Into<String>) -> Fact {
+    Fact {
+        name,
+        value: value.into(),
+    }
+}
+
+/// One quantity as the oracle and as the estimator have it; `None` where it is not stated.
+pub(crate) struct ComparisonRow {
+    pub(crate) quantity: &'static str,
+    pub(crate) oracle: Option<String>,
+    pub(crate) estimate: Option<String>,
+}
+
+pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
+    let (oracle, estimate) = (&result.oracle, &result.estimate);
+    let unknown = f64::NAN;
+    vec![
+        ComparisonRow {
+            quantity: "damping ratio ζ ± standard error",
+            oracle: Some(with_uncertainty(oracle.zeta, oracle.zeta_std_error)),
+            estimate: Some(with_uncertainty(
+                estimate.zeta,
+                estimate.zeta_std_error.unwrap_or(unknown),
+            )),
+        },
+        ComparisonRow {
+            quantity: "95 % interval of ζ",
+            oracle: None,
+            estimate: estimate.zeta_interval_95.map(interval),
+        },
+        ComparisonRow {
+            quantity: "decay rate λ ± standard error, 1/s",
+            oracle: Some(with_uncertainty(oracle.decay_rate, oracle.std_error)),
+            estimate: Some(with_uncertainty(
+                estimate.decay_rate,
+                estimate.std_error.unwrap_or(unknown),
+            )),
+        },
+        ComparisonRow {
+            quantity: "95 % interval of λ, 1/s",
+            oracle: Some(interval(oracle.interval_95)),
+            estimate: estimate.interval_95.map(interval),
+        },
+        // Two methods on one envelope can agree far beyond its standard error; only more digits
+        // than that warrants show by how much.
+        ComparisonRow {
+            quantity: "ζ to eight digits, whatever its standard error",
+            oracle: Some(significant(oracle.zeta, 8)),
+            estimate: Some(significant(estimate.zeta, 8)),
+        },
+        ComparisonRow {
+            quantity: "λ to eight digits, 1/s",
+            oracle: Some(significant(oracle.decay_rate, 8)),
+            estimate: Some(significant(estimate.decay_rate, 8)),
+        },
+        ComparisonRow {
+            quantity: "ln A at the first peak",
+            oracle: Some(significant(oracle.log_amplitude, 6)),
+            estimate: Some(significant(estimate.log_amplitude, 6)),
+        },
+        ComparisonRow {
+            quantity: "coefficient of determination R²",
+            oracle: Some(fixed(oracle.r_squared, 4)),
+            estimate: None,
+        },
+    ]
+}
+
+/// The envelope that every method was given.
+pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
+    let envelope = &result.envelope;
+    vec![
+        fact("Pipeline", envelope.pipeline.clone()),
+        fact("Peaks", whole(envelope.peaks)),
+        fact("Samples after interpolation", whole(envelope.samples)),
+        fact(
+            "Median period",
+            quantity(&significant(envelope.period_s, 6), "s"),
+        ),
+        fact(
+            "Angular frequency ω",
+            quantity(&significant(envelope.omega_rad_s, 6), "rad/s"),
+        ),
+        fact(
+            "Rest position removed",
+            quantity(&significant(envelope.offset, 4), &result.data.unit),
+        ),
+        fact(
+            "First peak after the first sample",
+            quantity(&significant(envelope.first_peak_s, 4), "s"),
+        ),
+    ]
+}
+
+/// How the estimate came about.
+pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
+    let error = format!(
+        "{} (stated tolerance {})",
+        percent(result.error_percent),
+        quantity(&exact(result.tolerance_percent), "%")
+    );
+    vec![
+        fact("ζ differs from the oracle’s by", error),
+        fact("Stopped because", result.estimate.stopped_because.clone()),
+        fact("State", reached(&result.estimate.reached)),
+        fact("Steps", count(result.steps)),
+        fact("Time", quantity(&significant(result.seconds, 3), "s")),
+        fact("Trained parameters", whole(result.parameters)),
+        fact("Seed", result.seed.to_string()),
+    ]
+}
+
+/// What the oracle's arithmetic and its residuals are worth.
+pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
+    let oracle = &result.oracle;
+    vec![
+        fact(
+            "Digits the arithmetic promises",
+            fixed(oracle.promised_digits, 1),
+        ),
+        fact(
+            "Condition number, columns scaled",
+            significant(oracle.condition, 3),
+        ),
+        fact(
+            "Autocorrelation of the residuals at lag one",
+            fixed(oracle.residual_autocorrelation, 3),
+        ),
+    ]
+}
+
+/// Where the record came from.
+pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
+    let rate = with_uncertainty(data.sample_rate_hz, data.sample_rate_std_error_hz);
+    vec![
+        fact("File", data.path.clone()),
+        fact("Digest", data.digest.clone()),
+        fact("Samples", whole(data.samples)),
+        fact("Clock", format!("{}: {}", data.clock, data.clock_reason)),
+        fact("Sample rate", quantity(&rate, "Hz")),
+        fact(
+            "Resolution",
+            data.resolution.map_or_else(
+                || "no lattice found".to_owned(),
+                |step| quantity(&significant(step, 6), &data.unit),
+            ),
+        ),
+    ]
+}
+
+/// One seed's fit, as it stands in its table.
+pub(crate) struct SeedView {
+    pub(crate) seed: String,
+    pub(crate) decay_rate: String,
+    pub(crate) zeta: String,
+    pub(crate) error: String,
+    pub(crate) state: String,
+    pub(crate) steps: String,
+    pub(crate) seconds: String,
+    pub(crate) is_worst: bool,
+}
+
+/// The rows of the table of seeds, the worst marked; none where there is only one seed.
+pub(crate) fn seeds(rows: &[SeedRow]) -> Vec<SeedView> {
+    if rows.len() < 2 {
+        return Vec::new();
+    }
+    // An error that is not a number is worse than any.
+    let badness = |row: &SeedRow| {
+        if row.error_percent.is_nan() {
+            f64::INFINITY
+        } else {
+            row.error_percent
+        }
+    };
+    let worst = rows
+        .iter()
+        .enumerate()
+        .max_by(|one, other| badness(one.1).total_cmp(&badness(other.1)))
+        .map(|(index, _)| index);
+    rows.iter()
+        .enumerate()
+        .map(|(index, row)| SeedView {
+            seed: row.seed.to_string(),
+            decay_rate: significant(row.decay_rate, 7),
+            zeta: significant(row.zeta, 7),
+            error: percent(row.error_percent),
+            state: reached(&row.reached),
+            steps: count(row.steps),
+            seconds: significant(row.seconds, 3),
+            is_worst: Some(index) == worst,
+        })
+        .collect()
+}
+
+/// The same record through one pipeline and one clock, as it stands in its table.
+pub(crate) struct PipelineView<'a> {
+    pub(crate) pipeline: &'a str,
+    pub(crate) clock: &'a str,
+    pub(crate) is_in_force: bool,
+    pub(crate) fit: Option<FitView>,
+    /// Why there is no fit.
+    pub(crate) reason: &'a str,
+}
+
+/// What a pipeline gave.
+pub(crate) struct FitView {
+    pub(crate) peaks: String,
+    pub(crate) omega: String,
+    pub(crate) decay_rate: String,
+    pub(crate) zeta: String,
+    pub(crate) r_squared: String,
+}
+
+pub(crate) fn pipelines(rows: &[PipelineRow]) -> Vec<PipelineView<'_>> {
+    rows.iter()
+        .map(|row| {
+            let (fit, reason) = match &row.outcome {
+                PipelineOutcome::Fit {
+                    peaks,
+                    omega_rad_s,
+                    decay_rate,
+                    zeta,
+                    zeta_std_error,
+                    r_squared,
+                } => (
+                    Some(FitView {
+                        peaks: whole(*peaks),
+                        omega: significant(*omega_rad_s, 6),
+                        decay_rate: significant(*decay_rate, 6),
+                        zeta: with_uncertainty(*zeta, *zeta_std_error),
+                        r_squared: fixed(*r_squared, 4),
+                    }),
+                    "",
+                ),
+                PipelineOutcome::Failed { reason } => (None, reason.as_str()),
+            };
+            PipelineView {
+                pipeline: &row.pipeline,
+                clock: &row.clock,
+                is_in_force: row.in_force,
+                fit,
+                reason,
+            }
+        })
+        .collect()
+}
+
+/// `reached` in words.
+fn reached(state: &str) -> String {
+    match state {
+        "converged" => "converged".to_owned(),
+        "budget_spent" => "budget of steps spent".to_owned(),
+        other => other.to_owned(),
+    }
+}
+
+fn whole(value: usize) -> String {
+    count(u64::try_from(value).unwrap_or(u64::MAX))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::Sample;
+
+    #[test]
+    fn the_worst_seed_is_marked_and_nan_is_worse_than_any() {
+        let mut rows = Sample::new().result.seeds;
+        let marked = |rows: &[SeedRow]| {
+            let views = seeds(rows);
+            let marked: Vec<_> = (0..views.len()).filter(|i| views[*i].is_worst).collect();
+            marked
+        };
+        assert_eq!(marked(&rows), [3]);
+        rows[1].error_percent = f64::NAN;
+        assert_eq!(marked(&rows), [1]);
+        assert!(seeds(&rows[..1]).is_empty());
+    }
+
+    #[test]
+    fn what_is_not_stated_is_left_open() {
+        let mut result = Sample::new().result;
+        result.estimate.interval_95 = None;
+        result.estimate.std_error = None;
+        let rows = comparison(&result);
+        assert!(rows[3].estimate.is_none());
+        assert_eq!(rows[2].estimate.as_deref(), Some("0.1909610"));
+    }
+}
