@@ -22,11 +22,7 @@ impl Envelope {
     /// # Errors
     /// [`EnvelopeError::TooFewPeaks`] for fewer than three usable peaks: peaks that are not finite, or
     /// whose time does not increase, make the envelope unusable as a whole.
-    pub fn new(
-        times_s: Vec<f64>,
-        log_amplitudes: Vec<f64>,
-        omega_rad_s: f64,
-    ) -> Result<Self, EnvelopeError> {
+    pub fn new(times_s: Vec<f64>, log_amplitudes: Vec<f64>, omega_rad_s: f64) -> Result<Self, EnvelopeError> {
         let finite = times_s.iter().chain(&log_amplitudes).all(|number| number.is_finite());
         let increasing = times_s.iter().zip(times_s.iter().skip(1)).all(|(one, next)| one < next);
         let usable = finite
@@ -40,8 +36,7 @@ impl Envelope {
                 pipeline: "given",
                 found,
                 needed: FEWEST_PEAKS,
-                remedy: "Expected finite peaks at increasing times and a positive frequency."
-                    .to_owned(),
+                remedy: "Expected finite peaks at increasing times and a positive frequency.".to_owned(),
             });
         }
         let first = times_s.first().copied().unwrap_or_default();

@@ -5,10 +5,7 @@
 //! positions between the samples, both half-cycles. Either gives an [`Envelope`]: all that an estimator
 //! of the decay rate gets to see.
 
-#![cfg_attr(
-    test,
-    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod envelope;
 mod error;

@@ -75,7 +75,8 @@ impl PaperPipeline {
                 needed: FEWEST_PEAKS,
                 remedy: format!(
                     "Peaks are at least {} points of {step} s apart and {} {} prominent; lower \
-                     envelope.paper.peak_distance or envelope.paper.prominence, or give a longer record.",
+                     envelope.paper.peak_distance or envelope.paper.prominence, or give a longer record. A motion that \
+                     stops within a few swings has no envelope.",
                     self.peak_distance,
                     self.prominence,
                     record.unit()

@@ -83,9 +83,7 @@ fn keep_distant(values: &[f64], peaks: Vec<usize>, distance: usize) -> Vec<usize
         let (before, after) = peaks.split_at(position);
         let lower = before.iter().rev().take_while(|other| near(other)).count();
         let upper = after.iter().skip(1).take_while(|other| near(other)).count();
-        for (index, keep) in
-            kept.iter_mut().enumerate().skip(position - lower).take(lower + 1 + upper)
-        {
+        for (index, keep) in kept.iter_mut().enumerate().skip(position - lower).take(lower + 1 + upper) {
             *keep = index == position;
         }
     }
@@ -106,9 +104,8 @@ mod tests {
     /// The definition, walked literally.
     fn prominence_by_walking(values: &[f64], peak: usize) -> f64 {
         let top = values[peak];
-        let lowest = |walk: &mut dyn Iterator<Item = f64>| {
-            walk.take_while(|&value| value <= top).fold(top, f64::min)
-        };
+        let lowest =
+            |walk: &mut dyn Iterator<Item = f64>| walk.take_while(|&value| value <= top).fold(top, f64::min);
         let left = lowest(&mut values[..peak].iter().rev().copied());
         let right = lowest(&mut values[peak..].iter().copied());
         top - left.max(right)

@@ -51,17 +51,16 @@ impl RecommendedPipeline {
             needed: FEWEST_PEAKS,
             remedy: format!(
                 "Turning points must stand {floor:.2e} {} above a noise of {noise:.2e}; lower \
-                 envelope.recommended.floor_in_noise, or give a longer record.",
+                 envelope.recommended.floor_in_noise, or give a longer record. A motion \
+                 that stops within a few swings has no envelope.",
                 record.unit()
             ),
         };
         let coarse_times = |peaks: &[usize]| -> Vec<f64> {
             peaks.iter().filter_map(|&peak| clock.times_s.get(peak).copied()).collect()
         };
-        let periods = [&upper, &lower]
-            .into_iter()
-            .flat_map(|peaks| differences(&coarse_times(peaks), 1))
-            .collect();
+        let periods =
+            [&upper, &lower].into_iter().flat_map(|peaks| differences(&coarse_times(peaks), 1)).collect();
         let coarse_period = median(periods).ok_or_else(|| too_few(upper.len() + lower.len()))?;
 
         let half_width = self.half_width_periods * coarse_period;

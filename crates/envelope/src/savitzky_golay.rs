@@ -15,23 +15,18 @@ use nalgebra::{DMatrix, DVector};
 ///
 /// # Reference
 /// Savitzky, Golay, Analytical Chemistry 36 (1964) 1627.
-pub fn savitzky_golay(
-    values: &[f64],
-    window: usize,
-    order: usize,
-) -> Result<Vec<f64>, EnvelopeError> {
+pub fn savitzky_golay(values: &[f64], window: usize, order: usize) -> Result<Vec<f64>, EnvelopeError> {
     if window <= 1 {
         return Ok(values.to_vec());
     }
     let misfit = EnvelopeError::SmoothingWindow { window, order, samples: values.len() };
-    if window % 2 == 0 || order >= window || window > values.len() {
+    if window.is_multiple_of(2) || order >= window || window > values.len() {
         return Err(misfit);
     }
     // Powers of the position in -1..1: well scaled for any window.
     let half = (window / 2) as f64;
-    let design = DMatrix::from_fn(window, order + 1, |row, power| {
-        ((row as f64 - half) / half).powi(power as i32)
-    });
+    let design =
+        DMatrix::from_fn(window, order + 1, |row, power| ((row as f64 - half) / half).powi(power as i32));
     // Row i of the projection gives the fitted value at position i of the window.
     let pseudo_inverse = design.clone().pseudo_inverse(1e-13).map_err(|_| misfit)?;
     let projection = &design * pseudo_inverse;
@@ -45,12 +40,7 @@ pub fn savitzky_golay(
         fitted.iter().copied().collect()
     };
     let (head, tail) = (end(values.get(..window)), end(values.get(values.len() - window..)));
-    Ok(head
-        .into_iter()
-        .take(middle)
-        .chain(inner)
-        .chain(tail.into_iter().skip(middle + 1))
-        .collect())
+    Ok(head.into_iter().take(middle).chain(inner).chain(tail.into_iter().skip(middle + 1)).collect())
 }
 
 #[cfg(test)]

@@ -70,12 +70,7 @@ impl<'a> FitContext<'a> {
     /// `max_steps` caps the training steps; `None` leaves them to the estimator's own settings, 0 asks
     /// for the untrained estimate.
     #[must_use]
-    pub fn new(
-        seed: Seed,
-        max_steps: Option<u64>,
-        observer: &'a dyn Observer,
-        cancel: &'a Cancel,
-    ) -> Self {
+    pub fn new(seed: Seed, max_steps: Option<u64>, observer: &'a dyn Observer, cancel: &'a Cancel) -> Self {
         Self { seed, max_steps, observer, cancel }
     }
 

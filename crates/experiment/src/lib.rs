@@ -1,1 +1,10 @@
 //! The configuration of an experiment: schema, overrides, checks.
+//!
+//! Pure: text in, checked settings out. What an estimator's section may hold comes from the registry's
+//! entry that is handed in; this crate knows no estimator.
+
+mod experiment;
+mod schema;
+
+pub use experiment::{DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, resolve};
+pub use schema::{SECTIONS, estimator_name_field};

@@ -72,11 +72,7 @@ impl AffineSkipNetwork {
     /// # Errors
     /// [`FitError::Backend`] where the number of parameters is not
     /// [`parameter_count`](Self::parameter_count).
-    pub fn from_parameters(
-        hidden: &[usize],
-        parameters: &[f64],
-        device: &Device,
-    ) -> Result<Self, FitError> {
+    pub fn from_parameters(hidden: &[usize], parameters: &[f64], device: &Device) -> Result<Self, FitError> {
         let expected = Self::parameter_count(hidden);
         let wrong_count = || FitError::Backend {
             problem: format!("{} parameters for a network of {expected}", parameters.len()),
@@ -95,17 +91,12 @@ impl AffineSkipNetwork {
         for size in sizes(hidden) {
             let mut layer = LinearConfig::new(size.inputs, size.outputs).init(device);
             let weights = take(size.inputs * size.outputs)?;
-            layer.weight =
-                Param::from_tensor(tensor(weights, [size.inputs, size.outputs], device));
+            layer.weight = Param::from_tensor(tensor(weights, [size.inputs, size.outputs], device));
             layer.bias = Some(vector(take(size.outputs)?));
             layers.push(layer);
         }
         let (intercept, slope) = (vector(take(1)?), vector(take(1)?));
-        if parameters.len() == expected {
-            Ok(Self { layers, intercept, slope })
-        } else {
-            Err(wrong_count())
-        }
+        if parameters.len() == expected { Ok(Self { layers, intercept, slope }) } else { Err(wrong_count()) }
     }
 
     /// Values at the points `t`, of shape points × 1.
@@ -142,11 +133,7 @@ impl AffineSkipNetwork {
     ///
     /// # Errors
     /// [`FitError::Backend`] where burn gives no gradient.
-    pub fn linearize_derivatives(
-        &self,
-        t: &[f64],
-        device: &Device,
-    ) -> Result<Linearization, FitError> {
+    pub fn linearize_derivatives(&self, t: &[f64], device: &Device) -> Result<Linearization, FitError> {
         self.linearize(t, device, Of::Derivative)
     }
 
@@ -197,9 +184,7 @@ impl AffineSkipNetwork {
             let mut pre = layer.forward(value.clone());
             let mut pre_derivative = derivative.clone().matmul(weight.clone());
             if tapped {
-                let zeros = || {
-                    Tensor::<2>::zeros([points, weight.dims()[1]], &t.device()).require_grad()
-                };
+                let zeros = || Tensor::<2>::zeros([points, weight.dims()[1]], &t.device()).require_grad();
                 let tap = Tap {
                     input: value,
                     input_derivative: derivative,
@@ -271,10 +256,7 @@ impl AffineSkipNetwork {
             Of::Derivative => [vec![0.0; t.len()], vec![1.0; t.len()]],
         };
         columns.extend(skip.into_iter().map(Into::into));
-        Ok(Linearization {
-            values: values(output.inner())?,
-            jacobian: DMatrix::from_columns(&columns),
-        })
+        Ok(Linearization { values: values(output.inner())?, jacobian: DMatrix::from_columns(&columns) })
     }
 }
 

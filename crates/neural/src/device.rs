@@ -1,5 +1,7 @@
 //! burn's CPU backend in double precision.
 
+#![expect(clippy::disallowed_methods, reason = "this module hands out the device")]
+
 use burn::tensor::{Device, FloatDType, IntDType, Tensor, TensorData};
 use estimator::FitError;
 use std::sync::OnceLock;

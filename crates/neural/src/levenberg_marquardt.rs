@@ -155,9 +155,7 @@ impl LevenbergMarquardt {
             steps += 1;
             let trial = normal.solve(&point, damping).map(|step| (&point.parameters + &step, step));
             let accepted = match trial {
-                Some((trial, step)) => {
-                    self.try_step(problem, &point, trial, &step, damping)?
-                }
+                Some((trial, step)) => self.try_step(problem, &point, trial, &step, damping)?,
                 None => None,
             };
             match accepted {
@@ -179,13 +177,7 @@ impl LevenbergMarquardt {
                 }
             }
         };
-        Ok(Minimum {
-            last_gain,
-            loss: point.loss,
-            parameters: point.parameters,
-            steps,
-            reason,
-        })
+        Ok(Minimum { last_gain, loss: point.loss, parameters: point.parameters, steps, reason })
     }
 
     /// The point after a step, or `None` where it is worse.
@@ -241,11 +233,7 @@ impl Normal {
     /// The step −(JᵀJ + μ)⁻¹·Jᵀr; `None` where the damped matrix is not positive to rounding.
     fn solve(&self, point: &Point, damping: f64) -> Option<DVector<f64>> {
         let factor = |matrix: &DMatrix<f64>| -> Option<Cholesky<f64, Dyn>> {
-            let mut damped = matrix.clone();
-            for at in 0..damped.nrows() {
-                damped[(at, at)] += damping;
-            }
-            Cholesky::new(damped)
+            Cholesky::new(matrix + DMatrix::from_diagonal_element(matrix.nrows(), matrix.ncols(), damping))
         };
         Some(match self {
             Self::Parameters(matrix) => -factor(matrix)?.solve(&point.gradient),
@@ -273,10 +261,7 @@ mod tests {
         type Error = Infallible;
 
         fn residuals(&self, p: &DVector<f64>) -> Result<DVector<f64>, Infallible> {
-            Ok(DVector::from_iterator(
-                POINTS.len(),
-                POINTS.iter().map(|(t, y)| p[0] * (-p[1] * t).exp() - y),
-            ))
+            Ok(DVector::from_iterator(POINTS.len(), POINTS.iter().map(|(t, y)| p[0] * (-p[1] * t).exp() - y)))
         }
 
         fn linearize(&self, p: &DVector<f64>) -> Result<Linearized, Infallible> {
@@ -328,8 +313,7 @@ mod tests {
                 Ok(Linearized { residuals: self.residuals(p)?, jacobian })
             }
         }
-        let minimum =
-            METHOD.minimize(&Line, DVector::zeros(3), |_| ControlFlow::Continue(())).unwrap();
+        let minimum = METHOD.minimize(&Line, DVector::zeros(3), |_| ControlFlow::Continue(())).unwrap();
         assert!(minimum.loss < 1e-20, "{minimum:?}");
     }
 }

@@ -5,10 +5,7 @@
 //! a device set to double precision, exact Jacobians of a network's values and of its input
 //! derivatives, and a least-squares optimizer that knows when rounding has the last word.
 
-#![cfg_attr(
-    test,
-    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod affine_skip;
 mod device;
@@ -17,7 +14,5 @@ mod weights;
 
 pub use affine_skip::{AffineSkipNetwork, Linearization};
 pub use device::{device, tensor, values};
-pub use levenberg_marquardt::{
-    Iteration, LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason,
-};
+pub use levenberg_marquardt::{Iteration, LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason};
 pub use weights::{NamedTensor, from_safetensors, to_safetensors};

@@ -49,11 +49,7 @@ pub struct LinearFit {
 ///
 /// # Reference
 /// Björck, Numerical Methods for Least Squares Problems (SIAM 1996), sections 1.4 and 2.4.
-pub fn least_squares(
-    columns: &[&[f64]],
-    y: &[f64],
-    intercept: Intercept,
-) -> Result<LinearFit, OracleError> {
+pub fn least_squares(columns: &[&[f64]], y: &[f64], intercept: Intercept) -> Result<LinearFit, OracleError> {
     check(columns, y)?;
     let rows = y.len();
     let exact = |column: &[f64]| column.iter().map(|&x| DoubleDouble::from(x)).collect::<Vec<_>>();
@@ -72,8 +68,7 @@ pub fn least_squares(
     let rss = dot(&residual, &residual);
     let fitted_length = dot(&rhs, &rhs).sqrt().value();
     let tangent = if fitted_length > 0.0 { rss.sqrt().value() / fitted_length } else { 0.0 };
-    let promised_digits =
-        promise(condition, tangent, rows + columns.len(), scaled.iter().map(|x| x.value()));
+    let promised_digits = promise(condition, tangent, rows + columns.len(), scaled.iter().map(|x| x.value()));
     if promised_digits.is_nan() || promised_digits < FEWEST_DIGITS {
         return Err(OracleError::IllConditioned { promised: promised_digits, condition });
     }
@@ -92,11 +87,7 @@ pub fn least_squares(
         Intercept::None => DoubleDouble::ZERO,
     };
     let total: DoubleDouble = y.iter().map(|&y| (y - mean) * (y - mean)).sum();
-    let r_squared = if total.is_zero() {
-        1.0
-    } else {
-        (DoubleDouble::from(1.0) - rss / total).value()
-    };
+    let r_squared = if total.is_zero() { 1.0 } else { (DoubleDouble::from(1.0) - rss / total).value() };
     Ok(LinearFit {
         coefficients,
         std_errors,
@@ -111,11 +102,7 @@ pub fn least_squares(
 fn check(columns: &[&[f64]], y: &[f64]) -> Result<(), OracleError> {
     for (number, column) in (1..).zip(columns) {
         if column.len() != y.len() {
-            return Err(OracleError::Shape {
-                column: number,
-                found: column.len(),
-                expected: y.len(),
-            });
+            return Err(OracleError::Shape { column: number, found: column.len(), expected: y.len() });
         }
     }
     if columns.is_empty() || y.len() <= columns.len() {
@@ -177,8 +164,7 @@ fn back_substitute(r: &[Vec<DoubleDouble>], b: &[DoubleDouble]) -> Vec<DoubleDou
     // Unknowns from the last to the first.
     let mut solved: Vec<DoubleDouble> = Vec::new();
     for (row, &right) in r.iter().zip(b).rev() {
-        let known: DoubleDouble =
-            row.iter().skip(1).zip(solved.iter().rev()).map(|(&r, &x)| r * x).sum();
+        let known: DoubleDouble = row.iter().skip(1).zip(solved.iter().rev()).map(|(&r, &x)| r * x).sum();
         if let Some(&diagonal) = row.first() {
             solved.push((right - known) / diagonal);
         }
@@ -192,9 +178,8 @@ fn inverse_row_lengths(r: &[Vec<DoubleDouble>]) -> Vec<DoubleDouble> {
     let size = r.len();
     let mut squares = vec![DoubleDouble::ZERO; size];
     for at in 0..size {
-        let unit: Vec<DoubleDouble> = (0..size)
-            .map(|row| DoubleDouble::from(if row == at { 1.0 } else { 0.0 }))
-            .collect();
+        let unit: Vec<DoubleDouble> =
+            (0..size).map(|row| DoubleDouble::from(if row == at { 1.0 } else { 0.0 })).collect();
         for (square, x) in squares.iter_mut().zip(back_substitute(r, &unit)) {
             *square = *square + x * x;
         }
@@ -211,9 +196,7 @@ fn condition_number(r: &[Vec<DoubleDouble>]) -> f64 {
     let mut rows: Vec<Vec<f64>> = r
         .iter()
         .enumerate()
-        .map(|(at, row)| {
-            std::iter::repeat_n(0.0, at).chain(row.iter().map(|x| x.value())).collect()
-        })
+        .map(|(at, row)| std::iter::repeat_n(0.0, at).chain(row.iter().map(|x| x.value())).collect())
         .collect();
     let inner = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     for _sweep in 0..60 {
@@ -282,9 +265,8 @@ mod tests {
 
     #[test]
     fn a_high_polynomial_with_residuals_is_refused_with_numbers() {
-        let powers: Vec<Vec<f64>> = (0..24)
-            .map(|power| (0..60).map(|x| f64::from(x).powi(power)).collect())
-            .collect();
+        let powers: Vec<Vec<f64>> =
+            (0..24).map(|power| (0..60).map(|x| f64::from(x).powi(power)).collect()).collect();
         let columns: Vec<&[f64]> = powers.iter().map(Vec::as_slice).collect();
         let y: Vec<f64> = (0..60).map(|x| f64::from(x * 7919 % 101)).collect();
         let message = least_squares(&columns, &y, Intercept::Included).unwrap_err().to_string();

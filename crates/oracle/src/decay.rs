@@ -47,8 +47,7 @@ pub fn decay_rate(envelope: &Envelope) -> Result<DecayFit, OracleError> {
     let ones = vec![1.0; envelope.len()];
     let columns = [ones.as_slice(), envelope.times_s()];
     let fit = least_squares(&columns, envelope.log_amplitudes(), Intercept::Included)?;
-    let (&[log_amplitude, slope], &[_, std_error]) =
-        (fit.coefficients.as_slice(), fit.std_errors.as_slice())
+    let (&[log_amplitude, slope], &[_, std_error]) = (fit.coefficients.as_slice(), fit.std_errors.as_slice())
     else {
         return Err(OracleError::TooFewRows { rows: envelope.len(), columns: 2 });
     };

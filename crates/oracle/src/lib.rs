@@ -4,10 +4,7 @@
 //! many digits of its answer the conditioning of the problem leaves, and refuses to answer where fewer
 //! than four remain. It shares the envelope with the estimators and no arithmetic.
 
-#![cfg_attr(
-    test,
-    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod certified;
 mod decay;

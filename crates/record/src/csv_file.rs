@@ -45,15 +45,14 @@ pub(crate) fn parse(text: &str, columns: &CsvColumns) -> Result<Parsed, Fault> {
     }
     let find = |wanted: Option<&str>, usual: &[&str], key: &'static str| {
         let candidates = wanted.map_or_else(|| usual.to_vec(), |name| vec![name]);
-        candidates
-            .iter()
-            .find_map(|name| header.iter().position(|title| title == *name))
-            .ok_or_else(|| Fault::MissingColumn {
+        candidates.iter().find_map(|name| header.iter().position(|title| title == *name)).ok_or_else(|| {
+            Fault::MissingColumn {
                 line,
                 wanted: candidates.join("` or `"),
                 found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
                 key,
-            })
+            }
+        })
     };
     let time = match (find(columns.time.as_deref(), TIME_NAMES, "data.time"), columns.sample_rate_hz) {
         (Ok(at), _) => TimeColumn::At(at),
@@ -115,9 +114,5 @@ pub(crate) fn number(text: &str, line: u64, column: &str) -> Result<f64, Fault> 
         column: column.to_owned(),
         text: text.chars().take(40).collect(),
     })?;
-    if number.is_finite() {
-        Ok(number)
-    } else {
-        Err(Fault::NotFinite { line, column: column.to_owned() })
-    }
+    if number.is_finite() { Ok(number) } else { Err(Fault::NotFinite { line, column: column.to_owned() }) }
 }

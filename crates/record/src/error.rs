@@ -79,9 +79,7 @@ pub enum Fault {
         text: String,
     },
     /// A number is infinite or no number.
-    #[error(
-        "column `{column}` holds a value that is not finite; drop the line or repair the value"
-    )]
+    #[error("column `{column}` holds a value that is not finite; drop the line or repair the value")]
     NotFinite {
         /// Line, from 1.
         line: u64,

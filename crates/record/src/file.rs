@@ -60,9 +60,8 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source),
     if path.is_dir() {
         return Err(Fault::Folder.in_file(&name));
     }
-    let bytes = std::fs::read(path).map_err(|error| {
-        Fault::Unreadable { problem: error.to_string() }.in_file(&name)
-    })?;
+    let bytes = std::fs::read(path)
+        .map_err(|error| Fault::Unreadable { problem: error.to_string() }.in_file(&name))?;
     read_text(&name, &bytes, options)
 }
 
@@ -70,14 +69,10 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source),
 ///
 /// # Errors
 /// As [`read_file`].
-pub fn read_text(
-    name: &str,
-    bytes: &[u8],
-    options: &ReadOptions,
-) -> Result<(Record, Source), RecordError> {
+pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     let parse = || {
-        let text = std::str::from_utf8(bytes)
-            .map_err(|error| Fault::NotText { offset: error.valid_up_to() })?;
+        let text =
+            std::str::from_utf8(bytes).map_err(|error| Fault::NotText { offset: error.valid_up_to() })?;
         // Spreadsheets put a byte-order mark in front.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         if text.trim().is_empty() {
@@ -91,12 +86,7 @@ pub fn read_text(
     };
     let (record, statements, findings) = parse().map_err(|fault| fault.in_file(name))?;
     let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-    let source = Source {
-        path: name.to_owned(),
-        digest: format!("sha256:{digest}"),
-        statements,
-        findings,
-    };
+    let source = Source { path: name.to_owned(), digest: format!("sha256:{digest}"), statements, findings };
     Ok((record, source))
 }
 

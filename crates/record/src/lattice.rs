@@ -56,8 +56,7 @@ impl Lattice {
             step = products / squares;
         }
         let misfit = line_misfit(&points)?;
-        (misfit.1 <= LARGEST_MISFIT)
-            .then_some(Self { step: misfit.0, misfit_steps: misfit.1 })
+        (misfit.1 <= LARGEST_MISFIT).then_some(Self { step: misfit.0, misfit_steps: misfit.1 })
     }
 }
 
@@ -76,10 +75,8 @@ fn line_misfit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
     let sxx: f64 = points.iter().map(|point| (point.0 - mean_x).powi(2)).sum();
     let sxy: f64 = points.iter().map(|point| (point.0 - mean_x) * (point.1 - mean_y)).sum();
     let slope = sxy / sxx;
-    let squares: f64 = points
-        .iter()
-        .map(|point| (point.1 - mean_y - slope * (point.0 - mean_x)).powi(2))
-        .sum();
+    let squares: f64 =
+        points.iter().map(|point| (point.1 - mean_y - slope * (point.0 - mean_x)).powi(2)).sum();
     let misfit = (squares / count).sqrt() / slope;
     (slope.is_finite() && slope > 0.0 && misfit.is_finite()).then_some((slope, misfit))
 }

@@ -5,10 +5,7 @@
 //! Where a record came from ([`Source`]) is kept beside it, never in it: whoever is handed a record
 //! cannot tell its file's name or whether it was measured or simulated.
 
-#![cfg_attr(
-    test,
-    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod clock;
 mod csv_file;

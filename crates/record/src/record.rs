@@ -51,10 +51,9 @@ impl Record {
         if stamps_s.len() < FEWEST_SAMPLES {
             return Err(Fault::TooFewSamples { found: stamps_s.len(), needed: FEWEST_SAMPLES });
         }
-        for (what, column) in
-            [("values", Some(&values)), ("input", input.as_ref())].into_iter().filter_map(
-                |(what, column)| column.map(|column| (what, column)),
-            )
+        for (what, column) in [("values", Some(&values)), ("input", input.as_ref())]
+            .into_iter()
+            .filter_map(|(what, column)| column.map(|column| (what, column)))
         {
             if column.len() != stamps_s.len() {
                 return Err(Fault::UnequalColumns {

@@ -39,9 +39,8 @@ pub enum Unit {
 
 impl Unit {
     /// Every unit's name as configurations write it.
-    pub const NAMES: &'static [&'static str] = &[
-        "rad", "deg", "m", "mm", "V", "rad/s", "deg/s", "m/s", "rad/s^2", "m/s^2",
-    ];
+    pub const NAMES: &'static [&'static str] =
+        &["rad", "deg", "m", "mm", "V", "rad/s", "deg/s", "m/s", "rad/s^2", "m/s^2"];
 
     /// Factor from this unit to the SI unit of [`Unit::si`].
     #[must_use]

@@ -29,16 +29,7 @@ pub(crate) struct Figure {
 }
 
 pub(crate) fn figures(run: &Run) -> Vec<Figure> {
-    [
-        envelope(run),
-        residuals(run),
-        loss(run),
-        decay_rate(run),
-        distance(run),
-    ]
-    .into_iter()
-    .flatten()
-    .collect()
+    [envelope(run), residuals(run), loss(run), decay_rate(run), distance(run)].into_iter().flatten().collect()
 }
 
 fn envelope(run: &Run) -> Option<Figure> {
@@ -61,11 +52,9 @@ fn envelope(run: &Run) -> Option<Figure> {
     let title = "Envelope";
     let explanation = "Each dot is a peak of the record. On this scale the decay of a single \
                        damping ratio is a straight line, and its slope is −λ.";
-    let csv = csv(
-        &["time_s", "log_amplitude", "oracle", "estimate"],
-        rows,
-        |r: &EnvelopeRow| numbers(&[r.time_s, r.log_amplitude, r.oracle, r.estimate]),
-    );
+    let csv = csv(&["time_s", "log_amplitude", "oracle", "estimate"], rows, |r: &EnvelopeRow| {
+        numbers(&[r.time_s, r.log_amplitude, r.oracle, r.estimate])
+    });
     figure("envelope", title, explanation, &plot, csv)
 }
 
@@ -75,20 +64,13 @@ fn residuals(run: &Run) -> Option<Figure> {
         x: time_axis(),
         y: Axis::linear("ln A less the oracle’s line"),
         series: vec![
-            estimate(
-                run,
-                Mark::Line,
-                rows.iter().map(|r| (r.time_s, r.estimate - r.oracle)),
-            ),
+            estimate(run, Mark::Line, rows.iter().map(|r| (r.time_s, r.estimate - r.oracle))),
             oracle(Mark::Level, [(0.0, 0.0)].into_iter()),
             Series {
                 label: "peaks of the record".into(),
                 hue: Hue::Data,
                 mark: Mark::Dots,
-                points: rows
-                    .iter()
-                    .map(|r| (r.time_s, r.log_amplitude - r.oracle))
-                    .collect(),
+                points: rows.iter().map(|r| (r.time_s, r.log_amplitude - r.oracle)).collect(),
             },
         ],
         shaded: vec![],
@@ -97,11 +79,9 @@ fn residuals(run: &Run) -> Option<Figure> {
     let explanation = "The same with the oracle’s line taken away: dots scattered evenly about \
                        zero speak for a single damping ratio, a bend or a wave against it. Where \
                        the estimator agrees with the oracle its line lies on zero.";
-    let csv = csv(
-        &["time_s", "residual", "estimate_less_oracle"],
-        rows,
-        |r: &EnvelopeRow| numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle]),
-    );
+    let csv = csv(&["time_s", "residual", "estimate_less_oracle"], rows, |r: &EnvelopeRow| {
+        numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
+    });
     figure("residuals", title, explanation, &plot, csv)
 }
 
@@ -118,20 +98,12 @@ fn loss(run: &Run) -> Option<Figure> {
             label: name.to_owned(),
             hue: Hue::of_series(index),
             // The hues repeat after four phases; the next four are told apart by their dashes.
-            mark: if (index / 4).is_multiple_of(2) {
-                Mark::Line
-            } else {
-                Mark::Dashes
-            },
+            mark: if (index / 4).is_multiple_of(2) { Mark::Line } else { Mark::Dashes },
             points: phase.points(|row| row.loss),
         });
     }
-    let plot = Plot {
-        x: step_axis(),
-        y: Axis::log("loss (scaled units)"),
-        series,
-        shaded: shaded(&run.trace),
-    };
+    let plot =
+        Plot { x: step_axis(), y: Axis::log("loss (scaled units)"), series, shaded: shaded(&run.trace) };
     let title = "Loss";
     let explanation = "What the training minimizes. Phases may weigh its terms differently, so \
                        the fall within a phase counts, not the jump between two.";
@@ -146,10 +118,7 @@ fn decay_rate(run: &Run) -> Option<Figure> {
     let plot = Plot {
         x: step_axis(),
         y: Axis::linear("λ (1/s)"),
-        series: vec![
-            estimate_steps(run, |row| row.decay_rate),
-            oracle(Mark::Level, level.into_iter()),
-        ],
+        series: vec![estimate_steps(run, |row| row.decay_rate), oracle(Mark::Level, level.into_iter())],
         shaded: shaded(&run.trace),
     };
     let title = "Decay rate";
@@ -175,12 +144,7 @@ fn distance(run: &Run) -> Option<Figure> {
         y: Axis::log("|λ / oracle’s λ − 1|"),
         series: vec![
             estimate_steps(run, relative),
-            level(
-                "stated tolerance",
-                Hue::Data,
-                Mark::Level,
-                run.result.tolerance_percent / 100.0,
-            ),
+            level("stated tolerance", Hue::Data, Mark::Level, run.result.tolerance_percent / 100.0),
             level(
                 "standard error of the oracle’s λ",
                 Hue::Oracle,
@@ -206,19 +170,10 @@ fn figure(
     (csv, rows): (String, String),
 ) -> Option<Figure> {
     let description = format!("{title}: {} against {}.", plot.y.label, plot.x.label);
-    let Drawing {
-        wide,
-        narrow,
-        mut legend,
-        left_out,
-        thinned,
-    } = plot.draw(&description)?;
+    let Drawing { wide, narrow, mut legend, left_out, thinned } = plot.draw(&description)?;
     let mut notes = Vec::new();
     if legend.len() > MOST_ENTRIES {
-        notes.push(format!(
-            "{} more phases are not in the legend.",
-            legend.len() - MOST_ENTRIES
-        ));
+        notes.push(format!("{} more phases are not in the legend.", legend.len() - MOST_ENTRIES));
         legend.truncate(MOST_ENTRIES);
     }
     if left_out > 0 {
@@ -234,17 +189,7 @@ fn figure(
                 .to_owned(),
         );
     }
-    Some(Figure {
-        id,
-        title,
-        explanation: explanation.to_owned(),
-        notes,
-        legend,
-        wide,
-        narrow,
-        csv,
-        rows,
-    })
+    Some(Figure { id, title, explanation: explanation.to_owned(), notes, legend, wide, narrow, csv, rows })
 }
 
 fn time_axis() -> Axis {
@@ -265,12 +210,7 @@ fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
 }
 
 fn estimate(run: &Run, mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
-    Series {
-        label: run.result.estimator_title.clone(),
-        hue: Hue::Estimate,
-        mark,
-        points: points.collect(),
-    }
+    Series { label: run.result.estimator_title.clone(), hue: Hue::Estimate, mark, points: points.collect() }
 }
 
 fn estimate_steps(run: &Run, value: impl Fn(&TraceRow) -> f64) -> Series {
@@ -301,18 +241,12 @@ impl<'a> Phase<'a> {
 
     #[allow(clippy::cast_precision_loss)]
     fn points(&self, value: impl Fn(&TraceRow) -> f64) -> Vec<(f64, f64)> {
-        self.rows
-            .iter()
-            .map(|row| (row.step as f64, value(row)))
-            .collect()
+        self.rows.iter().map(|row| (row.step as f64, value(row))).collect()
     }
 }
 
 fn phases(trace: &[TraceRow]) -> Vec<Phase<'_>> {
-    trace
-        .chunk_by(|one, next| one.phase == next.phase)
-        .map(|rows| Phase { rows })
-        .collect()
+    trace.chunk_by(|one, next| one.phase == next.phase).map(|rows| Phase { rows }).collect()
 }
 
 /// Every other phase, from its first step to the next phase's.
@@ -341,19 +275,11 @@ fn numbers(values: &[f64]) -> Vec<String> {
 
 /// As few digits as read back as the same double.
 fn number(value: f64) -> String {
-    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) {
-        value.to_string()
-    } else {
-        format!("{value:e}")
-    }
+    if value == 0.0 || (1e-4..1e15).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 /// The table as text, and how many rows of it that is, in words.
-fn csv<Row>(
-    header: &[&str],
-    rows: &[Row],
-    fields: impl Fn(&Row) -> Vec<String>,
-) -> (String, String) {
+fn csv<Row>(header: &[&str], rows: &[Row], fields: impl Fn(&Row) -> Vec<String>) -> (String, String) {
     let stride = rows.len().div_ceil(MOST_ROWS).max(1);
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory fails on no input; where it did, the table would end early.
@@ -377,33 +303,19 @@ mod tests {
     use super::*;
 
     fn row(step: u64, phase: &str) -> TraceRow {
-        TraceRow {
-            step,
-            phase: phase.into(),
-            loss: 1.0,
-            decay_rate: 0.1,
-        }
+        TraceRow { step, phase: phase.into(), loss: 1.0, decay_rate: 0.1 }
     }
 
     #[test]
     fn every_other_phase_is_shaded_up_to_the_next() {
-        let trace = [
-            row(0, "a"),
-            row(1, "b"),
-            row(2, "b"),
-            row(3, "c"),
-            row(4, "d"),
-            row(5, "d"),
-        ];
+        let trace = [row(0, "a"), row(1, "b"), row(2, "b"), row(3, "c"), row(4, "d"), row(5, "d")];
         assert_eq!(shaded(&trace), [(1.0, 3.0), (4.0, 5.0)]);
     }
 
     #[test]
     fn long_tables_keep_every_so_many_rows() {
         let trace: Vec<_> = (0..5_000).map(|step| row(step, "a,b")).collect();
-        let (text, shown) = csv(&["step", "phase"], &trace, |r| {
-            vec![r.step.to_string(), r.phase.clone()]
-        });
+        let (text, shown) = csv(&["step", "phase"], &trace, |r| vec![r.step.to_string(), r.phase.clone()]);
         assert_eq!(shown, "one row in 2 of 5000");
         assert_eq!(text.lines().count(), 1 + 2_500);
         assert!(text.starts_with("step,phase\n0,\"a,b\"\n2,"));

@@ -40,11 +40,7 @@ pub fn exact(value: f64) -> String {
     // `{:e}` prints the shortest mantissa that reads back as the same double.
     let text = format!("{value:e}");
     let (mantissa, exponent) = split_exponent(&text);
-    if is_plain(exponent) {
-        typeset(&format!("{value}"))
-    } else {
-        times_power(&typeset(mantissa), exponent)
-    }
+    if is_plain(exponent) { typeset(&format!("{value}")) } else { times_power(&typeset(mantissa), exponent) }
 }
 
 /// A value to a number of decimal places, digits grouped: `−1 234.50`.
@@ -56,11 +52,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
     // A value that rounds to zero has no sign left to show.
-    typeset(if is_zero {
-        text.trim_start_matches('-')
-    } else {
-        &text
-    })
+    typeset(if is_zero { text.trim_start_matches('-') } else { &text })
 }
 
 /// A count, digits grouped from five digits on: `9999`, `12 345`.
@@ -87,11 +79,7 @@ pub fn with_uncertainty(value: f64, std_error: f64) -> String {
         fixed(value / unit, decimals),
         fixed(std_error / unit, decimals)
     );
-    if power == 0 {
-        body
-    } else {
-        times_power(&format!("({body})"), power)
-    }
+    if power == 0 { body } else { times_power(&format!("({body})"), power) }
 }
 
 /// The two ends of an interval, in the same unit, to the digits that its width warrants:
@@ -108,16 +96,8 @@ pub fn interval(ends: [f64; 2]) -> String {
     // A 95 % interval is about four standard errors wide.
     let quarter = (high - low).abs() / 4.0 / unit;
     let decimals = decimals_for(low.abs().max(high.abs()) / unit, quarter);
-    let body = format!(
-        "[{}, {}]",
-        fixed(low / unit, decimals),
-        fixed(high / unit, decimals)
-    );
-    if power == 0 {
-        body
-    } else {
-        times_power(&body, power)
-    }
+    let body = format!("[{}, {}]", fixed(low / unit, decimals), fixed(high / unit, decimals));
+    if power == 0 { body } else { times_power(&body, power) }
 }
 
 /// A share in percent that is an error, so that two significant digits say all: `3.1 × 10⁻⁷ %`.
@@ -129,21 +109,13 @@ pub fn percent(value: f64) -> String {
 /// A number and its unit, kept on one line. An empty unit leaves the number alone.
 #[must_use]
 pub fn quantity(number: &str, unit: &str) -> String {
-    if unit.is_empty() {
-        number.to_owned()
-    } else {
-        format!("{number}{NO_BREAK}{unit}")
-    }
+    if unit.is_empty() { number.to_owned() } else { format!("{number}{NO_BREAK}{unit}") }
 }
 
 /// A power of ten, `10⁻⁶`; the zeroth is `1`.
 #[must_use]
 pub fn power_of_ten(exponent: i32) -> String {
-    if exponent == 0 {
-        "1".to_owned()
-    } else {
-        format!("10{}", superscript(exponent))
-    }
+    if exponent == 0 { "1".to_owned() } else { format!("10{}", superscript(exponent)) }
 }
 
 /// Labels of evenly spaced ticks from `low` to `high`, `step` apart: as many decimals as the step
@@ -156,22 +128,14 @@ pub(crate) fn tick(value: f64, low: f64, high: f64, step: f64) -> String {
     }
     let mantissa = value / 10f64.powi(largest);
     let text = fixed(mantissa, usize::try_from(largest - finest).unwrap_or(0));
-    if value.abs() < step / 2.0 {
-        "0".to_owned()
-    } else {
-        times_power(&text, largest)
-    }
+    if value.abs() < step / 2.0 { "0".to_owned() } else { times_power(&text, largest) }
 }
 
 /// Decimal places that show two significant digits of `std_error`, and no digit of `value` that a
 /// double does not carry.
 fn decimals_for(value: f64, std_error: f64) -> usize {
     let carried = MOST_DIGITS - 1 - exponent_after_rounding(value, 1);
-    let wanted = if std_error > 0.0 {
-        1 - exponent_after_rounding(std_error, 2)
-    } else {
-        7
-    };
+    let wanted = if std_error > 0.0 { 1 - exponent_after_rounding(std_error, 2) } else { 7 };
     usize::try_from(wanted.min(carried)).unwrap_or(0)
 }
 
@@ -298,22 +262,10 @@ mod tests {
 
     #[test]
     fn digits_follow_the_uncertainty() {
-        assert_eq!(
-            plain(&with_uncertainty(0.008_753_04, 0.000_207)),
-            "0.00875 ± 0.00021"
-        );
-        assert_eq!(
-            plain(&with_uncertainty(0.190_961, 0.004_54)),
-            "0.1910 ± 0.0045"
-        );
-        assert_eq!(
-            plain(&with_uncertainty(3.123e-7, 5.4e-9)),
-            "(3.123 ± 0.054) × 10⁻⁷"
-        );
-        assert_eq!(
-            plain(&with_uncertainty(50.001_234, 0.000_099_7)),
-            "50.00123 ± 0.00010"
-        );
+        assert_eq!(plain(&with_uncertainty(0.008_753_04, 0.000_207)), "0.00875 ± 0.00021");
+        assert_eq!(plain(&with_uncertainty(0.190_961, 0.004_54)), "0.1910 ± 0.0045");
+        assert_eq!(plain(&with_uncertainty(3.123e-7, 5.4e-9)), "(3.123 ± 0.054) × 10⁻⁷");
+        assert_eq!(plain(&with_uncertainty(50.001_234, 0.000_099_7)), "50.00123 ± 0.00010");
         assert_eq!(plain(&with_uncertainty(1.0, 250.0)), "1 ± 250");
     }
 

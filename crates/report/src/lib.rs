@@ -4,15 +4,7 @@
 //! network, and no number in it that is not in those texts or a plain difference or ratio of
 //! numbers that are. The same texts give the same bytes.
 
-#![cfg_attr(
-    test,
-    allow(
-        clippy::unwrap_used,
-        clippy::expect_used,
-        clippy::panic,
-        clippy::indexing_slicing
-    )
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod error;
 mod figures;

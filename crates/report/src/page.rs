@@ -154,10 +154,7 @@ mod tests {
         sample.envelope[3].estimate = f64::NAN;
         let html = sample.render().unwrap();
         assert!(html.contains("are left out"));
-        let drawn = html
-            .split("<svg")
-            .skip(1)
-            .filter_map(|rest| rest.split_once("</svg>"));
+        let drawn = html.split("<svg").skip(1).filter_map(|rest| rest.split_once("</svg>"));
         for (svg, _) in drawn {
             assert!(!svg.contains("NaN") && !svg.contains("inf\"") && !svg.contains("inf "));
         }

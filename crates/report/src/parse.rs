@@ -23,9 +23,7 @@ struct Tag {
 pub(crate) fn parse(texts: &RunTexts<'_>) -> Result<Run, ReportError> {
     let envelope: Vec<EnvelopeRow> = table("envelope.csv", texts.envelope)?;
     if envelope.is_empty() {
-        return Err(ReportError::Empty {
-            file: "envelope.csv",
-        });
+        return Err(ReportError::Empty { file: "envelope.csv" });
     }
     Ok(Run {
         result: result(texts.result)?,
@@ -37,18 +35,13 @@ pub(crate) fn parse(texts: &RunTexts<'_>) -> Result<Run, ReportError> {
 
 fn result(text: &str) -> Result<EstimationResult, ReportError> {
     if text.trim().is_empty() {
-        return Err(ReportError::Empty {
-            file: "result.json",
-        });
+        return Err(ReportError::Empty { file: "result.json" });
     }
     // The tag first: a result of another schema is to be named as such, not by the first field
     // that it happens to lack.
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
     if tag.schema != RESULT_SCHEMA {
-        return Err(ReportError::Schema {
-            expected: RESULT_SCHEMA,
-            found: tag.schema,
-        });
+        return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });
     }
     serde_json::from_str(text).map_err(json_error)
 }
@@ -66,27 +59,19 @@ fn json_error(error: serde_json::Error) -> ReportError {
 fn table<Row: DeserializeOwned>(file: &'static str, text: &str) -> Result<Vec<Row>, ReportError> {
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let headers = reader.headers().cloned().unwrap_or_default();
-    reader
-        .deserialize()
-        .map(|row| row.map_err(|error| table_error(file, &headers, &error)))
-        .collect()
+    reader.deserialize().map(|row| row.map_err(|error| table_error(file, &headers, &error))).collect()
 }
 
 fn table_error(file: &'static str, headers: &csv::StringRecord, error: &csv::Error) -> ReportError {
     let line = error.position().map(csv::Position::line);
     let (column, reason) = match error.kind() {
         csv::ErrorKind::Deserialize { err, .. } => (
-            err.field()
-                .and_then(|field| usize::try_from(field).ok())
-                .and_then(|field| headers.get(field)),
+            err.field().and_then(|field| usize::try_from(field).ok()).and_then(|field| headers.get(field)),
             err.kind().to_string(),
         ),
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => (
-            None,
-            format!("the row has {len} fields, the header {expected_len}"),
-        ),
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            (None, format!("the row has {len} fields, the header {expected_len}"))
+        }
         _ => (None, error.to_string()),
     };
     let place = match (line, column) {
@@ -94,11 +79,7 @@ fn table_error(file: &'static str, headers: &csv::StringRecord, error: &csv::Err
         (Some(line), None) => format!("line {line}"),
         _ => "somewhere".to_owned(),
     };
-    ReportError::Table {
-        file,
-        place,
-        reason,
-    }
+    ReportError::Table { file, place, reason }
 }
 
 #[cfg(test)]
@@ -123,9 +104,7 @@ mod tests {
 
     #[test]
     fn a_missing_envelope_is_named() {
-        assert!(
-            message(|s| s.envelope_text = Some("\n".into())).starts_with("envelope.csv is missing")
-        );
+        assert!(message(|s| s.envelope_text = Some("\n".into())).starts_with("envelope.csv is missing"));
         assert!(
             message(|s| s.envelope_text = Some("time_s,log_amplitude,oracle,estimate\n".into()))
                 .starts_with("envelope.csv is missing or empty")
@@ -135,10 +114,7 @@ mod tests {
     #[test]
     fn garbled_json_is_located() {
         let text = message(|s| s.result_text = Some("{\n  \"schema\": oops\n}".into()));
-        assert!(
-            text.starts_with("result.json, line 2, column 13: expected value; "),
-            "{text}"
-        );
+        assert!(text.starts_with("result.json, line 2, column 13: expected value; "), "{text}");
     }
 
     #[test]
@@ -170,26 +146,17 @@ mod tests {
         let text = message(|s| {
             s.trace_text = Some("step,phase,loss,decay_rate\n0,a,1.0,0.1\n1,a,one,0.1\n".into());
         });
-        assert!(
-            text.starts_with("trace.csv, line 3, column `loss`: invalid float literal; "),
-            "{text}"
-        );
+        assert!(text.starts_with("trace.csv, line 3, column `loss`: invalid float literal; "), "{text}");
         let text = message(|s| {
             s.envelope_text = Some("time_s,log_amplitude,oracle,estimate\n0,1,2\n".into());
         });
-        assert!(
-            text.starts_with("envelope.csv, line 2: the row has 3 fields, the header 4; "),
-            "{text}"
-        );
+        assert!(text.starts_with("envelope.csv, line 2: the row has 3 fields, the header 4; "), "{text}");
     }
 
     #[test]
     fn a_table_without_a_column_is_located() {
         let text = message(|s| s.trace_text = Some("step,phase,loss\n0,a,1.0\n".into()));
-        assert!(
-            text.contains("trace.csv, line 2: missing field `decay_rate`"),
-            "{text}"
-        );
+        assert!(text.contains("trace.csv, line 2: missing field `decay_rate`"), "{text}");
     }
 
     #[test]

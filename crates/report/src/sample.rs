@@ -33,10 +33,9 @@ impl Sample {
                      physics_weights = [1.0, 100.0]\n\n[record]\npath = \"data/pendulum.csv\"\n\
                      clock = \"uniform-index\"\n"
                 .into(),
-            environment:
-                "{\n  \"version\": \"0.1.0\",\n  \"target\": \"x86_64-unknown-linux-gnu\",\
+            environment: "{\n  \"version\": \"0.1.0\",\n  \"target\": \"x86_64-unknown-linux-gnu\",\
                           \n  \"threads\": 16\n}\n"
-                    .into(),
+                .into(),
             result: result(),
             trace: trace(),
             envelope: envelope(),
@@ -76,10 +75,7 @@ struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         f64::from(u32::try_from(self.0 >> 33).unwrap()) / f64::from(u32::MAX >> 2) - 1.0
     }
 }
@@ -139,13 +135,11 @@ fn result() -> EstimationResult {
         seed: 7,
         data: DataSummary {
             path: "data/pendulum/run-03/free-decay-from-30-degrees.csv".into(),
-            digest: "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08"
-                .into(),
+            digest: "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
             origin: "measured".into(),
             samples: 2_481,
             clock: "uniform-index".into(),
-            clock_reason: "the time stamps jump by up to 41 ms, the sensor's own rate is steady"
-                .into(),
+            clock_reason: "the time stamps jump by up to 41 ms, the sensor's own rate is steady".into(),
             sample_rate_hz: 119.998_2,
             sample_rate_std_error_hz: 0.000_41,
             resolution: Some(1.533_980_8e-3),
@@ -186,8 +180,7 @@ fn result() -> EstimationResult {
             zeta_std_error: Some(0.000_205_3),
             zeta_interval_95: Some([0.008_343, 0.009_163]),
             reached: "converged".into(),
-            stopped_because: "the relative change of the loss stayed below 1e-12 for 20 steps"
-                .into(),
+            stopped_because: "the relative change of the loss stayed below 1e-12 for 20 steps".into(),
         },
         error_percent: 3.1e-7,
         tolerance_percent: 0.1,
@@ -195,29 +188,18 @@ fn result() -> EstimationResult {
         seconds: 12.34,
         steps: 2_060,
         parameters: 1_186,
-        seeds: [
-            (7, 3.1e-7),
-            (8, 1.2e-7),
-            (9, 4.4e-7),
-            (10, 2.7e-5),
-            (11, 8.9e-8),
-        ]
-        .into_iter()
-        .map(|(seed, error_percent)| SeedRow {
-            seed,
-            decay_rate: DECAY_RATE * (1.0 + error_percent / 100.0),
-            zeta: 0.008_753 * (1.0 + error_percent / 100.0),
-            error_percent,
-            reached: if seed == 10 {
-                "budget_spent"
-            } else {
-                "converged"
-            }
-            .into(),
-            steps: 2_060,
-            seconds: 12.34,
-        })
-        .collect(),
+        seeds: [(7, 3.1e-7), (8, 1.2e-7), (9, 4.4e-7), (10, 2.7e-5), (11, 8.9e-8)]
+            .into_iter()
+            .map(|(seed, error_percent)| SeedRow {
+                seed,
+                decay_rate: DECAY_RATE * (1.0 + error_percent / 100.0),
+                zeta: 0.008_753 * (1.0 + error_percent / 100.0),
+                error_percent,
+                reached: if seed == 10 { "budget_spent" } else { "converged" }.into(),
+                steps: 2_060,
+                seconds: 12.34,
+            })
+            .collect(),
         worst_error_percent: 2.7e-5,
         pipelines: vec![
             pipeline("paper", "uniform-index", true, 69, 0.008_753, 0.9645),
@@ -227,9 +209,7 @@ fn result() -> EstimationResult {
                 pipeline: "recommended".into(),
                 clock: "host".into(),
                 in_force: false,
-                outcome: PipelineOutcome::Failed {
-                    reason: "the time stamps are not increasing".into(),
-                },
+                outcome: PipelineOutcome::Failed { reason: "the time stamps are not increasing".into() },
             },
         ],
     }
@@ -299,17 +279,10 @@ fn write_samples() {
         .map(|step| TraceRow {
             step: step.into(),
             phase: format!("phase {} of a schedule with long names", step / 5_000),
-            loss: if step % 9_000 < 500 {
-                f64::NAN
-            } else {
-                1e-14 * f64::from(60_100 - step).powi(3)
-            },
+            loss: if step % 9_000 < 500 { f64::NAN } else { 1e-14 * f64::from(60_100 - step).powi(3) },
             decay_rate: DECAY_RATE + 1e-9 * f64::from(step % 977),
         })
         .collect();
-    let html = sample
-        .render()
-        .unwrap()
-        .replace("<details", "<details open");
+    let html = sample.render().unwrap().replace("<details", "<details open");
     std::fs::write(folder.join("stress.html"), html).unwrap();
 }

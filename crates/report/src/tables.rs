@@ -2,9 +2,7 @@
 
 use runs::result::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow};
 
-use crate::format::{
-    count, exact, fixed, interval, percent, quantity, significant, with_uncertainty,
-};
+use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
 
 /// A quantity and its value, both as they stand on the page.
 pub(crate) struct Fact {
@@ -13,10 +11,7 @@ pub(crate) struct Fact {
 }
 
 fn fact(name: &'static str, value: impl Into<String>) -> Fact {
-    Fact {
-        name,
-        value: value.into(),
-    }
+    Fact { name, value: value.into() }
 }
 
 /// One quantity as the oracle and as the estimator have it; `None` where it is not stated.
@@ -33,10 +28,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
         ComparisonRow {
             quantity: "damping ratio ζ ± standard error",
             oracle: Some(with_uncertainty(oracle.zeta, oracle.zeta_std_error)),
-            estimate: Some(with_uncertainty(
-                estimate.zeta,
-                estimate.zeta_std_error.unwrap_or(unknown),
-            )),
+            estimate: Some(with_uncertainty(estimate.zeta, estimate.zeta_std_error.unwrap_or(unknown))),
         },
         ComparisonRow {
             quantity: "95 % interval of ζ",
@@ -46,10 +38,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
         ComparisonRow {
             quantity: "decay rate λ ± standard error, 1/s",
             oracle: Some(with_uncertainty(oracle.decay_rate, oracle.std_error)),
-            estimate: Some(with_uncertainty(
-                estimate.decay_rate,
-                estimate.std_error.unwrap_or(unknown),
-            )),
+            estimate: Some(with_uncertainty(estimate.decay_rate, estimate.std_error.unwrap_or(unknown))),
         },
         ComparisonRow {
             quantity: "95 % interval of λ, 1/s",
@@ -88,22 +77,10 @@ pub(crate) fn envelope(result: &EstimationResult) -> Vec<Fact> {
         fact("Pipeline", envelope.pipeline.clone()),
         fact("Peaks", whole(envelope.peaks)),
         fact("Samples after interpolation", whole(envelope.samples)),
-        fact(
-            "Median period",
-            quantity(&significant(envelope.period_s, 6), "s"),
-        ),
-        fact(
-            "Angular frequency ω",
-            quantity(&significant(envelope.omega_rad_s, 6), "rad/s"),
-        ),
-        fact(
-            "Rest position removed",
-            quantity(&significant(envelope.offset, 4), &result.data.unit),
-        ),
-        fact(
-            "First peak after the first sample",
-            quantity(&significant(envelope.first_peak_s, 4), "s"),
-        ),
+        fact("Median period", quantity(&significant(envelope.period_s, 6), "s")),
+        fact("Angular frequency ω", quantity(&significant(envelope.omega_rad_s, 6), "rad/s")),
+        fact("Rest position removed", quantity(&significant(envelope.offset, 4), &result.data.unit)),
+        fact("First peak after the first sample", quantity(&significant(envelope.first_peak_s, 4), "s")),
     ]
 }
 
@@ -129,18 +106,9 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
 pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
     let oracle = &result.oracle;
     vec![
-        fact(
-            "Digits the arithmetic promises",
-            fixed(oracle.promised_digits, 1),
-        ),
-        fact(
-            "Condition number, columns scaled",
-            significant(oracle.condition, 3),
-        ),
-        fact(
-            "Autocorrelation of the residuals at lag one",
-            fixed(oracle.residual_autocorrelation, 3),
-        ),
+        fact("Digits the arithmetic promises", fixed(oracle.promised_digits, 1)),
+        fact("Condition number, columns scaled", significant(oracle.condition, 3)),
+        fact("Autocorrelation of the residuals at lag one", fixed(oracle.residual_autocorrelation, 3)),
     ]
 }
 
@@ -182,11 +150,7 @@ pub(crate) fn seeds(rows: &[SeedRow]) -> Vec<SeedView> {
     }
     // An error that is not a number is worse than any.
     let badness = |row: &SeedRow| {
-        if row.error_percent.is_nan() {
-            f64::INFINITY
-        } else {
-            row.error_percent
-        }
+        if row.error_percent.is_nan() { f64::INFINITY } else { row.error_percent }
     };
     let worst = rows
         .iter()
@@ -231,14 +195,7 @@ pub(crate) fn pipelines(rows: &[PipelineRow]) -> Vec<PipelineView<'_>> {
     rows.iter()
         .map(|row| {
             let (fit, reason) = match &row.outcome {
-                PipelineOutcome::Fit {
-                    peaks,
-                    omega_rad_s,
-                    decay_rate,
-                    zeta,
-                    zeta_std_error,
-                    r_squared,
-                } => (
+                PipelineOutcome::Fit { peaks, omega_rad_s, decay_rate, zeta, zeta_std_error, r_squared } => (
                     Some(FitView {
                         peaks: whole(*peaks),
                         omega: significant(*omega_rad_s, 6),

@@ -34,33 +34,19 @@ pub(crate) struct Verdict {
 
 pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     let who = in_a_sentence(&result.estimator_title);
-    let zeta = format::with_uncertainty(
-        result.estimate.zeta,
-        result.estimate.zeta_std_error.unwrap_or(f64::NAN),
-    );
+    let zeta =
+        format::with_uncertainty(result.estimate.zeta, result.estimate.zeta_std_error.unwrap_or(f64::NAN));
     let comparison = comparison(result);
     let steps = format::count(result.steps);
     match result.estimate.reached.as_str() {
         "converged" => Verdict {
             tone: if result.pass { Tone::Good } else { Tone::Bad },
-            label: if result.pass {
-                "Within tolerance"
-            } else {
-                "Outside tolerance"
-            },
+            label: if result.pass { "Within tolerance" } else { "Outside tolerance" },
             sentence: format!("The {who} finds a damping ratio of {zeta}; it {comparison}."),
         },
         "budget_spent" => Verdict {
-            tone: if result.pass {
-                Tone::Caution
-            } else {
-                Tone::Bad
-            },
-            label: if result.pass {
-                "Within tolerance, not converged"
-            } else {
-                "Not converged"
-            },
+            tone: if result.pass { Tone::Caution } else { Tone::Bad },
+            label: if result.pass { "Within tolerance, not converged" } else { "Not converged" },
             sentence: format!(
                 "The {who} used up its budget of steps ({steps} taken) before it converged. The \
                  damping ratio it had reached, {zeta}, {comparison}."
@@ -103,10 +89,7 @@ fn comparison(result: &EstimationResult) -> String {
     let distance = if result.error_percent == 0.0 {
         format!("equals that of {ORACLE} to the last digit")
     } else {
-        format!(
-            "differs from {ORACLE} by {}",
-            format::percent(result.error_percent)
-        )
+        format!("differs from {ORACLE} by {}", format::percent(result.error_percent))
     };
     if result.error_percent > result.tolerance_percent {
         return format!("{distance}, more than the stated {tolerance}");
@@ -119,9 +102,7 @@ fn comparison(result: &EstimationResult) -> String {
              differs by {worst}, and every seed has to be within"
         )
     } else if seeds > 1 {
-        format!(
-            "{distance}, within the stated {tolerance} (the worst of its {seeds} seeds by {worst})"
-        )
+        format!("{distance}, within the stated {tolerance} (the worst of its {seeds} seeds by {worst})")
     } else {
         format!("{distance}, within the stated {tolerance}")
     }
@@ -151,11 +132,9 @@ pub(crate) struct Origin {
 
 pub(crate) fn origin(stated: &str) -> Origin {
     match stated {
-        "measured" => Origin {
-            class: "measured",
-            label: "Measured record",
-            note: "Recorded from an oscillator.",
-        },
+        "measured" => {
+            Origin { class: "measured", label: "Measured record", note: "Recorded from an oscillator." }
+        }
         "simulated" => Origin {
             class: "simulated",
             label: "Simulated record",
@@ -175,11 +154,7 @@ pub(crate) fn warnings(result: &EstimationResult) -> Vec<String> {
     let mut warnings = Vec::new();
     let correlation = result.oracle.residual_autocorrelation;
     if correlation.abs() > 0.5 {
-        let consequence = if correlation > 0.0 {
-            "are therefore too small"
-        } else {
-            "therefore do not hold"
-        };
+        let consequence = if correlation > 0.0 { "are therefore too small" } else { "therefore do not hold" };
         warnings.push(format!(
             "Neighboring residuals are correlated (lag-one autocorrelation {}): the standard \
              errors and intervals on this page assume independent residuals and {consequence}.",
@@ -225,10 +200,7 @@ mod tests {
         });
         assert_eq!(label, "Outside tolerance");
         assert!(text.starts_with("The PINN finds"), "{text}");
-        assert!(
-            text.ends_with("by 2.3 %, more than the stated 0.1 %."),
-            "{text}"
-        );
+        assert!(text.ends_with("by 2.3 %, more than the stated 0.1 %."), "{text}");
     }
 
     #[test]
@@ -237,10 +209,7 @@ mod tests {
         result.pass = false;
         result.worst_error_percent = 0.25;
         let text = verdict(&result).sentence.replace('\u{a0}', " ");
-        assert!(
-            text.contains("but the worst of its 5 seeds differs by 0.25 %"),
-            "{text}"
-        );
+        assert!(text.contains("but the worst of its 5 seeds differs by 0.25 %"), "{text}");
     }
 
     #[test]

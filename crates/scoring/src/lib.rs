@@ -18,9 +18,12 @@ pub fn passes(error_percent: f64, tolerance_percent: f64) -> bool {
 /// The largest error; what is not a number counts as the largest of all.
 #[must_use]
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
-    errors.into_iter().fold(0.0, |worst: f64, error| {
-        if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) }
-    })
+    errors.into_iter().fold(
+        0.0,
+        |worst: f64, error| {
+            if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) }
+        },
+    )
 }
 
 #[cfg(test)]

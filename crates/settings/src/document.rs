@@ -105,11 +105,7 @@ impl Document {
             .ok()
             .filter(|value| !matches!(value, Value::Table(_)))
             .unwrap_or_else(|| Value::String(text.to_owned()));
-        self.set(Leaf {
-            key: key.to_owned(),
-            value,
-            origin: Origin::Override(argument.to_owned()),
-        });
+        self.set(Leaf { key: key.to_owned(), value, origin: Origin::Override(argument.to_owned()) });
         Ok(())
     }
 
@@ -120,12 +116,7 @@ impl Document {
         }
     }
 
-    fn collect(
-        &mut self,
-        text: &str,
-        prefix: &str,
-        table: &DeTable<'_>,
-    ) -> Result<(), SettingsError> {
+    fn collect(&mut self, text: &str, prefix: &str, table: &DeTable<'_>) -> Result<(), SettingsError> {
         for (name, value) in table {
             let key = if prefix.is_empty() {
                 name.get_ref().to_string()
@@ -160,9 +151,9 @@ fn plain(value: &DeValue<'_>) -> Result<Value, String> {
             i64::from_str_radix(number.as_str(), number.radix())
                 .map_err(|_| format!("`{number}` is no 64-bit whole number"))?,
         ),
-        DeValue::Float(number) => Value::Float(
-            number.as_str().parse().map_err(|_| format!("`{number}` is not a number"))?,
-        ),
+        DeValue::Float(number) => {
+            Value::Float(number.as_str().parse().map_err(|_| format!("`{number}` is not a number"))?)
+        }
         DeValue::Array(entries) => {
             Value::Array(entries.iter().map(|entry| plain(entry.get_ref())).collect::<Result<_, _>>()?)
         }

@@ -77,7 +77,9 @@ pub enum SettingsError {
         argument: String,
     },
     /// The checked table does not fit the struct that reads it: a fault of the program.
-    #[error("section `{section}` does not fit its declaration: {problem} (a fault of the program, please report it)")]
+    #[error(
+        "section `{section}` does not fit its declaration: {problem} (a fault of the program, please report it)"
+    )]
     Declaration {
         /// The section.
         section: String,

@@ -109,11 +109,11 @@ pub struct Field {
 
 /// A table of a configuration and the keys it may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Section {
+pub struct Section<'a> {
     /// The table's dotted name; empty for the keys at the top.
     pub name: &'static str,
     /// The keys.
-    pub fields: &'static [Field],
+    pub fields: &'a [Field],
 }
 
 impl Kind {
@@ -123,9 +123,7 @@ impl Kind {
     /// A sentence that says what was expected, for instance `a number from 0 to 1`.
     pub fn admit(&self, value: &Value) -> Result<Value, String> {
         let admitted = match (self, value) {
-            (Self::Boolean, Value::Boolean(_)) | (Self::Text, Value::String(_)) => {
-                Some(value.clone())
-            }
+            (Self::Boolean, Value::Boolean(_)) | (Self::Text, Value::String(_)) => Some(value.clone()),
             (&Self::Integer { min, max }, &Value::Integer(number)) => {
                 (min..=max).contains(&number).then(|| value.clone())
             }
@@ -135,18 +133,16 @@ impl Kind {
             }
             (&Self::Integers { min, max, at_least, at_most }, Value::Array(entries)) => {
                 let fits = (at_least..=at_most).contains(&entries.len())
-                    && entries.iter().all(
-                        |entry| matches!(entry, Value::Integer(n) if (min..=max).contains(n)),
-                    );
+                    && entries
+                        .iter()
+                        .all(|entry| matches!(entry, Value::Integer(n) if (min..=max).contains(n)));
                 fits.then(|| value.clone())
             }
-            (&Self::Floats { min, max, at_least, at_most }, Value::Array(entries)) => {
-                (at_least..=at_most)
-                    .contains(&entries.len())
-                    .then(|| entries.iter().map(|entry| float_within(entry, min, max)).collect())
-                    .flatten()
-                    .map(Value::Array)
-            }
+            (&Self::Floats { min, max, at_least, at_most }, Value::Array(entries)) => (at_least..=at_most)
+                .contains(&entries.len())
+                .then(|| entries.iter().map(|entry| float_within(entry, min, max)).collect())
+                .flatten()
+                .map(Value::Array),
             _ => None,
         };
         admitted.ok_or_else(|| self.expected())

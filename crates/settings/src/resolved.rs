@@ -12,7 +12,7 @@ pub struct Setting {
     /// The section's dotted name; empty at the top.
     pub section: &'static str,
     /// The declaration.
-    pub field: &'static Field,
+    pub field: Field,
     /// The value in force; `None` for an optional key that was not given.
     pub value: Option<Value>,
     /// Where the value comes from.
@@ -31,10 +31,10 @@ impl Resolved {
     /// # Errors
     /// [`SettingsError::UnknownKey`], [`SettingsError::BadValue`] and [`SettingsError::Missing`], the
     /// first that is met in the order of the document.
-    pub fn new(document: &Document, sections: &[Section]) -> Result<Self, SettingsError> {
+    pub fn new(document: &Document, sections: &[Section<'_>]) -> Result<Self, SettingsError> {
         let mut settings: Vec<Setting> = sections
             .iter()
-            .flat_map(|section| section.fields.iter().map(move |field| (section.name, field)))
+            .flat_map(|section| section.fields.iter().map(move |&field| (section.name, field)))
             .map(|(section, field)| Setting {
                 section,
                 field,
@@ -59,9 +59,9 @@ impl Resolved {
             setting.value = Some(value);
             setting.origin = leaf.origin.clone();
         }
-        let missing = settings.iter().find(|setting| {
-            setting.value.is_none() && setting.field.default == crate::Default::Required
-        });
+        let missing = settings
+            .iter()
+            .find(|setting| setting.value.is_none() && setting.field.default == crate::Default::Required);
         match missing {
             Some(setting) => Err(SettingsError::Missing {
                 file: document.file().to_owned(),
@@ -147,11 +147,7 @@ impl Setting {
 fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError {
     let keys: Vec<String> = settings.iter().map(Setting::key).collect();
     let section = key.rsplit_once('.').map_or("", |(section, _)| section);
-    let known = settings
-        .iter()
-        .filter(|setting| setting.section == section)
-        .map(Setting::key)
-        .collect();
+    let known = settings.iter().filter(|setting| setting.section == section).map(Setting::key).collect();
     SettingsError::UnknownKey { origin, nearest: nearest(key, &keys), key: key.to_owned(), known }
 }
 

@@ -3,7 +3,7 @@
 use crate::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
 use serde::Deserialize;
 
-const SECTIONS: &[Section] = &[
+const SECTIONS: &[Section<'static>] = &[
     Section {
         name: "",
         fields: &[Field {
@@ -122,10 +122,7 @@ fn a_bad_value_names_what_was_expected() {
         message("[fit]\nduration = 1\nmode = 'quick'", &[]),
         "a.toml:3:1: `fit.mode` is \"quick\"; expected one of \"slow\", \"fast\""
     );
-    assert_eq!(
-        message("seed = -1", &[]),
-        "a.toml:1:1: `seed` is -1; expected a whole number from 0 up"
-    );
+    assert_eq!(message("seed = -1", &[]), "a.toml:1:1: `seed` is -1; expected a whole number from 0 up");
 }
 
 #[test]

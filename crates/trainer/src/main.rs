@@ -1,1 +1,59 @@
-fn main() {}
+//! The command line: registry and wiring.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod cli;
+mod console;
+mod environment;
+mod error;
+mod estimate;
+mod interrupt;
+mod list;
+mod progress;
+mod registry;
+mod rerender;
+mod summary;
+
+use clap::Parser;
+use cli::{Arguments, Command};
+use error::TrainerError;
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    match run(Arguments::parse()) {
+        Ok(outcome) => ExitCode::from(outcome.exit_code()),
+        Err(error) => {
+            console::error(&error.to_string());
+            ExitCode::from(error.exit_code())
+        }
+    }
+}
+
+/// How a command that gave a result ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Outcome {
+    /// Done, and every stated check holds.
+    Done,
+    /// Done, but a stated check failed.
+    CheckFailed,
+    /// Stopped on request; the best so far is saved.
+    Interrupted,
+}
+
+impl Outcome {
+    fn exit_code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::CheckFailed => 1,
+            Self::Interrupted => 130,
+        }
+    }
+}
+
+fn run(arguments: Arguments) -> Result<Outcome, TrainerError> {
+    match arguments.command {
+        Some(Command::List { what, output }) => list::list(what, output),
+        Some(Command::Report { run, output }) => rerender::rerender(&run, output),
+        None => estimate::estimate(&arguments.experiment),
+    }
+}

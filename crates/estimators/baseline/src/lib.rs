@@ -30,10 +30,7 @@ impl Estimator for Baseline {
             decay_rate: 0.0,
             log_amplitude: mean,
             uncertainty: None,
-            stop: Stop {
-                reached: Reached::Converged,
-                because: "there is nothing to train".to_owned(),
-            },
+            stop: Stop { reached: Reached::Converged, because: "there is nothing to train".to_owned() },
             steps: 0,
             parameters: 1,
             fitted_log_amplitudes: vec![mean; logs.len()],

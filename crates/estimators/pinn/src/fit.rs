@@ -4,13 +4,11 @@ use crate::config::PinnConfig;
 use crate::objective::Objective;
 use crate::scaling::Scaling;
 use envelope::Envelope;
-use estimator::{
-    Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty,
-};
+use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use neural::{
-    AffineSkipNetwork, LeastSquares, LevenbergMarquardt, Minimum, NamedTensor, StopReason, device,
-    tensor, to_safetensors, values,
+    AffineSkipNetwork, LeastSquares, LevenbergMarquardt, Minimum, NamedTensor, StopReason, device, tensor,
+    to_safetensors, values,
 };
 use rand::RngExt;
 use std::ops::ControlFlow;
@@ -85,9 +83,9 @@ impl PinnConfig {
     }
 }
 
-/// λ in scaled units: the last parameter.
+/// λ's entry of a vector of parameters, λ in scaled units: the last.
 fn rate_of(parameters: &DVector<f64>) -> f64 {
-    parameters.iter().last().copied().unwrap_or(f64::NAN)
+    parameters.iter().next_back().copied().unwrap_or(f64::NAN)
 }
 
 fn stop(minimum: &Minimum) -> Stop {
@@ -113,11 +111,7 @@ fn stop(minimum: &Minimum) -> Stop {
     Stop { reached, because }
 }
 
-fn describe(
-    scaling: &Scaling,
-    objective: &Objective<'_>,
-    minimum: &Minimum,
-) -> Result<Estimate, FitError> {
+fn describe(scaling: &Scaling, objective: &Objective<'_>, minimum: &Minimum) -> Result<Estimate, FitError> {
     let (network, rate) = objective.model(&minimum.parameters)?;
     let column = tensor(objective.times.to_vec(), [objective.times.len(), 1], objective.device);
     let fitted: Vec<f64> =
@@ -133,10 +127,7 @@ fn describe(
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,
-        model: Some(ModelFile {
-            name: "weights.safetensors".to_owned(),
-            bytes: to_safetensors(&tensors)?,
-        }),
+        model: Some(ModelFile { name: "weights.safetensors".to_owned(), bytes: to_safetensors(&tensors)? }),
     })
 }
 
@@ -144,7 +135,7 @@ fn describe(
 /// loss's Gauss–Newton matrix over the residual variance, the physics term acting as a prior.
 ///
 /// The degrees of freedom are the peaks minus the trace of the map from data to fitted values, so that
-/// a network that bends pays for it. `None` before training, where there is no minimum to expand about.
+/// a network that bends pays for it. `None` where the peaks leave no degree of freedom.
 ///
 /// Reference: MacKay, Neural Computation 4 (1992) 448.
 fn uncertainty(
@@ -154,13 +145,10 @@ fn uncertainty(
 ) -> Result<Option<Uncertainty>, FitError> {
     let linearized = objective.linearize(parameters)?;
     let jacobian = &linearized.jacobian;
-    let mut precision = jacobian.tr_mul(jacobian);
+    let seen = jacobian.tr_mul(jacobian);
     // Directions that neither data nor physics see keep a wide prior.
-    let ridge = 1e-12 * precision.diagonal().max();
-    for at in 0..precision.nrows() {
-        precision[(at, at)] += ridge;
-    }
-    let Some(factor) = Cholesky::new(precision) else {
+    let prior = DMatrix::from_diagonal_element(seen.nrows(), seen.ncols(), 1e-12 * seen.diagonal().max());
+    let Some(factor) = Cholesky::new(seen + prior) else {
         return Ok(None);
     };
     let peaks = objective.times.len();
@@ -173,10 +161,10 @@ fn uncertainty(
     // The data rows carry 1/√peaks each; undo it for a variance per peak.
     let mean_square: f64 = linearized.residuals.iter().take(peaks).map(|r| r * r).sum();
     let variance = mean_square * peaks as f64 / degrees;
-    let last = parameters.len() - 1;
-    let mut unit = DVector::zeros(parameters.len());
-    unit[last] = 1.0;
-    let rate_variance = factor.solve(&unit)[last] * variance / peaks as f64;
+    // λ is the last parameter: its variance is the last entry of the inverse's last column.
+    let weights = parameters.len() - 1;
+    let unit = DVector::from_fn(parameters.len(), |at, _| if at == weights { 1.0 } else { 0.0 });
+    let rate_variance = rate_of(&factor.solve(&unit)) * variance / peaks as f64;
     let decay_rate = scaling.rate(rate_of(parameters));
     Ok(Uncertainty::students_t(decay_rate, scaling.rate(rate_variance.sqrt()), degrees))
 }
@@ -200,11 +188,8 @@ mod tests {
     fn envelope() -> Envelope {
         let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
         let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
-        let logs = times
-            .iter()
-            .enumerate()
-            .map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i))
-            .collect();
+        let logs =
+            times.iter().enumerate().map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i)).collect();
         Envelope::new(times, logs, 21.8).unwrap()
     }
 
@@ -232,7 +217,6 @@ mod tests {
         for seed in 0..3 {
             let estimate = fit(seed, None, &Silent);
             let off = (estimate.decay_rate / rate - 1.0).abs();
-            println!("seed {seed}: {off:.1e} {:?} {}", estimate.stop, estimate.steps);
             assert_eq!(estimate.stop.reached, Reached::Converged, "{:?}", estimate.stop);
             assert!(off < 1e-6, "{off:e}");
             let stated = estimate.uncertainty.unwrap().std_error;

@@ -11,10 +11,7 @@
 //!
 //! Reference: Raissi, Perdikaris, Karniadakis, J. Comput. Phys. 378 (2019) 686.
 
-#![cfg_attr(
-    test,
-    allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing)
-)]
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod config;
 mod fit;

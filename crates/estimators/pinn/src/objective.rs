@@ -67,9 +67,7 @@ impl LeastSquares for Objective<'_> {
         jacobian
             .view_mut((below, 0), (self.collocation.len(), weights))
             .copy_from(&(physics.jacobian * self.physics_scale()));
-        jacobian
-            .view_mut((below, weights), (self.collocation.len(), 1))
-            .fill(self.physics_scale());
+        jacobian.view_mut((below, weights), (self.collocation.len(), 1)).fill(self.physics_scale());
         let residuals = self.assemble(&data.values, &physics.values, rate);
         Ok(Linearized { residuals, jacobian })
     }

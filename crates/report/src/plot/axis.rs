@@ -27,18 +27,12 @@ pub struct Axis {
 impl Axis {
     /// A linear axis.
     pub fn linear(label: impl Into<String>) -> Self {
-        Self {
-            label: label.into(),
-            scale: Scale::Linear,
-        }
+        Self { label: label.into(), scale: Scale::Linear }
     }
 
     /// A logarithmic axis.
     pub fn log(label: impl Into<String>) -> Self {
-        Self {
-            label: label.into(),
-            scale: Scale::Log,
-        }
+        Self { label: label.into(), scale: Scale::Log }
     }
 
     /// Whether a value has a place on an axis of this scale.
@@ -86,21 +80,13 @@ impl Ticks {
         // An axis across values that agree to six digits would have to label every tick with
         // more digits than there is room for.
         let least = 1e-6 * low.abs().max(high.abs());
-        let (low, high) = if high - low < least {
-            (low - least / 2.0, high + least / 2.0)
-        } else {
-            (low, high)
-        };
+        let (low, high) =
+            if high - low < least { (low - least / 2.0, high + least / 2.0) } else { (low, high) };
         let span = if high > low { high - low } else { 1.0 };
         let step = round_step(span / target);
         let first = (low / step).floor();
         let last = (high / step).ceil();
-        Self {
-            scale: Scale::Linear,
-            low: first * step,
-            step,
-            ends: (0.0, (last - first).max(1.0)),
-        }
+        Self { scale: Scale::Linear, low: first * step, step, ends: (0.0, (last - first).max(1.0)) }
     }
 
     fn log(low: f64, high: f64, target: f64) -> Self {
@@ -110,12 +96,7 @@ impl Ticks {
         let step = (decades / target).ceil().max(1.0);
         let first = (low / step).floor();
         let last = (high / step).ceil();
-        Self {
-            scale: Scale::Log,
-            low: first * step,
-            step,
-            ends: (0.0, (last - first).max(1.0)),
-        }
+        Self { scale: Scale::Log, low: first * step, step, ends: (0.0, (last - first).max(1.0)) }
     }
 
     /// The same ticks on an axis that ends just beyond the values rather than at a tick. For a
@@ -162,10 +143,8 @@ impl Ticks {
 fn round_step(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
     let mantissa = least / power;
-    let rounded = [1.0, 2.0, 5.0]
-        .into_iter()
-        .find(|candidate| mantissa <= candidate * (1.0 + 1e-9))
-        .unwrap_or(10.0);
+    let rounded =
+        [1.0, 2.0, 5.0].into_iter().find(|candidate| mantissa <= candidate * (1.0 + 1e-9)).unwrap_or(10.0);
     rounded * power
 }
 
@@ -182,14 +161,8 @@ mod tests {
 
     #[test]
     fn linear_ticks_enclose_the_values_in_round_steps() {
-        assert_eq!(
-            labels(&Axis::linear("t"), &[0.0, 19.6]),
-            ["0", "5", "10", "15", "20"]
-        );
-        assert_eq!(
-            labels(&Axis::linear("y"), &[-4.13, -0.21]),
-            ["−5", "−4", "−3", "−2", "−1", "0"]
-        );
+        assert_eq!(labels(&Axis::linear("t"), &[0.0, 19.6]), ["0", "5", "10", "15", "20"]);
+        assert_eq!(labels(&Axis::linear("y"), &[-4.13, -0.21]), ["−5", "−4", "−3", "−2", "−1", "0"]);
     }
 
     #[test]
@@ -202,24 +175,13 @@ mod tests {
 
     #[test]
     fn one_value_and_nearly_equal_values_still_span_an_axis() {
-        for values in [
-            &[0.0][..],
-            &[0.190_961],
-            &[0.190_961, 0.190_961 + 1e-14],
-            &[1e140],
-        ] {
-            let ticks = Axis::linear("y")
-                .ticks(values.iter().copied(), 5.0)
-                .unwrap();
+        for values in [&[0.0][..], &[0.190_961], &[0.190_961, 0.190_961 + 1e-14], &[1e140]] {
+            let ticks = Axis::linear("y").ticks(values.iter().copied(), 5.0).unwrap();
             for value in values {
                 let place = ticks.place(*value);
                 assert!((-1e-6..=ticks.ends.1 + 1e-6).contains(&place), "{values:?}");
             }
-            assert!(
-                ticks.label(0.0).chars().count() < 24,
-                "{}",
-                ticks.label(0.0)
-            );
+            assert!(ticks.label(0.0).chars().count() < 24, "{}", ticks.label(0.0));
         }
     }
 
@@ -241,9 +203,6 @@ mod tests {
         assert!(axis.ticks([f64::NAN, -1.0, 0.0].into_iter(), 5.0).is_none());
         assert!(axis.ticks([f64::NAN, 2.0].into_iter(), 5.0).is_some());
         let axis = Axis::linear("y");
-        assert!(
-            axis.ticks([f64::INFINITY, 1e300].into_iter(), 5.0)
-                .is_none()
-        );
+        assert!(axis.ticks([f64::INFINITY, 1e300].into_iter(), 5.0).is_none());
     }
 }

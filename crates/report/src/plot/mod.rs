@@ -142,10 +142,7 @@ impl Plot {
     fn legend(&self) -> Vec<LegendEntry> {
         let mut entries: Vec<LegendEntry> = Vec::new();
         for series in &self.series {
-            let entry = LegendEntry {
-                label: series.label.clone(),
-                swatch: svg::swatch(series),
-            };
+            let entry = LegendEntry { label: series.label.clone(), swatch: svg::swatch(series) };
             if !series.points.is_empty() && !entries.contains(&entry) {
                 entries.push(entry);
             }
@@ -162,12 +159,7 @@ mod tests {
         Plot {
             x: Axis::linear("step"),
             y: Axis::log("loss"),
-            series: vec![Series {
-                label: "one".into(),
-                hue: Hue::Estimate,
-                mark: Mark::Line,
-                points,
-            }],
+            series: vec![Series { label: "one".into(), hue: Hue::Estimate, mark: Mark::Line, points }],
             shaded: vec![],
         }
     }
@@ -213,11 +205,7 @@ mod tests {
     #[test]
     fn many_short_runs_are_thinned_together() {
         let points = (0..100_000).map(|i| {
-            let height = if i % 1_000 == 0 {
-                f64::NAN
-            } else {
-                f64::from(1 + i % 7)
-            };
+            let height = if i % 1_000 == 0 { f64::NAN } else { f64::from(1 + i % 7) };
             (f64::from(i), height)
         });
         let drawing = plot(points.collect()).draw("").unwrap();

@@ -58,26 +58,15 @@ const DASHES: &str = "8 8";
 const DOTS: &str = "2 3";
 
 /// `runs` holds the points of each series of the plot, in unbroken stretches.
-pub(super) fn render(
-    plot: &Plot,
-    runs: &[Vec<Run>],
-    canvas: &Canvas,
-    description: &str,
-) -> Option<String> {
+pub(super) fn render(plot: &Plot, runs: &[Vec<Run>], canvas: &Canvas, description: &str) -> Option<String> {
     let points = || runs.iter().flatten().flatten();
-    let x_ticks = plot
-        .x
-        .ticks(points().map(|p| p.0), canvas.x_ticks)?
-        .close_to(points().map(|p| p.0));
+    let x_ticks = plot.x.ticks(points().map(|p| p.0), canvas.x_ticks)?.close_to(points().map(|p| p.0));
     let y_ticks = plot.y.ticks(points().map(|p| p.1), canvas.y_ticks)?;
 
     let mut layers = Vec::new();
     for (series, runs) in plot.series.iter().zip(runs) {
         for run in runs {
-            let placed = run
-                .iter()
-                .map(|(x, y)| (x_ticks.place(*x), y_ticks.place(*y)))
-                .collect();
+            let placed = run.iter().map(|(x, y)| (x_ticks.place(*x), y_ticks.place(*y))).collect();
             layers.push(layer(series, placed, &x_ticks, canvas));
         }
     }
@@ -97,9 +86,7 @@ pub(super) fn render(
     // kuva numbers its clip paths with a counter of the process, which would make the text depend
     // on what was drawn before. Nothing here lies outside the axes, so nothing is to be clipped.
     scene.defs.clear();
-    scene
-        .elements
-        .retain(|e| !matches!(e, Primitive::ClipStart { .. } | Primitive::ClipEnd));
+    scene.elements.retain(|e| !matches!(e, Primitive::ClipStart { .. } | Primitive::ClipEnd));
     let svg = SvgBackend::new().render_scene(&scene);
 
     // kuva's opening tag fixes the size and the font; the page is to choose both.
@@ -153,10 +140,7 @@ fn layer(series: &Series, points: Run, x: &Ticks, canvas: &Canvas) -> KuvaPlot {
         vec![(x.ends.0, height), (x.ends.1, height)]
     };
     let line = |points: Run, width: f64, dashes: Option<&str>| {
-        let line = LinePlot::new()
-            .with_data(points)
-            .with_color(series.hue.light())
-            .with_stroke_width(width);
+        let line = LinePlot::new().with_data(points).with_color(series.hue.light()).with_stroke_width(width);
         KuvaPlot::Line(match dashes {
             Some(dashes) => line.with_line_style(kuva::plot::LineStyle::Custom(dashes.to_owned())),
             None => line,
@@ -211,8 +195,5 @@ fn plain(label: &str) -> String {
 }
 
 fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
-        .replace('"', "&quot;")
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

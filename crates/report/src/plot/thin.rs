@@ -10,16 +10,11 @@ pub(crate) fn thin(points: &[(f64, f64)], most: usize) -> Vec<(f64, f64)> {
     let mut kept = Vec::with_capacity(most + 4);
     kept.extend(points.first());
     for chunk in points.chunks(stretch) {
-        let by_height =
-            |a: &(usize, &(f64, f64)), b: &(usize, &(f64, f64))| a.1.1.total_cmp(&b.1.1);
+        let by_height = |a: &(usize, &(f64, f64)), b: &(usize, &(f64, f64))| a.1.1.total_cmp(&b.1.1);
         let low = chunk.iter().enumerate().min_by(by_height);
         let high = chunk.iter().enumerate().max_by(by_height);
         if let (Some((low_at, low)), Some((high_at, high))) = (low, high) {
-            let (first, second) = if low_at <= high_at {
-                (low, high)
-            } else {
-                (high, low)
-            };
+            let (first, second) = if low_at <= high_at { (low, high) } else { (high, low) };
             kept.push(*first);
             kept.push(*second);
         }

@@ -1,0 +1,203 @@
+//! From a document to an experiment.
+
+use crate::schema::{SECTIONS, estimator_name_field};
+use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
+use estimator::{Entry, Estimator};
+use record::{
+    Clock, ClockChoice, CsvColumns, Format, Origin, Quantity, ReadOptions, Record, Statements, TimeUnit, Unit,
+};
+use serde::Deserialize;
+use settings::{Document, Field, Resolved, Section, SettingsError};
+use toml::Value;
+
+/// An experiment with every key checked.
+pub struct Experiment {
+    /// Start of the run folder's name.
+    pub name: String,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// The record.
+    pub data: DataSettings,
+    /// The way to its envelope.
+    pub envelope: EnvelopeSettings,
+    /// The fits.
+    pub fit: FitSettings,
+    /// The registry's line of the estimator.
+    pub entry: Entry,
+    /// The estimator, built from its settings.
+    pub estimator: Box<dyn Estimator>,
+    /// Every value in force.
+    pub resolved: Resolved,
+}
+
+#[derive(Deserialize)]
+struct Top {
+    name: Option<String>,
+    seed: u64,
+}
+
+/// The section `data`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DataSettings {
+    /// The record file.
+    pub path: String,
+    format: Format,
+    quantity: Quantity,
+    /// Which clock to believe.
+    pub clock: ClockChoice,
+    time: Option<String>,
+    angle: Option<String>,
+    input: Option<String>,
+    unit: Option<Unit>,
+    time_unit: TimeUnit,
+    sample_rate_hz: Option<f64>,
+    origin: Option<Origin>,
+    stated_rate_hz: Option<f64>,
+    stated_samples: Option<usize>,
+}
+
+impl DataSettings {
+    /// How to read the file.
+    #[must_use]
+    pub fn read_options(&self) -> ReadOptions {
+        ReadOptions {
+            format: self.format,
+            columns: CsvColumns {
+                time: self.time.clone(),
+                angle: self.angle.clone(),
+                input: self.input.clone(),
+                unit: self.unit,
+                time_unit: self.time_unit,
+                sample_rate_hz: self.sample_rate_hz,
+            },
+            quantity: self.quantity,
+        }
+    }
+
+    /// What the configuration states of the record.
+    #[must_use]
+    pub fn statements(&self) -> Statements {
+        Statements { origin: self.origin, sample_rate_hz: self.stated_rate_hz, samples: self.stated_samples }
+    }
+}
+
+/// Which pipeline.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Pipeline {
+    /// [`PaperPipeline`].
+    Paper,
+    /// [`RecommendedPipeline`].
+    Recommended,
+}
+
+impl Pipeline {
+    /// The name as configurations and results write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Recommended => "recommended",
+        }
+    }
+}
+
+/// The sections `envelope` and below.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EnvelopeSettings {
+    /// The pipeline in force.
+    pub pipeline: Pipeline,
+    /// Settings of the paper's.
+    pub paper: PaperPipeline,
+    /// Settings of the recommended one.
+    pub recommended: RecommendedPipeline,
+}
+
+impl EnvelopeSettings {
+    /// Sends a record through a pipeline.
+    ///
+    /// # Errors
+    /// As the pipeline.
+    pub fn extract(
+        &self,
+        pipeline: Pipeline,
+        record: &Record,
+        clock: &Clock,
+    ) -> Result<Extraction, EnvelopeError> {
+        match pipeline {
+            Pipeline::Paper => self.paper.extract(record, clock),
+            Pipeline::Recommended => self.recommended.extract(record, clock),
+        }
+    }
+}
+
+/// The section `fit`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct FitSettings {
+    /// How many seeds to fit.
+    pub seeds: u64,
+    /// Cap on the training steps.
+    pub max_steps: Option<u64>,
+    /// Largest error against the oracle that passes, in percent.
+    pub tolerance_percent: f64,
+}
+
+#[derive(Deserialize)]
+struct PipelineName {
+    pipeline: Pipeline,
+}
+
+/// Checks a document, overrides applied, against the schema and the registry.
+///
+/// # Errors
+/// [`SettingsError`], with file, line and column or the override that caused it.
+pub fn resolve(document: &Document, registry: &[Entry]) -> Result<Experiment, SettingsError> {
+    let entry = find_estimator(document, registry)?;
+    let fields: Vec<Field> =
+        std::iter::once(estimator_name_field()).chain(entry.fields.iter().copied()).collect();
+    let sections: Vec<Section<'_>> =
+        SECTIONS.iter().copied().chain([Section { name: "estimator", fields: &fields }]).collect();
+    let resolved = Resolved::new(document, &sections)?;
+    let top: Top = resolved.section("")?;
+    let pipeline: PipelineName = resolved.section("envelope")?;
+    Ok(Experiment {
+        name: top.name.unwrap_or_else(|| entry.id.to_owned()),
+        seed: top.seed,
+        data: resolved.section("data")?,
+        envelope: EnvelopeSettings {
+            pipeline: pipeline.pipeline,
+            paper: resolved.section("envelope.paper")?,
+            recommended: resolved.section("envelope.recommended")?,
+        },
+        fit: resolved.section("fit")?,
+        estimator: (entry.build)(&resolved)?,
+        entry,
+        resolved,
+    })
+}
+
+/// The registry's line that `estimator.name` names. What is wrong otherwise with the key is left to the
+/// check of all keys: without a line the first of the registry stands in.
+fn find_estimator(document: &Document, registry: &[Entry]) -> Result<Entry, SettingsError> {
+    let ids = || registry.iter().map(|entry| entry.id.to_owned()).collect::<Vec<_>>();
+    let leaf = document.get("estimator.name");
+    let Some(leaf) = leaf else {
+        return Err(SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: "estimator.name".to_owned(),
+            meaning: estimator_name_field().meaning.to_owned(),
+            expected: format!("one of {}", ids().join(", ")),
+        });
+    };
+    let found = match &leaf.value {
+        Value::String(name) => name.clone(),
+        other => other.to_string(),
+    };
+    registry
+        .iter()
+        .copied()
+        .find(|entry| entry.id == found)
+        .ok_or_else(|| SettingsError::unknown_name(leaf.origin.clone(), "estimator", &found, ids()))
+}

@@ -1,0 +1,234 @@
+//! The configuration keys of an experiment, apart from the estimator's own.
+
+use record::{ClockChoice, Format, Origin, TimeUnit, Unit};
+use settings::{Default, Field, Kind, Section};
+
+/// A field without unit and source, to be refined by struct update.
+const PLAIN: Field =
+    Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+/// Every section but the estimator's.
+pub const SECTIONS: &[Section<'static>] = &[
+    Section { name: "", fields: TOP },
+    Section { name: "data", fields: DATA },
+    Section { name: "envelope", fields: ENVELOPE },
+    Section { name: "envelope.paper", fields: PAPER },
+    Section { name: "envelope.recommended", fields: RECOMMENDED },
+    Section { name: "fit", fields: FIT },
+];
+
+/// The key that names the estimator, within the section `estimator`.
+#[must_use]
+pub const fn estimator_name_field() -> Field {
+    Field {
+        key: "name",
+        default: Default::Required,
+        meaning: "The estimator, as `trainer list estimators` names it.",
+        ..PLAIN
+    }
+}
+
+const TOP: &[Field] = &[
+    Field {
+        key: "task",
+        kind: Kind::Choice(&["estimate"]),
+        default: Default::Text("estimate"),
+        meaning: "What to do: fit one estimator to one record.",
+        ..PLAIN
+    },
+    Field {
+        key: "name",
+        default: Default::Absent,
+        meaning: "Start of the run folder's name; left open, the estimator's.",
+        ..PLAIN
+    },
+    Field {
+        key: "seed",
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        default: Default::Integer(0),
+        meaning: "Root of every random draw; each part draws from its own branch by name.",
+        ..PLAIN
+    },
+];
+
+const DATA: &[Field] = &[
+    Field {
+        key: "path",
+        default: Default::Text("experiments/default-record/record.csv"),
+        meaning: "The record file; a relative path starts from the current folder.",
+        source: "the simulated record that the project ships",
+        ..PLAIN
+    },
+    Field {
+        key: "format",
+        kind: Kind::Choice(Format::NAMES),
+        default: Default::Text("csv"),
+        meaning: "Format of the file.",
+        ..PLAIN
+    },
+    Field {
+        key: "quantity",
+        kind: Kind::Choice(&["position", "velocity", "acceleration"]),
+        default: Default::Text("position"),
+        meaning: "What the sensor observes.",
+        ..PLAIN
+    },
+    Field {
+        key: "clock",
+        kind: Kind::Choice(ClockChoice::NAMES),
+        default: Default::Text("auto"),
+        meaning: "Which clock to believe: the stamps, an even one in the sample index, or whichever the stamps speak for.",
+        ..PLAIN
+    },
+    Field { key: "time", meaning: "csv: name of the time column; left open, time_s, time or t.", ..PLAIN },
+    Field {
+        key: "angle",
+        meaning: "csv: name of the observed column; left open, angle_rad, angle or angle_deg.",
+        ..PLAIN
+    },
+    Field {
+        key: "input",
+        meaning: "csv: name of the measured input's column; left open, torque_nm if there is one.",
+        ..PLAIN
+    },
+    Field {
+        key: "unit",
+        kind: Kind::Choice(Unit::NAMES),
+        meaning: "csv: unit of the observed column; left open, what its name says, else rad.",
+        ..PLAIN
+    },
+    Field {
+        key: "time_unit",
+        kind: Kind::Choice(TimeUnit::NAMES),
+        default: Default::Text("s"),
+        meaning: "csv: unit of the time column.",
+        ..PLAIN
+    },
+    Field {
+        key: "sample_rate_hz",
+        kind: Kind::Float { min: 1e-9, max: 1e12 },
+        unit: "Hz",
+        meaning: "csv: sampling rate of a file that has no time column.",
+        ..PLAIN
+    },
+    Field {
+        key: "origin",
+        kind: Kind::Choice(Origin::NAMES),
+        meaning: "Where the numbers come from, for every table and report; left open, what the file states.",
+        ..PLAIN
+    },
+    Field {
+        key: "stated_rate_hz",
+        kind: Kind::Float { min: 1e-9, max: 1e12 },
+        unit: "Hz",
+        meaning: "A sampling rate stated elsewhere, to be checked against the stamps.",
+        ..PLAIN
+    },
+    Field {
+        key: "stated_samples",
+        kind: Kind::Integer { min: 1, max: i64::MAX },
+        meaning: "A number of samples stated elsewhere, to be checked against the file.",
+        ..PLAIN
+    },
+];
+
+const ENVELOPE: &[Field] = &[Field {
+    key: "pipeline",
+    kind: Kind::Choice(&["paper", "recommended"]),
+    default: Default::Text("recommended"),
+    meaning: "How peaks are found: as the paper did, or as we would.",
+    ..PLAIN
+}];
+
+const PAPER: &[Field] = &[
+    Field {
+        key: "interpolation_step_s",
+        kind: Kind::Float { min: 1e-9, max: 1e6 },
+        default: Default::Float(0.002),
+        unit: "s",
+        meaning: "Step of the even grid the record is interpolated to.",
+        source: "the paper's 500 Hz",
+    },
+    Field {
+        key: "smoothing_window",
+        kind: Kind::Integer { min: 0, max: 1_000_001 },
+        default: Default::Integer(0),
+        unit: "grid points",
+        meaning: "Window of the Savitzky-Golay smoothing, odd; 0 for none.",
+        source: "the paper's numbers come out without smoothing",
+    },
+    Field {
+        key: "smoothing_order",
+        kind: Kind::Integer { min: 0, max: 20 },
+        default: Default::Integer(3),
+        meaning: "Order of the smoothing polynomial.",
+        ..PLAIN
+    },
+    Field {
+        key: "late_fraction",
+        kind: Kind::Float { min: 1e-6, max: 1.0 },
+        default: Default::Float(0.2),
+        meaning: "Share of the record's end whose mean is taken for the rest position.",
+        source: "the paper's late-time mean",
+        ..PLAIN
+    },
+    Field {
+        key: "peak_distance",
+        kind: Kind::Integer { min: 1, max: 1_000_000_000 },
+        default: Default::Integer(50),
+        unit: "grid points",
+        meaning: "Least distance between peaks.",
+        source: "the paper's code",
+    },
+    Field {
+        key: "prominence",
+        kind: Kind::Float { min: 0.0, max: 1e12 },
+        default: Default::Float(0.01),
+        unit: "unit of the record",
+        meaning: "Least prominence of a peak.",
+        source: "the paper's code",
+    },
+];
+
+const RECOMMENDED: &[Field] = &[
+    Field {
+        key: "half_width_periods",
+        kind: Kind::Float { min: 1e-3, max: 0.25 },
+        default: Default::Float(1.0 / 6.0),
+        unit: "periods",
+        meaning: "Half-width of the stretch around a turning point that a polynomial is fitted to.",
+        source: "a quartic follows a sine over this stretch to 3e-4 of its height",
+    },
+    Field {
+        key: "floor_in_noise",
+        kind: Kind::Float { min: 0.0, max: 1e6 },
+        default: Default::Float(8.0),
+        unit: "noise standard deviations",
+        meaning: "Smallest amplitude that is used.",
+        source: "the logarithm of a height known to 1/8 is known to 0.13 at worst",
+    },
+];
+
+const FIT: &[Field] = &[
+    Field {
+        key: "seeds",
+        kind: Kind::Integer { min: 1, max: 100_000 },
+        default: Default::Integer(1),
+        meaning: "How many seeds to fit, from `seed` on; the result is the first one's, the worst is reported.",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        meaning: "Cap on the training steps, whatever the estimator's own; 0 leaves it untrained.",
+        ..PLAIN
+    },
+    Field {
+        key: "tolerance_percent",
+        kind: Kind::Float { min: 0.0, max: 1e9 },
+        default: Default::Float(0.1),
+        unit: "%",
+        meaning: "Largest error against the oracle that passes.",
+        source: "the paper's bar",
+    },
+];

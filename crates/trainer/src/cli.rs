@@ -1,0 +1,90 @@
+//! The arguments.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Estimates the damping of oscillators from records, and compares every estimate with closed-form
+/// least squares.
+#[derive(Debug, Parser)]
+#[command(
+    name = "trainer",
+    version,
+    args_conflicts_with_subcommands = true,
+    arg_required_else_help = true,
+    after_help = "\
+Examples:
+  trainer configs/pinn.toml                       the shipped, simulated record
+  trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
+  trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
+  trainer configs/pinn.toml --json | jq .estimate.zeta
+  trainer list estimators
+  trainer report reports/runs/RUN
+
+Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or usage; 130 interrupted, the best
+so far is saved."
+)]
+pub(crate) struct Arguments {
+    /// A command other than running a configuration.
+    #[command(subcommand)]
+    pub(crate) command: Option<Command>,
+    /// Running a configuration.
+    #[command(flatten)]
+    pub(crate) experiment: ExperimentArguments,
+}
+
+/// Running the experiment of a configuration.
+#[derive(Debug, Args)]
+pub(crate) struct ExperimentArguments {
+    /// The experiment: a TOML file
+    pub(crate) config: Option<PathBuf>,
+    /// Values that override the file's, by dotted key: estimator.hidden=[64] seed=3
+    #[arg(value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for this run's files: new or empty [default: a new one below reports/runs]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Overrides the configuration's seed
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Threads over seeds; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// What is printed.
+#[derive(Debug, Clone, Copy, Args)]
+pub(crate) struct Output {
+    /// Prints no progress and no table
+    #[arg(long)]
+    pub(crate) quiet: bool,
+    /// Prints the result alone, as JSON, on standard output
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Lists what there is to choose from
+    List {
+        /// What to list
+        #[arg(value_enum, default_value_t = Listing::Estimators)]
+        what: Listing,
+        #[command(flatten)]
+        output: Output,
+    },
+    /// Makes the report of a finished run again, from its folder alone
+    Report {
+        /// The run's folder
+        run: PathBuf,
+        #[command(flatten)]
+        output: Output,
+    },
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Listing {
+    /// The estimators
+    Estimators,
+}

@@ -1,0 +1,84 @@
+//! What a run was made with: versions, machine, digests.
+
+use serde::Serialize;
+use std::process::Command;
+
+/// The content of `environment.json`.
+#[derive(Debug, Serialize)]
+pub(crate) struct Environment {
+    version: &'static str,
+    profile: &'static str,
+    libraries: Vec<Library>,
+    git: Option<Git>,
+    system: String,
+    cpu: Option<String>,
+    threads: usize,
+    data_digest: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Library {
+    name: &'static str,
+    version: String,
+}
+
+#[derive(Debug, Serialize)]
+struct Git {
+    commit: String,
+    dirty: bool,
+}
+
+const LOCK_FILE: &str = include_str!("../../../Cargo.lock");
+const LIBRARIES: &[&str] = &["burn", "linfa-linear", "nalgebra", "ndarray", "rand", "statrs"];
+
+impl Environment {
+    pub(crate) fn new(threads: usize, data_digest: &str) -> Self {
+        Self {
+            version: env!("CARGO_PKG_VERSION"),
+            profile: if cfg!(debug_assertions) { "debug" } else { "release" },
+            libraries: LIBRARIES
+                .iter()
+                .map(|&name| Library { name, version: locked_version(LOCK_FILE, name).unwrap_or_default() })
+                .collect(),
+            git: git(),
+            system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
+            cpu: cpu_model(),
+            threads,
+            data_digest: data_digest.to_owned(),
+        }
+    }
+}
+
+/// The version of a package in the text of a lock file.
+fn locked_version(lock: &str, name: &str) -> Option<String> {
+    let quoted = format!("name = \"{name}\"");
+    let mut lines = lock.lines().skip_while(|line| *line != quoted);
+    lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"').map(str::to_owned)
+}
+
+/// The commit of the folder the program runs in. No answer where there is no git or no repository.
+fn git() -> Option<Git> {
+    let ask = |arguments: &[&str]| {
+        let output = Command::new("git").args(arguments).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    Some(Git { commit: ask(&["rev-parse", "HEAD"])?, dirty: !ask(&["status", "--porcelain"])?.is_empty() })
+}
+
+fn cpu_model() -> Option<String> {
+    let text = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = text.lines().find(|line| line.starts_with("model name"))?;
+    line.split_once(':').map(|(_, model)| model.trim().to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LIBRARIES, LOCK_FILE, locked_version};
+
+    #[test]
+    fn every_library_has_a_version() {
+        for name in LIBRARIES {
+            assert!(locked_version(LOCK_FILE, name).is_some(), "{name}");
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! What a command can fail of, and the exit code that belongs to it.
+
+use envelope::EnvelopeError;
+use estimator::FitError;
+use oracle::OracleError;
+use record::RecordError;
+use report::ReportError;
+use runs::RunError;
+use settings::SettingsError;
+use thiserror::Error;
+
+/// Why a command gave no result.
+#[derive(Debug, Error)]
+pub(crate) enum TrainerError {
+    /// Neither a configuration nor a command.
+    #[error("name a configuration, for example configs/pinn.toml, or a command; --help shows both")]
+    NoConfig,
+    /// The configuration file could not be read.
+    #[error("{file}: cannot be read: {problem}; expected a TOML file, for example configs/pinn.toml")]
+    Config { file: String, problem: String },
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    #[error("{file}: {source}")]
+    Envelope { file: String, source: EnvelopeError },
+    #[error("{file}: {source}")]
+    Oracle { file: String, source: OracleError },
+    #[error("{estimator}, seed {seed}: {source}")]
+    Fit { estimator: &'static str, seed: u64, source: FitError },
+    #[error(
+        "{estimator}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps"
+    )]
+    NotFinite { estimator: &'static str, seed: u64 },
+    #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
+    TooManySeeds { seed: u64 },
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// Threads or signal handlers could not be set up.
+    #[error("cannot set up {what}: {problem}")]
+    System { what: &'static str, problem: String },
+}
+
+impl TrainerError {
+    /// 2 for wrong input or usage, 1 for a failure that is not the user's.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoConfig
+            | Self::Config { .. }
+            | Self::Settings(_)
+            | Self::Record(_)
+            | Self::Envelope { .. }
+            | Self::Oracle { .. }
+            | Self::TooManySeeds { .. }
+            | Self::Run(_)
+            | Self::Report(_) => 2,
+            Self::Fit { source: FitError::Backend { .. }, .. } => 1,
+            Self::Fit { .. } => 2,
+            Self::NotFinite { .. } | Self::System { .. } => 1,
+        }
+    }
+}

@@ -1,0 +1,134 @@
+//! The terminal's answer: one short screen.
+
+use comfy_table::{ContentArrangement, Table, presets};
+use report::format;
+use runs::result::{EstimationResult, PipelineOutcome};
+use std::path::Path;
+
+/// A table with aligned columns, as wide as the terminal at most.
+pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
+    let mut table = Table::new();
+    table.load_style(presets::NOTHING).set_content_arrangement(ContentArrangement::Dynamic);
+    if !header.is_empty() {
+        table.set_header(header.to_vec());
+    }
+    table.add_rows(rows);
+    table.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
+}
+
+/// The result as a person wants to read it.
+pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
+    let mut parts = vec![headline(result), numbers(result)];
+    if result.seeds.len() > 1 {
+        parts.push(format!(
+            "{} seeds from {} on: worst error {:.1e} %, slowest {:.2} s",
+            result.seeds.len(),
+            result.seed,
+            result.worst_error_percent,
+            result.seeds.iter().map(|row| row.seconds).fold(0.0, f64::max),
+        ));
+    }
+    parts.push(pipelines(result));
+    parts.extend(remarks(result));
+    parts.push(format!("run: {0}\nreport: {0}/report.html", folder.display()));
+    parts.join("\n\n")
+}
+
+fn headline(result: &EstimationResult) -> String {
+    let verdict = if result.pass { "passes" } else { "FAILS" };
+    format!(
+        "{} on {} ({} record): error {:.1e} % of the oracle's damping ratio, {verdict} the {} % bar",
+        result.estimator_title,
+        result.data.path,
+        result.data.origin,
+        result.worst_error_percent,
+        result.tolerance_percent,
+    )
+}
+
+fn numbers(result: &EstimationResult) -> String {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let zeta = match result.estimate.zeta_std_error {
+        Some(error) => format!("{} ± {error:.1e} (standard error)", digits(result.estimate.zeta)),
+        None => digits(result.estimate.zeta),
+    };
+    table(
+        &[],
+        vec![
+            row("peaks", result.envelope.peaks.to_string()),
+            row("angular frequency ω", format!("{:.9} rad/s", result.envelope.omega_rad_s)),
+            row("decay rate λ", format!("{} 1/s", digits(result.estimate.decay_rate))),
+            row("damping ratio ζ", zeta),
+            row(
+                "oracle's ζ",
+                format!(
+                    "{} ± {:.1e} (standard error), R² {:.6}",
+                    digits(result.oracle.zeta),
+                    result.oracle.zeta_std_error,
+                    result.oracle.r_squared
+                ),
+            ),
+            row("error", format!("{:.1e} %", result.error_percent)),
+            row(
+                "stopped",
+                format!(
+                    "{} after {} steps: {}",
+                    result.estimate.reached.replace('_', " "),
+                    result.steps,
+                    result.estimate.stopped_because
+                ),
+            ),
+            row("time", format!("{:.2} s for {} parameters", result.seconds, result.parameters)),
+        ],
+    )
+}
+
+/// Ten significant digits.
+fn digits(value: f64) -> String {
+    format::significant(value, 10)
+}
+
+fn pipelines(result: &EstimationResult) -> String {
+    let mark = |in_force: bool| if in_force { "*" } else { "" }.to_owned();
+    let rows = result
+        .pipelines
+        .iter()
+        .map(|row| {
+            let mut cells = vec![mark(row.in_force), row.pipeline.clone(), row.clock.clone()];
+            match &row.outcome {
+                PipelineOutcome::Fit { peaks, omega_rad_s, decay_rate, zeta, r_squared, .. } => {
+                    cells.extend([
+                        peaks.to_string(),
+                        format!("{omega_rad_s:.6}"),
+                        format!("{decay_rate:.8}"),
+                        format!("{zeta:.8}"),
+                        format!("{r_squared:.5}"),
+                    ]);
+                }
+                PipelineOutcome::Failed { reason } => cells.push(reason.clone()),
+            }
+            cells
+        })
+        .collect();
+    let header = ["", "pipeline", "clock", "peaks", "ω rad/s", "λ 1/s", "ζ", "R²"];
+    format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows))
+}
+
+fn remarks(result: &EstimationResult) -> Vec<String> {
+    let mut remarks = vec![format!(
+        "clock: {} ({}); {:.2} ± {:.2} Hz",
+        result.data.clock,
+        result.data.clock_reason,
+        result.data.sample_rate_hz,
+        result.data.sample_rate_std_error_hz
+    )];
+    remarks.extend(result.data.findings.iter().map(|finding| format!("note: {finding}")));
+    if result.oracle.residual_autocorrelation.abs() > 0.5 {
+        remarks.push(format!(
+            "note: the residuals of ln A are autocorrelated ({:.2}): the envelope is no pure \
+             exponential, and the standard errors are too small",
+            result.oracle.residual_autocorrelation
+        ));
+    }
+    remarks
+}

@@ -1,0 +1,140 @@
+//! The walls of the house, asked of cargo.
+
+use crate::support::root;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::process::Command;
+
+/// The layer of every crate; a crate may depend on lower layers only. A crate that is not here fails
+/// the test: somebody has to say where it belongs.
+fn layer(name: &str) -> Option<u8> {
+    Some(match name {
+        "record" | "seed" | "settings" => 0,
+        "envelope" => 1,
+        "estimator" => 2,
+        "neural" => 3,
+        name if name.starts_with("estimator-") => 4,
+        "oracle" => 4,
+        "scoring" | "experiment" | "runs" => 5,
+        "report" => 6,
+        "trainer" => 7,
+        _ => return None,
+    })
+}
+
+fn cargo(arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO"))
+        .args(arguments)
+        .args(["--locked", "--offline"])
+        .current_dir(root())
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    String::from_utf8(output.stdout).unwrap()
+}
+
+fn packages() -> Vec<Value> {
+    let text = cargo(&["metadata", "--no-deps", "--format-version", "1"]);
+    let metadata: Value = serde_json::from_str(&text).unwrap();
+    metadata["packages"].as_array().unwrap().clone()
+}
+
+fn name(package: &Value) -> &str {
+    package["name"].as_str().unwrap()
+}
+
+/// Everything a crate reaches, by any kind of dependency and with every feature on.
+fn reach(package: &str) -> BTreeSet<String> {
+    let tree = cargo(&[
+        "tree",
+        "--package",
+        package,
+        "--all-features",
+        "--edges",
+        "normal,build,dev",
+        "--prefix",
+        "none",
+        "--format",
+        "{lib}",
+    ]);
+    tree.lines().map(|line| line.trim().replace('_', "-")).collect()
+}
+
+#[test]
+fn arrows_point_downward_only() {
+    let packages = packages();
+    assert!(packages.len() > 10);
+    for package in &packages {
+        let own = layer(name(package)).unwrap_or_else(|| panic!("{} has no layer", name(package)));
+        for dependency in package["dependencies"].as_array().unwrap() {
+            // Tests may use whatever they need, except where a test below forbids it.
+            if dependency["kind"] == "dev" {
+                continue;
+            }
+            if let Some(other) = layer(name(dependency)).filter(|_| dependency["path"].is_string()) {
+                assert!(other < own, "{} must not use {}", name(package), name(dependency));
+            }
+        }
+    }
+}
+
+#[test]
+fn an_estimator_reaches_no_oracle_no_truth_and_no_other_estimator() {
+    let packages = packages();
+    let estimators: Vec<&str> =
+        packages.iter().map(name).filter(|name| name.starts_with("estimator-")).collect();
+    assert!(estimators.len() >= 2);
+    for estimator in &estimators {
+        let reached = reach(estimator);
+        assert!(reached.contains("estimator"), "cargo tree gave {reached:?}");
+        for forbidden in [
+            "oracle",
+            "truth",
+            "simulator",
+            "diagnosis",
+            "scoring",
+            "experiment",
+            "runs",
+            "report",
+            "trainer",
+            "linfa-linear",
+        ] {
+            assert!(!reached.contains(forbidden), "{estimator} reaches {forbidden}");
+        }
+        for other in estimators.iter().filter(|other| *other != estimator) {
+            assert!(!reached.contains(*other), "{estimator} reaches {other}");
+        }
+    }
+}
+
+#[test]
+fn the_oracle_reaches_nothing_that_estimators_compute_with() {
+    let reached = reach("oracle");
+    assert!(reached.contains("linfa-linear"), "cargo tree gave {reached:?}");
+    for forbidden in ["burn", "neural", "estimator", "experiment", "runs"] {
+        assert!(!reached.contains(forbidden), "the oracle reaches {forbidden}");
+    }
+    // The envelope smooths with nalgebra; the oracle itself must not solve with it.
+    let oracle = packages().into_iter().find(|package| name(package) == "oracle").unwrap();
+    let direct: Vec<&str> = oracle["dependencies"].as_array().unwrap().iter().map(name).collect();
+    assert!(!direct.contains(&"nalgebra"), "{direct:?}");
+}
+
+#[test]
+fn only_runs_and_the_trainer_reach_the_disk_for_writing() {
+    for package in packages() {
+        if ["runs", "trainer"].contains(&name(&package)) {
+            continue;
+        }
+        let direct: Vec<&str> = package["dependencies"].as_array().unwrap().iter().map(name).collect();
+        assert!(!direct.contains(&"tempfile"), "{}", name(&package));
+    }
+}
+
+#[test]
+fn every_crate_takes_the_workspaces_lints() {
+    for package in packages() {
+        let manifest = std::fs::read_to_string(package["manifest_path"].as_str().unwrap()).unwrap();
+        assert!(manifest.contains("[lints]\nworkspace = true"), "{}", name(&package));
+    }
+}

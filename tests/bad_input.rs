@@ -1,0 +1,227 @@
+//! Bad input gets exit code 2 and one clear message; nothing panics.
+
+use crate::support::{root, trainer};
+use std::path::Path;
+
+/// Runs the PINN on a file with the given content and expects a refusal with these words.
+fn refused(content: &[u8], arguments: &[&str], expected: &[&str]) {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("record.csv");
+    std::fs::write(&file, content).unwrap();
+    let path = format!("data.path={}", file.display());
+    let mut all = vec!["configs/pinn.toml", &path];
+    all.extend(arguments);
+    let message = refusal(&all);
+    for words in expected {
+        assert!(message.contains(words), "no `{words}` in: {message}");
+    }
+}
+
+/// Runs the program, expects exit code 2, one line on standard error and nothing on standard output.
+fn refusal(arguments: &[&str]) -> String {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("run");
+    let mut all = arguments.to_vec();
+    all.extend(["--out", out.to_str().unwrap()]);
+    let output = trainer(&all);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(output.stdout.is_empty(), "{:?}", output.stdout);
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    assert!(message.starts_with("error: "), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+    message
+}
+
+/// A record of a decaying oscillation, one sample a line.
+fn decay(samples: usize) -> String {
+    let mut text = "time_s,angle_rad\n".to_owned();
+    for i in 0..samples {
+        let t = i as f64 * 0.01;
+        text.push_str(&format!("{t:.3},{:.6}\n", (-0.2 * t).exp() * (6.0 * t).cos()));
+    }
+    text
+}
+
+#[test]
+fn empty_file() {
+    refused(b"", &[], &["record.csv: is empty"]);
+    refused(b"\n  \n", &[], &["record.csv: is empty"]);
+    refused(b"", &["data.format=host-log"], &["record.csv: is empty"]);
+}
+
+#[test]
+fn header_alone_or_one_sample() {
+    refused(b"time_s,angle_rad\n", &[], &["has 0 samples", "needs at least 8"]);
+    refused(b"time_s,angle_rad\n0,1\n", &[], &["has 1 sample;", "needs at least 8"]);
+}
+
+#[test]
+fn not_a_number() {
+    let text = decay(50).replace("0.030,", "0.030,nan #");
+    refused(text.as_bytes(), &[], &["record.csv:5: ", "is not a number"]);
+    let mut lines: Vec<String> = decay(50).lines().map(str::to_owned).collect();
+    lines[4] = "0.030,NaN".to_owned();
+    refused(lines.join("\n").as_bytes(), &[], &["record.csv:5: ", "not finite"]);
+    lines[4] = "0.030,inf".to_owned();
+    refused(lines.join("\n").as_bytes(), &[], &["record.csv:5: ", "not finite"]);
+}
+
+#[test]
+fn text_in_a_number() {
+    let text = decay(50).replacen("0.060,", "0.060,about ", 1);
+    refused(text.as_bytes(), &[], &["record.csv:8: ", "`about ", "`angle_rad` is not a number"]);
+}
+
+#[test]
+fn decreasing_time() {
+    let text = decay(50).replacen("0.060,", "0.035,", 1);
+    refused(text.as_bytes(), &[], &["record.csv:8: ", "from 0.05 s to 0.035 s"]);
+}
+
+#[test]
+fn missing_column() {
+    let text = decay(50).replacen("angle_rad", "theta", 1);
+    refused(
+        text.as_bytes(),
+        &[],
+        &["record.csv:1: ", "no column `angle_rad` or `angle`", "`theta`", "data.angle"],
+    );
+    refused(decay(50).as_bytes(), &["data.angle=q"], &["no column `q`"]);
+    refused(decay(50).as_bytes(), &["data.time=clock"], &["no column `clock`"]);
+}
+
+#[test]
+fn a_line_cut_short() {
+    let text = decay(50) + "0.500\n";
+    refused(text.as_bytes(), &[], &["record.csv:52: ", "has 1 fields; expected 2"]);
+}
+
+#[test]
+fn a_folder_for_a_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = format!("data.path={}", folder.path().display());
+    assert!(refusal(&["configs/pinn.toml", &path]).contains("is a folder"));
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    assert!(refusal(&["configs/pinn.toml", "data.path=nowhere.csv"]).contains("nowhere.csv: cannot be read"));
+    assert!(refusal(&["configs/nowhere.toml"]).contains("configs/nowhere.toml: cannot be read"));
+    assert!(refusal(&["configs"]).contains("configs: cannot be read: it is a folder"));
+}
+
+#[test]
+fn no_text_at_all() {
+    refused(&[0x74, 0xff, 0xfe, 0x00], &[], &["not UTF-8 text (byte 1)"]);
+}
+
+#[test]
+fn a_record_without_peaks() {
+    let mut text = "time_s,angle_rad\n".to_owned();
+    for i in 0..500 {
+        text.push_str(&format!("{:.2},{:.6}\n", i as f64 * 0.01, (-0.5 * i as f64 * 0.01).exp()));
+    }
+    for pipeline in ["paper", "recommended"] {
+        let choice = format!("envelope.pipeline={pipeline}");
+        let name = format!("the {pipeline} pipeline finds 0 peaks; a decay rate needs at least 3");
+        refused(text.as_bytes(), &[&choice], &["record.csv: ", &name]);
+    }
+}
+
+#[test]
+fn every_stamp_the_same() {
+    let text = "time_s,angle_rad\n".to_owned() + &"1.5,0.2\n".repeat(20);
+    refused(text.as_bytes(), &[], &["every stamp is 1.5 s"]);
+}
+
+#[test]
+fn a_host_log_that_is_none() {
+    refused(
+        decay(50).as_bytes(),
+        &["data.format=host-log"],
+        &["record.csv:1: ", "the header is `time_s,angle_rad`", "Time_Elapsed"],
+    );
+    let log = "Timestamp, Time_Elapsed(s), Angle(deg)\n----\n16:04:31.2, 1.0\n";
+    refused(log.as_bytes(), &["data.format=host-log"], &["record.csv:3: ", "2 fields; expected 3"]);
+    let log = "Timestamp, Time_Elapsed(s), Angle(deg)\n----\n16:64:31.2, 1.0, 2.0\n";
+    refused(log.as_bytes(), &["data.format=host-log"], &["record.csv:3: ", "HH:MM:SS"]);
+}
+
+#[test]
+fn unknown_key() {
+    let message = refusal(&["configs/pinn.toml", "estimator.hiden=[3]"]);
+    assert!(message.contains("unknown key `estimator.hiden`; did you mean `estimator.hidden`?"));
+    let message = with_config("seed = 1\n[data]\nclok = \"host\"\n[estimator]\nname = \"pinn\"\n");
+    assert!(message.contains(":3:1: unknown key `data.clok`; did you mean `data.clock`?"), "{message}");
+}
+
+#[test]
+fn unknown_estimator() {
+    let message = with_config("[estimator]\nname = \"pin\"\n");
+    assert!(message.contains(":2:1: unknown estimator \"pin\"; did you mean `pinn`?"), "{message}");
+    let message = with_config("seed = 1\n");
+    assert!(message.contains("`estimator.name` is missing"), "{message}");
+}
+
+#[test]
+fn values_out_of_range() {
+    for (argument, expected) in [
+        ("seed=-1", "expected a whole number from 0 up"),
+        ("seed=1.5", "expected a whole number from 0 up"),
+        ("data.clock=sun", "expected one of \"host\", \"uniform-index\", \"auto\""),
+        ("estimator.hidden=[]", "expected a list of 1 to 6 whole numbers, each from 1 to 256"),
+        ("estimator.hidden=16", "expected a list of 1 to 6 whole numbers"),
+        ("estimator.physics_weight=nan", "expected a finite number"),
+        ("envelope.paper.interpolation_step_s=0", "expected a finite number"),
+        ("fit.seeds=0", "expected a whole number from 1"),
+    ] {
+        let message = refusal(&["configs/pinn.toml", argument]);
+        assert!(message.contains(expected), "{argument}: {message}");
+    }
+}
+
+#[test]
+fn broken_toml() {
+    let message = with_config("seed = 1\n[data\n");
+    assert!(message.contains(":2:"), "{message}");
+}
+
+#[test]
+fn a_folder_with_something_in_it_is_not_written_into() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mine.txt");
+    std::fs::write(&file, "mine").unwrap();
+    let out = folder.path().to_str().unwrap();
+    let output = trainer(&["configs/pinn.toml", "--out", out]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("never written over"));
+    assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    assert_eq!(std::fs::read_to_string(file).unwrap(), "mine");
+}
+
+#[test]
+fn a_refusal_leaves_no_run_folder() {
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("run");
+    let output = trainer(&["configs/pinn.toml", "data.path=nowhere.csv", "--out", out.to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(!out.exists());
+}
+
+#[test]
+fn bad_usage() {
+    for arguments in [&["--nonsense"][..], &["configs/pinn.toml", "--threads", "0"]] {
+        let output = trainer(arguments);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}");
+    }
+    assert!(refusal(&["configs/pinn.toml", "seed"]).contains("`seed` is no override"));
+}
+
+fn with_config(text: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("config.toml");
+    std::fs::write(&file, text).unwrap();
+    assert!(Path::new(&root()).exists());
+    refusal(&[file.to_str().unwrap()])
+}

@@ -1,0 +1,55 @@
+//! What the documents say holds.
+
+use crate::support::{root, trainer};
+use std::path::PathBuf;
+
+fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+    let mut found: Vec<PathBuf> = Vec::new();
+    let mut folders = vec![root().join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|found| found == ending) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+#[test]
+fn source_files_stay_readable_in_length() {
+    for path in files("crates", "rs").into_iter().chain(files("tests", "rs")) {
+        let lines = std::fs::read_to_string(&path).unwrap().lines().count();
+        assert!(lines <= 520, "{} has {lines} lines", path.display());
+    }
+}
+
+#[test]
+fn the_help_shows_the_exit_codes_and_examples() {
+    let output = trainer(&["--help"]);
+    assert_eq!(output.status.code(), Some(0));
+    let text = String::from_utf8(output.stdout).unwrap();
+    for words in ["configs/pinn.toml", "Exit codes", "130 interrupted"] {
+        assert!(text.contains(words), "{text}");
+    }
+}
+
+/// The gate runs the test command of the README, word for word.
+#[test]
+fn the_gate_runs_the_readmes_test_command() {
+    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    let gate = std::fs::read_to_string(root().join(".ci/run")).unwrap();
+    let commands: Vec<&str> = readme
+        .lines()
+        .filter_map(|line| line.strip_prefix("    "))
+        .filter(|line| line.starts_with("cargo "))
+        .take(2)
+        .collect();
+    let [run, test] = commands[..] else { panic!("{commands:?}") };
+    assert_eq!(run, "cargo run -p trainer -- configs/pinn.toml");
+    assert!(gate.lines().any(|line| line == test), "`{test}` is not a line of .ci/run");
+}

@@ -1,0 +1,21 @@
+//! Acceptance: what a user, a script or a published problem can hold the program to.
+//!
+//! One binary, because each one links all of burn. It belongs to the trainer's package, which is how
+//! cargo hands it the program to run.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::indexing_slicing,
+    clippy::disallowed_methods,
+    reason = "tests"
+)]
+
+mod architecture;
+mod bad_input;
+mod documents;
+mod measured_records;
+mod nist;
+mod runs;
+mod support;

@@ -1,0 +1,141 @@
+//! What a run leaves, and that it is the same every time.
+
+use crate::support::{number, result, trainer};
+use serde_json::Value;
+
+#[test]
+fn the_default_run_leaves_a_whole_folder() {
+    let (code, result, folder) = result(&["configs/pinn.toml"]);
+    assert_eq!(code, 0, "{result}");
+    for name in [
+        "config.toml",
+        "result.json",
+        "trace.csv",
+        "envelope.csv",
+        "model/weights.safetensors",
+        "report.html",
+        "events.jsonl",
+        "environment.json",
+    ] {
+        assert!(folder.path().join(name).is_file(), "{name}");
+    }
+    let kept: Value =
+        serde_json::from_slice(&std::fs::read(folder.path().join("result.json")).unwrap()).unwrap();
+    assert_eq!(kept, result);
+    assert_eq!(result["schema"], "ringdown.result/1");
+    assert_eq!(result["estimator"], "pinn");
+    assert_eq!(result["data"]["origin"], "simulated");
+    assert_eq!(result["pass"], true);
+    let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(report.to_lowercase().contains("simulated"));
+    let weights = std::fs::read(folder.path().join("model/weights.safetensors")).unwrap();
+    let tensors = neural::from_safetensors(&weights).unwrap();
+    let count: usize = tensors.iter().map(|tensor| tensor.values.len()).sum();
+    assert_eq!(count as f64, number(&result, "/parameters"));
+}
+
+#[test]
+fn the_resolved_config_runs_again_to_the_same_result() {
+    let (_, first, folder) = result(&["configs/pinn.toml", "seed=4", "estimator.hidden=[6]"]);
+    let config = folder.path().join("config.toml");
+    let (_, second, _) = result(&[config.to_str().unwrap()]);
+    assert_eq!(timeless(first), timeless(second));
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let arguments = ["configs/pinn.toml", "fit.seeds=4", "fit.max_steps=20", "--threads"];
+    let run = |threads| timeless(result(&[&arguments[..], &[threads]].concat()).1);
+    assert_eq!(run("1"), run("2"));
+}
+
+/// A result without its wall times.
+fn timeless(mut result: Value) -> Value {
+    result["seconds"] = Value::Null;
+    for row in result["seeds"].as_array_mut().unwrap() {
+        row["seconds"] = Value::Null;
+    }
+    result
+}
+
+#[test]
+fn every_seed_is_below_the_bar_and_the_worst_is_reported() {
+    let (code, result, _) = result(&["configs/pinn.toml", "fit.seeds=10"]);
+    assert_eq!(code, 0);
+    let rows = result["seeds"].as_array().unwrap();
+    assert_eq!(rows.len(), 10);
+    let worst = rows.iter().map(|row| number(row, "/error_percent")).fold(0.0, f64::max);
+    assert_eq!(worst, number(&result, "/worst_error_percent"));
+    assert!(worst < 1e-4, "worst error {worst} % (1e-6 relative)");
+}
+
+#[test]
+fn untrained_every_seed_misses_and_the_exit_code_says_so() {
+    let (code, result, _) = result(&["configs/pinn.toml", "fit.seeds=10", "fit.max_steps=0"]);
+    assert_eq!(code, 1);
+    assert_eq!(result["pass"], false);
+    for row in result["seeds"].as_array().unwrap() {
+        assert!(number(row, "/error_percent") > 1.0, "{row}");
+        assert_eq!(row["steps"], 0);
+        assert_eq!(row["reached"], "budget_spent");
+    }
+}
+
+#[test]
+fn the_null_estimator_fails_the_bar() {
+    let (code, result, folder) = result(&["configs/baseline.toml"]);
+    assert_eq!(code, 1);
+    assert_eq!(number(&result, "/error_percent"), 100.0);
+    assert_eq!(result["estimate"]["std_error"], Value::Null);
+    assert!(folder.path().join("report.html").is_file());
+    assert!(!folder.path().join("trace.csv").exists());
+}
+
+#[test]
+fn a_report_made_again_is_the_same_to_the_byte() {
+    let (_, _, folder) = result(&["configs/pinn.toml", "fit.max_steps=3"]);
+    let report = folder.path().join("report.html");
+    let before = std::fs::read(&report).unwrap();
+    std::fs::remove_file(&report).unwrap();
+    let output = trainer(&["report", folder.path().to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0));
+    assert_eq!(std::fs::read(&report).unwrap(), before);
+}
+
+#[test]
+fn a_report_of_a_folder_that_is_no_run_names_the_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = trainer(&["report", folder.path().to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8(output.stderr).unwrap().contains("cannot read"));
+}
+
+#[test]
+fn json_prints_the_result_alone_and_quiet_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let arguments = ["configs/pinn.toml", "fit.max_steps=1", "--quiet", "--out", out.to_str().unwrap()];
+    let output = trainer(&arguments);
+    assert!(output.stdout.is_empty() && output.stderr.is_empty(), "{output:?}");
+    assert!(out.join("result.json").is_file());
+}
+
+#[test]
+fn estimators_are_listed() {
+    let output = trainer(&["list", "estimators", "--json"]);
+    let value: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let ids: Vec<&str> =
+        value["estimators"].as_array().unwrap().iter().map(|row| row["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["baseline", "pinn"]);
+}
+
+/// Both half-cycles, believed clock: the recommended pipeline finds the simulated oscillator's own
+/// frequency, which the paper's misses by the host's bursts.
+#[test]
+fn the_recommended_pipeline_finds_the_simulated_frequency() {
+    let (_, result, _) =
+        result(&["configs/pinn.toml", "envelope.pipeline=recommended", "data.clock=auto", "fit.max_steps=0"]);
+    assert_eq!(result["data"]["clock"], "uniform-index");
+    assert!((number(&result, "/data/sample_rate_hz") - 259.6).abs() < 0.1);
+    assert!((number(&result, "/envelope/omega_rad_s") / 21.75 - 1.0).abs() < 1e-3);
+}
