@@ -63,23 +63,25 @@ fn every_measured_record_is_read_and_its_clock_decided() {
         sample_rate_hz: Some(610.35),
         ..CsvColumns::default()
     };
-    // File, how to read it, samples, rate in Hz.
-    let records: [(&str, ReadOptions, usize, f64); 8] = [
-        ("horizontal-pendulum/80P.txt", host_log(), 7_625, 259.6),
-        ("horizontal-pendulum/60.txt", host_log(), 6_560, 259.5),
-        ("horizontal-pendulum/100.txt", host_log(), 12_278, 259.5),
-        ("encoder-pendulum/record-a.csv", ReadOptions::default(), 13_604, 99.61),
-        ("servo-pendulum/swing-a.csv", ReadOptions::default(), 400, 99.99),
-        ("servo-pendulum/swing-b.csv", ReadOptions::default(), 400, 100.0),
-        ("positioning-drive/record.csv", columns(drive), 24_841, 1000.0),
-        ("silverbox/record.csv", columns(circuit), 131_072, 610.35),
+    use ClockKind::{Host, UniformIndex};
+    // File, how to read it, samples, rate in Hz, clock. The servo's stamps jitter, and its values are too
+    // coarse to tell whose jitter it is: the stamps stand.
+    let records: [(&str, ReadOptions, usize, f64, ClockKind); 8] = [
+        ("horizontal-pendulum/80P.txt", host_log(), 7_625, 259.6, UniformIndex),
+        ("horizontal-pendulum/60.txt", host_log(), 6_560, 259.5, UniformIndex),
+        ("horizontal-pendulum/100.txt", host_log(), 12_278, 259.5, UniformIndex),
+        ("encoder-pendulum/record-a.csv", ReadOptions::default(), 13_604, 99.61, UniformIndex),
+        ("servo-pendulum/swing-a.csv", ReadOptions::default(), 400, 99.99, Host),
+        ("servo-pendulum/swing-b.csv", ReadOptions::default(), 400, 100.0, Host),
+        ("positioning-drive/record.csv", columns(drive), 24_841, 1000.0, UniformIndex),
+        ("silverbox/record.csv", columns(circuit), 131_072, 610.35, UniformIndex),
     ];
-    for (name, options, samples, rate) in records {
+    for (name, options, samples, rate, kind) in records {
         let Some(path) = measured(name) else { continue };
         let (record, _) = read_file(&root().join(path), &options).unwrap();
         let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
         assert_eq!(record.len(), samples, "{name}");
-        assert_eq!(clock.kind, ClockKind::UniformIndex, "{name}: {}", clock.reason);
+        assert_eq!(clock.kind, kind, "{name}: {}", clock.reason);
         assert!((clock.sample_rate_hz / rate - 1.0).abs() < 1e-3, "{name}: {}", clock.sample_rate_hz);
     }
 }

@@ -3,7 +3,16 @@
 //! Every file is written whole to a temporary name, flushed to the disk and renamed; a crash leaves the
 //! old file or the new one, never half of one. A folder is made once and never written over.
 
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::disallowed_methods
+    )
+)]
 
 mod atomic;
 mod error;
