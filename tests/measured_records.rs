@@ -40,8 +40,8 @@ fn the_believed_clock_of_the_papers_record_is_near_260_hertz() {
     let rate = number(&result, "/data/sample_rate_hz");
     assert!((rate - 259.6).abs() < 0.1, "{rate}");
     let findings = result["data"]["findings"].to_string();
-    assert!(findings.contains("stated is a sampling rate of 500 Hz"), "{findings}");
-    assert!(findings.contains("stated are 14650 samples"), "{findings}");
+    assert!(findings.contains("not the stated 500 Hz"), "{findings}");
+    assert!(findings.contains("7625 samples, not the stated 14650"), "{findings}");
     // A 12-bit encoder, through two decimals of a degree.
     close(number(&result, "/data/resolution"), std::f64::consts::TAU / 4096.0, 3);
 }

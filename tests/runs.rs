@@ -81,6 +81,34 @@ fn untrained_every_seed_misses_and_the_exit_code_says_so() {
     }
 }
 
+/// A fit that takes minutes is asked to stop once it has begun.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_its_best_and_exits_with_130() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(["configs/pinn.toml", "estimator.hidden=[32,32,32]", "estimator.loss_tolerance=0"])
+        .args(["estimator.max_steps=1000000", "estimator.collocation_points=2000", "fit.seeds=5"])
+        .args(["--quiet", "--out", out.to_str().unwrap()])
+        .current_dir(crate::support::root())
+        .spawn()
+        .unwrap();
+    while !out.join("events.jsonl").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "ended before it began");
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(500));
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let text = std::fs::read_to_string(out.join("result.json")).unwrap();
+    let result: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(result["estimate"]["reached"], "interrupted");
+    assert!(result["seeds"].as_array().unwrap().len() < 5);
+    assert!(out.join("report.html").is_file());
+}
+
 #[test]
 fn the_null_estimator_fails_the_bar() {
     let (code, result, folder) = result(&["configs/baseline.toml"]);

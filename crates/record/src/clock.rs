@@ -6,6 +6,7 @@
 //! polled at odd times, the index knows nothing and the stamps are all there is.
 
 use crate::error::Fault;
+use crate::line::Line;
 use crate::record::Record;
 use serde::{Deserialize, Serialize};
 
@@ -111,7 +112,7 @@ impl Clock {
         if ends.len() < 2 {
             return Err(Fault::NoTimePasses { stamp: first });
         }
-        let line = Regression::new(&ends);
+        let line = Line::through(&ends);
         let statistics = statistics(stamps, &ends, &line);
         let rate = 1.0 / line.slope;
         let (kind, reason) = match choice {
@@ -130,13 +131,13 @@ impl Clock {
             reason,
             times_s,
             sample_rate_hz: rate,
-            sample_rate_std_error_hz: line.slope_std_error * rate * rate,
+            sample_rate_std_error_hz: slope_std_error(&line) * rate * rate,
             statistics,
         })
     }
 }
 
-fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Regression) -> (ClockKind, String) {
+fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, String) {
     let rate = 1.0 / line.slope;
     if found.repeated > 0 {
         let share = 100.0 * found.repeated as f64 / stamps.len() as f64;
@@ -196,7 +197,7 @@ const SIGNIFICANT: f64 = 2.33;
 /// Five neighbors deviate from a cubic by one number, their fourth divided difference scaled to unit
 /// noise. On a clock that is wrong by δ it grows by δ times the speed. The squares under either clock are
 /// compared in pairs, over stretches that do not overlap. Stamps must increase.
-fn preference_for_even(stamps: &[f64], values: &[f64], line: &Regression) -> f64 {
+fn preference_for_even(stamps: &[f64], values: &[f64], line: &Line) -> f64 {
     let even: Vec<f64> = (0..stamps.len()).map(|i| line.slope * i as f64).collect();
     let squares = |times: &[f64]| -> Vec<f64> {
         times.chunks_exact(5).zip(values.chunks_exact(5)).map(|(t, y)| off_cubic(t, y).powi(2)).collect()
@@ -259,7 +260,7 @@ fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
         .map(|scale| 1.0 / scale)
 }
 
-fn statistics(stamps: &[f64], ends: &[(f64, f64)], line: &Regression) -> StampStatistics {
+fn statistics(stamps: &[f64], ends: &[(f64, f64)], line: &Line) -> StampStatistics {
     let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
     let mut ordered = steps.clone();
     ordered.sort_by(f64::total_cmp);
@@ -282,8 +283,8 @@ fn statistics(stamps: &[f64], ends: &[(f64, f64)], line: &Regression) -> StampSt
         group_interval_s: median,
         gaps: if repeated == 0 { steps.iter().filter(|&&step| step > long).count() } else { 0 },
         rounding_s,
-        deviation_s: line.deviation,
-        largest_deviation_s: line.largest_deviation,
+        deviation_s: (line.squares() / ends.len() as f64).sqrt(),
+        largest_deviation_s: line.residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
     }
 }
 
@@ -295,37 +296,12 @@ fn autocorrelation(series: &[f64]) -> f64 {
     if square > 0.0 { product / square } else { 0.0 }
 }
 
-/// A straight line through (index, stamp).
-struct Regression {
-    slope: f64,
-    intercept: f64,
-    slope_std_error: f64,
-    deviation: f64,
-    largest_deviation: f64,
-}
-
-impl Regression {
-    fn new(points: &[(f64, f64)]) -> Self {
-        let count = points.len() as f64;
-        let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
-        let mean_y = points.iter().map(|point| point.1).sum::<f64>() / count;
-        let sxx: f64 = points.iter().map(|point| (point.0 - mean_x).powi(2)).sum();
-        let sxy: f64 = points.iter().map(|point| (point.0 - mean_x) * (point.1 - mean_y)).sum();
-        let slope = sxy / sxx;
-        let residuals: Vec<f64> =
-            points.iter().map(|point| point.1 - mean_y - slope * (point.0 - mean_x)).collect();
-        let squares: f64 = residuals.iter().map(|residual| residual * residual).sum();
-        // An AR(1) residual carries (1 − r)/(1 + r) as much information as a white one.
-        let r = autocorrelation(&residuals).clamp(0.0, 0.99);
-        let variance = squares / (count - 2.0).max(1.0) * (1.0 + r) / (1.0 - r);
-        Self {
-            slope,
-            intercept: mean_y - slope * mean_x,
-            slope_std_error: (variance / sxx).sqrt(),
-            deviation: (squares / count).sqrt(),
-            largest_deviation: residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
-        }
-    }
+/// Standard error of a line's slope under AR(1) residuals, which carry (1 − r)/(1 + r) as much
+/// information as white ones.
+fn slope_std_error(line: &Line) -> f64 {
+    let r = autocorrelation(&line.residuals).clamp(0.0, 0.99);
+    let degrees = (line.residuals.len() as f64 - 2.0).max(1.0);
+    (line.squares() / degrees * (1.0 + r) / (1.0 - r) / line.spread_x).sqrt()
 }
 
 #[cfg(test)]

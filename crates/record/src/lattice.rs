@@ -1,5 +1,7 @@
 //! Finding the step of an encoder (or of a text file's last digit) from the values alone.
 
+use crate::line::Line;
+
 /// Values lie on a lattice: whole multiples of a step, apart from a common offset.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lattice {
@@ -55,8 +57,10 @@ impl Lattice {
             // Long gaps are counted with the step as known so far, which sharpens with the span.
             step = products / squares;
         }
-        let misfit = line_misfit(&points)?;
-        (misfit.1 <= LARGEST_MISFIT).then_some(Self { step: misfit.0, misfit_steps: misfit.1 })
+        let line = Line::through(&points);
+        let misfit_steps = (line.squares() / points.len() as f64).sqrt() / line.slope;
+        (line.slope > 0.0 && misfit_steps <= LARGEST_MISFIT)
+            .then_some(Self { step: line.slope, misfit_steps })
     }
 }
 
@@ -65,20 +69,6 @@ fn gap(pair: &[f64]) -> f64 {
         &[earlier, later] => later - earlier,
         _ => 0.0,
     }
-}
-
-/// Slope of the line through the points and the root mean square distance from it in slopes.
-fn line_misfit(points: &[(f64, f64)]) -> Option<(f64, f64)> {
-    let count = points.len() as f64;
-    let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
-    let mean_y = points.iter().map(|point| point.1).sum::<f64>() / count;
-    let sxx: f64 = points.iter().map(|point| (point.0 - mean_x).powi(2)).sum();
-    let sxy: f64 = points.iter().map(|point| (point.0 - mean_x) * (point.1 - mean_y)).sum();
-    let slope = sxy / sxx;
-    let squares: f64 =
-        points.iter().map(|point| (point.1 - mean_y - slope * (point.0 - mean_x)).powi(2)).sum();
-    let misfit = (squares / count).sqrt() / slope;
-    (slope.is_finite() && slope > 0.0 && misfit.is_finite()).then_some((slope, misfit))
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod error;
 mod file;
 mod host_log;
 mod lattice;
+mod line;
 mod record;
 mod statement;
 mod unit;

@@ -82,14 +82,13 @@ impl Statements {
     pub fn contradictions(&self, samples: usize, clock: &Clock) -> Vec<String> {
         let mut found = Vec::new();
         if let Some(stated) = self.samples.filter(|&stated| stated != samples) {
-            found.push(format!("stated are {stated} samples; the file holds {samples}"));
+            found.push(format!("the file holds {samples} samples, not the stated {stated}"));
         }
         if let Some(stated) = self.sample_rate_hz {
             let off = (stated - clock.sample_rate_hz).abs();
             if off > 0.01 * clock.sample_rate_hz && off > 4.0 * clock.sample_rate_std_error_hz {
                 found.push(format!(
-                    "stated is a sampling rate of {stated} Hz; the stamps give {:.2} Hz (standard \
-                     error {:.2} Hz)",
+                    "the stamps give a sampling rate of {:.2} ± {:.2} Hz, not the stated {stated} Hz",
                     clock.sample_rate_hz, clock.sample_rate_std_error_hz
                 ));
             }

@@ -127,9 +127,17 @@ mod tests {
 
     #[test]
     fn a_number_that_was_not_finite_is_explained() {
-        let text = message(|s| s.result.error_percent = f64::NAN);
+        let text = message(|s| s.result.oracle.decay_rate = f64::NAN);
         assert!(text.contains("invalid type: null, expected f64"), "{text}");
         assert!(text.contains("not finite"), "{text}");
+    }
+
+    #[test]
+    fn an_error_without_a_finite_value_is_no_obstacle() {
+        let mut sample = Sample::new();
+        sample.result.error_percent = f64::INFINITY;
+        let page = sample.render().unwrap();
+        assert!(page.contains("cannot be compared with closed-form least squares"));
     }
 
     #[test]

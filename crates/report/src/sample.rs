@@ -140,6 +140,10 @@ fn result() -> EstimationResult {
             samples: 2_481,
             clock: "uniform-index".into(),
             clock_reason: "the time stamps jump by up to 41 ms, the sensor's own rate is steady".into(),
+            believed_clock: "uniform-index".into(),
+            believed_clock_reason: "the time stamps jump by up to 41 ms, the sensor's own rate is steady"
+                .into(),
+            sample_period_s: 1.0 / 119.998_2,
             sample_rate_hz: 119.998_2,
             sample_rate_std_error_hz: 0.000_41,
             resolution: Some(1.533_980_8e-3),
@@ -167,6 +171,7 @@ fn result() -> EstimationResult {
             std_error: 0.004_478,
             interval_95: [0.182_023, 0.199_899],
             zeta_std_error: 0.000_205_3,
+            zeta_interval_95: [0.008_343, 0.009_163],
             condition: 2.618,
             promised_digits: 14.9,
             residual_autocorrelation: 0.871,

@@ -32,7 +32,7 @@ pub(crate) fn comparison(result: &EstimationResult) -> Vec<ComparisonRow> {
         },
         ComparisonRow {
             quantity: "95 % interval of ζ",
-            oracle: None,
+            oracle: Some(interval(oracle.zeta_interval_95)),
             estimate: estimate.zeta_interval_95.map(interval),
         },
         ComparisonRow {
@@ -119,8 +119,10 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
         fact("File", data.path.clone()),
         fact("Digest", data.digest.clone()),
         fact("Samples", whole(data.samples)),
-        fact("Clock", format!("{}: {}", data.clock, data.clock_reason)),
+        fact("Clock in force", format!("{}: {}", data.clock, data.clock_reason)),
+        fact("Clock to believe", format!("{}: {}", data.believed_clock, data.believed_clock_reason)),
         fact("Sample rate", quantity(&rate, "Hz")),
+        fact("Sample period", quantity(&significant(data.sample_period_s * 1e3, 6), "ms")),
         fact(
             "Resolution",
             data.resolution.map_or_else(

@@ -4,7 +4,7 @@
 //! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
 //! is not.
 
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
 pub const RESULT_SCHEMA: &str = "ringdown.result/1";
@@ -30,7 +30,8 @@ pub struct EstimationResult {
     pub oracle: OracleSummary,
     /// What the estimator found on that envelope.
     pub estimate: EstimateSummary,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100.
+    /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
     /// The largest `error_percent` that passes.
     pub tolerance_percent: f64,
@@ -45,6 +46,7 @@ pub struct EstimationResult {
     /// One row for each seed that was fitted, `seed` first.
     pub seeds: Vec<SeedRow>,
     /// The largest `error_percent` over `seeds`.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub worst_error_percent: f64,
     /// The same record through each pipeline and clock, by closed-form least squares.
     pub pipelines: Vec<PipelineRow>,
@@ -65,6 +67,12 @@ pub struct DataSummary {
     pub clock: String,
     /// Why that clock is in force, in a sentence.
     pub clock_reason: String,
+    /// The clock that the stamps and the values speak for, whatever is in force.
+    pub believed_clock: String,
+    /// Why that one is believed, in a sentence.
+    pub believed_clock_reason: String,
+    /// The sample period by a regression of time on the sample index, in seconds.
+    pub sample_period_s: f64,
     /// The rate of the sensor by a regression of time on the sample index, in hertz.
     pub sample_rate_hz: f64,
     /// Its standard error, in hertz.
@@ -111,8 +119,10 @@ pub struct OracleSummary {
     pub std_error: f64,
     /// 95 % interval of λ under independent residuals, in 1/s.
     pub interval_95: [f64; 2],
-    /// Standard error of ζ.
+    /// Standard error of ζ, the frequency taken as known.
     pub zeta_std_error: f64,
+    /// 95 % interval of ζ, the frequency taken as known.
+    pub zeta_interval_95: [f64; 2],
     /// Two-norm condition number of the column-scaled design matrix.
     pub condition: f64,
     /// Significant decimal digits that the arithmetic promises.
@@ -153,7 +163,8 @@ pub struct SeedRow {
     pub decay_rate: f64,
     /// λ / ω.
     pub zeta: f64,
-    /// |ζ − ζ_oracle| / ζ_oracle · 100.
+    /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
     /// As in [`EstimateSummary::reached`].
     pub reached: String,
@@ -226,4 +237,9 @@ pub struct EnvelopeRow {
     pub oracle: f64,
     /// The estimator's fitted function at this time.
     pub estimate: f64,
+}
+
+/// JSON has no word for infinite or no number; it writes `null`.
+fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

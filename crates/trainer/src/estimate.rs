@@ -29,6 +29,7 @@ use std::time::Instant;
 
 /// Reads, fits, compares, writes and prints.
 pub(crate) fn estimate(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
+    let cancel = interrupt::watch()?;
     let experiment = read_config(arguments)?;
     let silent = arguments.output.quiet || arguments.output.json;
     let input = Input::read(&experiment)?;
@@ -46,7 +47,6 @@ pub(crate) fn estimate(arguments: &ExperimentArguments) -> Result<Outcome, Train
     folder.record_event("start", &json!({ "estimator": experiment.entry.id, "seed": experiment.seed }))?;
 
     let progress = Progress::new(experiment.fit.seeds, silent);
-    let cancel = interrupt::watch()?;
     let fits = pool.install(|| fit_all(&experiment, &input, &progress, cancel))?;
     progress.finish();
 
@@ -93,6 +93,8 @@ struct Input {
     record: Record,
     source: Source,
     clock: Clock,
+    /// The clock that the stamps and the values speak for.
+    believed: Clock,
     extraction: Extraction,
     oracle: DecayFit,
 }
@@ -101,14 +103,16 @@ impl Input {
     fn read(experiment: &Experiment) -> Result<Self, TrainerError> {
         let data = &experiment.data;
         let (record, source) = read_file(Path::new(&data.path), &data.read_options())?;
-        let clock = Clock::new(&record, data.clock).map_err(|fault| fault.in_file(&source.path))?;
+        let clock_of = |choice| Clock::new(&record, choice).map_err(|fault| fault.in_file(&source.path));
+        let believed = clock_of(ClockChoice::Auto)?;
+        let clock = clock_of(data.clock)?;
         let extraction = experiment
             .envelope
             .extract(experiment.envelope.pipeline, &record, &clock)
             .map_err(|error| TrainerError::Envelope { file: data.path.clone(), source: error })?;
         let oracle = oracle::decay_rate(&extraction.envelope)
             .map_err(|error| TrainerError::Oracle { file: data.path.clone(), source: error })?;
-        Ok(Self { record, source, clock, extraction, oracle })
+        Ok(Self { record, source, clock, believed, extraction, oracle })
     }
 
     fn data_summary(&self, experiment: &Experiment) -> DataSummary {
@@ -122,6 +126,9 @@ impl Input {
             samples: self.record.len(),
             clock: self.clock.kind.name().to_owned(),
             clock_reason: self.clock.reason.clone(),
+            believed_clock: self.believed.kind.name().to_owned(),
+            believed_clock_reason: self.believed.reason.clone(),
+            sample_period_s: 1.0 / self.clock.sample_rate_hz,
             sample_rate_hz: self.clock.sample_rate_hz,
             sample_rate_std_error_hz: self.clock.sample_rate_std_error_hz,
             resolution: self.record.lattice().map(|lattice| lattice.step),
@@ -202,6 +209,7 @@ impl Input {
                 std_error: self.oracle.std_error,
                 interval_95: self.oracle.interval_95,
                 zeta_std_error: self.oracle.zeta_std_error,
+                zeta_interval_95: self.oracle.interval_95.map(|bound| envelope.damping_ratio(bound)),
                 condition: self.oracle.condition,
                 promised_digits: self.oracle.promised_digits,
                 residual_autocorrelation: self.oracle.residual_autocorrelation,
@@ -238,7 +246,8 @@ struct SeedFit {
     row: SeedRow,
 }
 
-/// Fits every seed, in parallel; the order of the result is that of the seeds.
+/// Fits every seed, in parallel; the order of the result is that of the seeds. A request to stop leaves
+/// out the seeds that were not begun, apart from the first, which the result is about.
 fn fit_all(
     experiment: &Experiment,
     input: &Input,
@@ -247,7 +256,11 @@ fn fit_all(
 ) -> Result<Vec<SeedFit>, TrainerError> {
     let first = experiment.seed;
     let end = first.checked_add(experiment.fit.seeds).ok_or(TrainerError::TooManySeeds { seed: first })?;
-    (first..end).into_par_iter().map(|seed| fit_one(experiment, input, progress, cancel, seed)).collect()
+    (first..end)
+        .into_par_iter()
+        .filter(|&seed| seed == first || !cancel.is_requested())
+        .map(|seed| fit_one(experiment, input, progress, cancel, seed))
+        .collect()
 }
 
 fn fit_one(

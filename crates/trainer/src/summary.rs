@@ -29,7 +29,7 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
         ));
     }
     parts.push(pipelines(result));
-    parts.extend(remarks(result));
+    parts.push(remarks(result).join("\n"));
     parts.push(format!("run: {0}\nreport: {0}/report.html", folder.display()));
     parts.join("\n\n")
 }
@@ -115,14 +115,23 @@ fn pipelines(result: &EstimationResult) -> String {
 }
 
 fn remarks(result: &EstimationResult) -> Vec<String> {
-    let mut remarks = vec![format!(
-        "clock: {} ({}); {:.2} ± {:.2} Hz",
-        result.data.clock,
-        result.data.clock_reason,
-        result.data.sample_rate_hz,
-        result.data.sample_rate_std_error_hz
-    )];
-    remarks.extend(result.data.findings.iter().map(|finding| format!("note: {finding}")));
+    let data = &result.data;
+    let mut remarks = vec![
+        format!("clock in force: {} ({})", data.clock, data.clock_reason),
+        format!(
+            "sensor: one sample every {:.6} ms, {:.2} ± {:.2} Hz",
+            1e3 * data.sample_period_s,
+            data.sample_rate_hz,
+            data.sample_rate_std_error_hz
+        ),
+    ];
+    if data.believed_clock != data.clock {
+        remarks.push(format!(
+            "note: the record speaks for the {} clock: {}",
+            data.believed_clock, data.believed_clock_reason
+        ));
+    }
+    remarks.extend(data.findings.iter().map(|finding| format!("note: {finding}")));
     if result.oracle.residual_autocorrelation.abs() > 0.5 {
         remarks.push(format!(
             "note: the residuals of ln A are autocorrelated ({:.2}): the envelope is no pure \
