@@ -3,6 +3,7 @@
 //! Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; the damping update of Nielsen, report
 //! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74 (1980).
 
+use crate::minimum::{Iteration, Minimum, StopReason};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::ControlFlow;
 
@@ -41,47 +42,6 @@ pub struct LevenbergMarquardt {
     /// Converged when a step lowers the loss by a smaller share of itself than this, both as predicted
     /// and in fact. 0 asks for all that rounding leaves.
     pub loss_tolerance: f64,
-}
-
-/// State after a step.
-#[derive(Debug, Clone, Copy)]
-pub struct Iteration<'a> {
-    /// Steps taken so far.
-    pub step: u64,
-    /// The parameters in force.
-    pub parameters: &'a DVector<f64>,
-    /// Their sum of squares.
-    pub loss: f64,
-}
-
-/// Why the method stopped.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum StopReason {
-    /// The last step lowered the loss by less than the tolerance.
-    LossSettled,
-    /// No step lowers the loss or the gradient any more: rounding has the last word.
-    Stationary,
-    /// The steps are used up.
-    StepsSpent,
-    /// The loss is not finite.
-    NotFinite,
-    /// The observer asked to stop.
-    Interrupted,
-}
-
-/// Where the method stopped.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Minimum {
-    /// The best parameters met.
-    pub parameters: DVector<f64>,
-    /// Their sum of squares.
-    pub loss: f64,
-    /// The share of the loss that the last accepted step took off; infinite before there was one.
-    pub last_gain: f64,
-    /// Steps taken.
-    pub steps: u64,
-    /// Why it stopped.
-    pub reason: StopReason,
 }
 
 /// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
@@ -147,7 +107,7 @@ impl LevenbergMarquardt {
                 break StopReason::NotFinite;
             }
             if last_gain <= self.loss_tolerance {
-                break StopReason::LossSettled;
+                break StopReason::Settled;
             }
             if steps >= self.max_steps {
                 break StopReason::StepsSpent;

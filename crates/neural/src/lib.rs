@@ -1,18 +1,22 @@
 //! What the networks share on burn: double precision, affine-skip networks, Levenberg-Marquardt,
-//! safetensors.
+//! limited-memory BFGS, safetensors.
 //!
 //! burn computes forward and backward passes; what is added here is what reaching many digits takes:
 //! a device set to double precision, exact Jacobians of a network's values and of its input
-//! derivatives, and a least-squares optimizer that knows when rounding has the last word.
+//! derivatives, and optimizers that know when rounding has the last word.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod affine_skip;
 mod device;
+mod lbfgs;
 mod levenberg_marquardt;
+mod minimum;
 mod weights;
 
 pub use affine_skip::{AffineSkipNetwork, Linearization};
 pub use device::{device, tensor, values};
-pub use levenberg_marquardt::{Iteration, LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason};
+pub use lbfgs::{Lbfgs, Smooth};
+pub use levenberg_marquardt::{LeastSquares, LevenbergMarquardt, Linearized};
+pub use minimum::{Iteration, Minimum, StopReason};
 pub use weights::{NamedTensor, from_safetensors, to_safetensors};

@@ -91,7 +91,7 @@ fn rate_of(parameters: &DVector<f64>) -> f64 {
 fn stop(minimum: &Minimum) -> Stop {
     let steps = minimum.steps;
     let (reached, because) = match minimum.reason {
-        StopReason::LossSettled => (
+        StopReason::Settled => (
             Reached::Converged,
             format!("the last step lowered the loss by {:.0e} of itself", minimum.last_gain),
         ),
