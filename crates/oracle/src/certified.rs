@@ -99,7 +99,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64], intercept: Intercept) -> Res
     })
 }
 
-fn check(columns: &[&[f64]], y: &[f64]) -> Result<(), OracleError> {
+pub(crate) fn check(columns: &[&[f64]], y: &[f64]) -> Result<(), OracleError> {
     for (number, column) in (1..).zip(columns) {
         if column.len() != y.len() {
             return Err(OracleError::Shape { column: number, found: column.len(), expected: y.len() });

@@ -8,7 +8,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// An unevaluated sum `high + low` with |low| at most half a unit in the last place of `high`.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, PartialOrd, Default)]
 pub(crate) struct DoubleDouble {
     high: f64,
     low: f64,

@@ -42,6 +42,24 @@ pub enum OracleError {
         /// Number of the row, from 1.
         row: usize,
     },
+    /// A weight that is not positive and finite.
+    #[error("row {row} has weight {weight}; weights must be positive and finite. Leave the row out instead")]
+    Weight {
+        /// Number of the row, from 1.
+        row: usize,
+        /// The weight.
+        weight: f64,
+    },
+    /// Bounds with nothing between them, or not one pair for each parameter.
+    #[error("parameter {parameter} has no room between its bounds {low} and {high}")]
+    Bounds {
+        /// Number of the parameter, from 1.
+        parameter: usize,
+        /// Lower bound.
+        low: f64,
+        /// Upper bound.
+        high: f64,
+    },
     /// linfa refused.
     #[error("linfa-linear: {problem}")]
     Library {

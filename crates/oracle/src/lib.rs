@@ -3,16 +3,21 @@
 //! The oracle computes in double-double arithmetic of its own (about 31 decimal digits), states how
 //! many digits of its answer the conditioning of the problem leaves, and refuses to answer where fewer
 //! than four remain. It shares the envelope with the estimators and no arithmetic.
+//!
+//! Beside it stand the paper's eleven [`classical`] methods in plain double precision, and linfa-linear.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod certified;
+pub mod classical;
+mod curvature;
 mod decay;
 mod double_double;
 mod error;
 mod library;
 
 pub use certified::{Intercept, LinearFit, least_squares};
+pub use curvature::{Curvature, curvature};
 pub use decay::{DecayFit, decay_rate};
 pub use error::OracleError;
 pub use library::linfa_decay_rate;

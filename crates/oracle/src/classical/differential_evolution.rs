@@ -1,0 +1,261 @@
+//! Method 8: differential evolution.
+
+use super::line::{Line, pair};
+use super::problem::SmoothFunction;
+use super::vectors::length;
+use super::{ClassicalFit, ClassicalRoute, Reached};
+use crate::double_double::DoubleDouble;
+use crate::error::OracleError;
+use envelope::Envelope;
+use rand::{Rng, RngExt};
+use seed::Seed;
+
+/// Differential evolution on the sum of squares.
+pub const ROUTE: ClassicalRoute = ClassicalRoute {
+    id: "differential-evolution",
+    paper_number: 8,
+    title: "Differential evolution",
+    summary: "A population of lines evolves by differences of its members (rand/1/bin), without polishing.",
+    citations: &["Storn, Price, J. Global Optimization 11 (1997) 341"],
+    draws: true,
+    fit,
+};
+
+/// How a population evolves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Evolution {
+    /// Members, at least 4.
+    pub population: usize,
+    /// Factor F of the difference that is added, in 0..2.
+    pub difference: f64,
+    /// Chance CR that a parameter comes from the mutant, in 0..1.
+    pub crossover: f64,
+    /// Generations at most.
+    pub max_generations: u64,
+    /// Spread of the population at which it has contracted: of every parameter, over its range.
+    pub spread: f64,
+}
+
+/// Thirty members for the line's two parameters, as scipy's 15 for each.
+const LINE: Evolution =
+    Evolution { population: 30, difference: 0.6, crossover: 0.9, max_generations: 2000, spread: 1e-13 };
+
+/// |cos| of the angle between residuals and columns at which the best member counts as the minimum.
+const TOLERANCE: f64 = 1e-9;
+
+/// Where a population ended.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Evolved<V> {
+    /// The best member.
+    pub best: Vec<f64>,
+    /// The objective there.
+    pub value: V,
+    /// Generations.
+    pub generations: u64,
+    /// Largest spread of a parameter over its range at the end.
+    pub spread: f64,
+}
+
+fn fit(envelope: &Envelope, seed: &Seed) -> Result<ClassicalFit, OracleError> {
+    let line = Line::new(envelope);
+    let moments = Moments::new(&line);
+    let mut generator = seed.child("differential evolution").generator();
+    let edge = widest_slope(&line);
+    let evolved = minimize(|at| moments.sum_of_squares(at), &[[-edge, edge]; 2], LINE, &mut generator);
+    let (_, gradient) = line.value_and_gradient(&evolved.best);
+    let cosine = line.relative_gradient(&evolved.best, &gradient);
+    let reached = if cosine <= TOLERANCE {
+        Reached::Converged
+    } else if evolved.generations >= LINE.max_generations {
+        Reached::BudgetSpent
+    } else {
+        Reached::Stalled
+    };
+    let because = format!(
+        "population of {} spread over {:.1e} of the box after {} generations; the residuals' largest cosine \
+         with 1 and t is {cosine:.1e}, at most {TOLERANCE:.0e} wanted",
+        LINE.population, evolved.spread, evolved.generations
+    );
+    Ok(line.fit(&evolved.best, evolved.generations, reached, because))
+}
+
+/// One and a half times the steepest slope that values of standard deviation 1 can have (at perfect
+/// correlation); times start at 0, so the constant is no larger.
+fn widest_slope(line: &Line) -> f64 {
+    let count = line.u.len() as f64;
+    let mean = line.u.iter().sum::<f64>() / count;
+    let about: Vec<f64> = line.u.iter().map(|u| u - mean).collect();
+    1.5 * count.sqrt() / length(&about)
+}
+
+/// Minimizes an objective over a box by DE/rand/1/bin; ends when the population has contracted or the
+/// generations are spent. A trial outside the box is drawn anew in that parameter.
+///
+/// The objective's values only have to be comparable: one of more than double precision keeps the
+/// parameters from ending half-way to the double's digits, where the minimum is flat.
+pub fn minimize<V: PartialOrd + Copy>(
+    objective: impl Fn(&[f64]) -> V,
+    bounds: &[[f64; 2]],
+    evolution: Evolution,
+    generator: &mut impl Rng,
+) -> Evolved<V> {
+    let size = evolution.population.max(4);
+    let mut members: Vec<(Vec<f64>, V)> = (0..size)
+        .map(|_| {
+            let member: Vec<f64> = bounds.iter().map(|range| inside(range, generator)).collect();
+            let value = objective(&member);
+            (member, value)
+        })
+        .collect();
+    let mut generations = 0;
+    let mut spread = contracted(&members, bounds);
+    while spread > evolution.spread && generations < evolution.max_generations {
+        for target in 0..size {
+            let trial = mutate(&members, target, bounds, evolution, generator);
+            let value = objective(&trial);
+            if let Some(member) = members.get_mut(target).filter(|(_, old)| value <= *old) {
+                *member = (trial, value);
+            }
+        }
+        generations += 1;
+        spread = contracted(&members, bounds);
+    }
+    let better = |one: (Vec<f64>, V), other: (Vec<f64>, V)| if other.1 < one.1 { other } else { one };
+    let (best, value) = members.into_iter().reduce(better).unwrap_or_else(|| (Vec::new(), objective(&[])));
+    Evolved { best, value, generations, spread }
+}
+
+fn inside([low, high]: &[f64; 2], generator: &mut impl Rng) -> f64 {
+    low + (high - low) * generator.random::<f64>()
+}
+
+/// x₁ + F·(x₂ − x₃) of three different members, crossed with the target.
+fn mutate<V>(
+    members: &[(Vec<f64>, V)],
+    target: usize,
+    bounds: &[[f64; 2]],
+    evolution: Evolution,
+    generator: &mut impl Rng,
+) -> Vec<f64> {
+    let mut taken = vec![target];
+    while taken.len() < 4 {
+        let drawn = generator.random_range(0..members.len());
+        if !taken.contains(&drawn) {
+            taken.push(drawn);
+        }
+    }
+    let parent =
+        |at: usize| taken.get(at).and_then(|member| members.get(*member)).map(|member| member.0.iter());
+    let (Some(own), Some(base), Some(plus), Some(minus)) = (parent(0), parent(1), parent(2), parent(3))
+    else {
+        return Vec::new();
+    };
+    // One parameter comes from the mutant in any case.
+    let certain = generator.random_range(0..bounds.len().max(1));
+    own.zip(base)
+        .zip(plus.zip(minus))
+        .zip(bounds)
+        .enumerate()
+        .map(|(at, (((own, base), (plus, minus)), range))| {
+            if at != certain && generator.random::<f64>() >= evolution.crossover {
+                return *own;
+            }
+            let mutant = evolution.difference.mul_add(plus - minus, *base);
+            if (range[0]..=range[1]).contains(&mutant) { mutant } else { inside(range, generator) }
+        })
+        .collect()
+}
+
+/// Largest spread of a parameter over its range.
+fn contracted<V>(members: &[(Vec<f64>, V)], bounds: &[[f64; 2]]) -> f64 {
+    bounds
+        .iter()
+        .enumerate()
+        .map(|(at, [low, high])| {
+            let values = || members.iter().filter_map(|member| member.0.get(at).copied());
+            let widest = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+            if high > low { widest / (high - low) } else { 0.0 }
+        })
+        .fold(0.0, f64::max)
+}
+
+/// Sums of which the sum of squares of a line is made, in double-double numbers: the cancellation
+/// between them costs half of their 31 digits at most, and an evaluation does not grow with the peaks.
+struct Moments {
+    count: DoubleDouble,
+    u: DoubleDouble,
+    v: DoubleDouble,
+    uu: DoubleDouble,
+    uv: DoubleDouble,
+    vv: DoubleDouble,
+}
+
+impl Moments {
+    fn new(line: &Line) -> Self {
+        let exact = |values: &[f64]| values.iter().map(|&x| DoubleDouble::from(x)).collect::<Vec<_>>();
+        let (u, v) = (exact(&line.u), exact(&line.v));
+        let sum = |values: &[DoubleDouble]| values.iter().copied().sum::<DoubleDouble>();
+        let product = crate::double_double::dot;
+        Self {
+            count: DoubleDouble::from(line.u.len() as f64),
+            u: sum(&u),
+            v: sum(&v),
+            uu: product(&u, &u),
+            uv: product(&u, &v),
+            vv: product(&v, &v),
+        }
+    }
+
+    /// Σ(a + s·u − v)² = n·a² + 2as·Σu + s²·Σu² − 2a·Σv − 2s·Σuv + Σv².
+    fn sum_of_squares(&self, parameters: &[f64]) -> DoubleDouble {
+        let (slope, constant) = pair(parameters);
+        let (s, a) = (DoubleDouble::from(slope), DoubleDouble::from(constant));
+        let (twice_s, twice_a) = (s + s, a + a);
+        a * a * self.count + twice_a * s * self.u + s * s * self.uu - twice_a * self.v - twice_s * self.uv
+            + self.vv
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Evolution, Evolved, LINE, Moments, minimize};
+    use crate::classical::line::Line;
+    use crate::classical::problem::SmoothFunction;
+    use envelope::Envelope;
+    use seed::Seed;
+
+    /// Rastrigin's function: 11² local minima in this box, the least of them 0 at the origin.
+    fn rastrigin(x: &[f64]) -> f64 {
+        x.iter().map(|x| x * x + 10.0 - 10.0 * (std::f64::consts::TAU * x).cos()).sum()
+    }
+
+    fn evolve(seed: u64, evolution: Evolution) -> Evolved<f64> {
+        minimize(rastrigin, &[[-5.12, 5.12]; 2], evolution, &mut Seed::new(seed).generator())
+    }
+
+    #[test]
+    fn the_least_of_many_minima_is_found() {
+        for seed in 0..5 {
+            let evolved = evolve(seed, Evolution { spread: 1e-9, ..LINE });
+            assert!(evolved.best.iter().all(|x| x.abs() < 1e-7), "{evolved:?}");
+        }
+    }
+
+    #[test]
+    fn a_seed_means_what_it_says() {
+        let short = Evolution { max_generations: 20, ..LINE };
+        assert_eq!(evolve(1, short), evolve(1, short));
+        assert_ne!(evolve(1, short), evolve(2, short));
+        assert_eq!(evolve(1, short).generations, 20);
+    }
+
+    #[test]
+    fn the_moments_give_the_sum_of_squares() {
+        let times: Vec<f64> = (0..20).map(|i| f64::from(i) * 0.3).collect();
+        let logs = times.iter().map(|t| 1.0 - 0.2 * t + 0.3 * (5.0 * t).sin()).collect();
+        let line = Line::new(&Envelope::new(times, logs, 20.0).unwrap());
+        let (at, moments) = ([0.7, -0.4], Moments::new(&line));
+        let direct = line.value_and_gradient(&at).0;
+        assert!((moments.sum_of_squares(&at).value() / direct - 1.0).abs() < 1e-14);
+    }
+}

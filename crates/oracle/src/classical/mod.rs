@@ -1,0 +1,114 @@
+//! The paper's eleven classical methods, each by its own arithmetic.
+//!
+//! All eleven minimize Σ(ln A₀ − λ·t − ln A)². They differ in how, and so in how many digits they
+//! keep: [`CLASSICAL`] lists them in the paper's order. The linear ones take any design matrix and say
+//! how many digits they promise; the iterative ones take any problem that implements
+//! [`LeastSquaresProblem`] or [`SmoothFunction`] and say what they reached. None of them knows of
+//! [`crate::least_squares`], which they are measured against.
+
+mod line;
+mod linear;
+mod local;
+#[cfg(test)]
+mod nist;
+mod problem;
+mod reflection;
+#[cfg(test)]
+mod tests;
+mod vectors;
+
+pub mod differential_evolution;
+pub mod gradient_descent;
+pub mod l_bfgs;
+pub mod levenberg_marquardt;
+pub mod normal_equations;
+pub mod ols;
+pub mod polynomial_fit;
+pub mod qr;
+pub mod svd;
+pub mod trust_region;
+pub mod weighted_regression;
+
+use crate::error::OracleError;
+use envelope::Envelope;
+pub use linear::LinearSolution;
+pub use problem::{LeastSquaresProblem, LeastSquaresSolution, Limits, Minimum, SmoothFunction};
+use seed::Seed;
+
+/// What a method reached.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reached {
+    /// The residuals are orthogonal to the model's tangent space to within the stated tolerance; for a
+    /// direct method, the digits are promised.
+    Converged,
+    /// The budget of steps ended first.
+    BudgetSpent,
+    /// No step improves the fit, and the residuals are not orthogonal either.
+    Stalled,
+}
+
+impl Reached {
+    /// The name as results write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::BudgetSpent => "budget_spent",
+            Self::Stalled => "stalled",
+        }
+    }
+}
+
+/// What a classical method makes of an envelope.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassicalFit {
+    /// λ, in 1/s.
+    pub decay_rate: f64,
+    /// ln A₀, at the first peak.
+    pub log_amplitude: f64,
+    /// Standard error of λ under independent residuals of one variance, in 1/s; `None` where the method
+    /// gives none.
+    pub std_error: Option<f64>,
+    /// Significant digits promised for λ and ln A₀; `None` where the method promises none.
+    pub promised_digits: Option<f64>,
+    /// Steps taken: iterations, generations, or 1 for a direct method.
+    pub steps: u64,
+    /// What was reached.
+    pub reached: Reached,
+    /// Why it stopped there: a sentence with numbers.
+    pub because: String,
+}
+
+/// One of the paper's classical methods.
+#[derive(Debug, Clone, Copy)]
+pub struct ClassicalRoute {
+    /// Name in tables and configurations.
+    pub id: &'static str,
+    /// Number in the paper's Tables 1 and 4.
+    pub paper_number: u8,
+    /// Title.
+    pub title: &'static str,
+    /// What it does, in a sentence.
+    pub summary: &'static str,
+    /// Sources.
+    pub citations: &'static [&'static str],
+    /// Whether it draws from the seed, so that another seed takes another way.
+    pub draws: bool,
+    /// Fits an envelope.
+    pub fit: fn(&Envelope, &Seed) -> Result<ClassicalFit, OracleError>,
+}
+
+/// The paper's classical methods, by number.
+pub const CLASSICAL: &[ClassicalRoute] = &[
+    ols::ROUTE,
+    polynomial_fit::ROUTE,
+    normal_equations::ROUTE,
+    qr::ROUTE,
+    svd::ROUTE,
+    gradient_descent::ROUTE,
+    l_bfgs::ROUTE,
+    differential_evolution::ROUTE,
+    levenberg_marquardt::ROUTE,
+    trust_region::ROUTE,
+    weighted_regression::ROUTE,
+];

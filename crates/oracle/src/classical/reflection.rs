@@ -1,0 +1,252 @@
+//! Steps of the trust-region reflective method: the subproblem in the ball, and what the bounds leave of
+//! its solution.
+
+use super::svd::decompose;
+use super::vectors::{add_scaled, combine, dot, length, times};
+
+/// m(s) = ½‖B·s‖² + g·s, with the singular values of B.
+pub(super) struct Model {
+    columns: Vec<Vec<f64>>,
+    gradient: Vec<f64>,
+    right: Vec<Vec<f64>>,
+    values: Vec<f64>,
+    /// Vᵀg.
+    turned: Vec<f64>,
+}
+
+impl Model {
+    pub(super) fn new(columns: Vec<Vec<f64>>, gradient: Vec<f64>) -> Self {
+        let parts = decompose(columns.clone());
+        let turned = parts.right.iter().map(|v| dot(v, &gradient)).collect();
+        Self { columns, gradient, right: parts.right, values: parts.values, turned }
+    }
+
+    pub(super) fn gradient(&self) -> &[f64] {
+        &self.gradient
+    }
+
+    /// The model at a step; negative is a gain.
+    pub(super) fn value(&self, step: &[f64]) -> f64 {
+        let image = combine(&self.columns, step);
+        dot(&image, &image).mul_add(0.5, dot(&self.gradient, step))
+    }
+
+    /// The model's minimum in the ball, by Newton's method on the length of −V·(Vᵀg/(σ² + α)).
+    pub(super) fn within(&self, radius: f64) -> Vec<f64> {
+        let largest = self.values.iter().copied().fold(0.0, f64::max);
+        let smallest = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let full_rank = smallest > f64::EPSILON * self.columns.len() as f64 * largest;
+        let mut low = 0.0;
+        if full_rank {
+            let newton = self.step(0.0);
+            let size = length(&newton);
+            if size <= radius {
+                return newton;
+            }
+            low = (size - radius) / self.decrease(0.0, size);
+        }
+        let mut high = length(&self.turned) / radius;
+        let mut damping = f64::max(1e-3 * high, (low * high).sqrt());
+        for _ in 0..20 {
+            if damping < low || damping > high {
+                damping = f64::max(1e-3 * high, (low * high).sqrt());
+            }
+            let size = length(&self.step(damping));
+            let misfit = size - radius;
+            if misfit.abs() < 0.01 * radius {
+                break;
+            }
+            let slope = self.decrease(damping, size);
+            if misfit < 0.0 {
+                high = damping;
+            }
+            low = f64::max(low, damping + misfit / slope);
+            damping += misfit / slope * size / radius;
+        }
+        let mut step = self.step(damping);
+        // On the sphere itself, so that the next damping starts no further out.
+        let size = length(&step);
+        if size > 0.0 {
+            step.iter_mut().for_each(|x| *x *= radius / size);
+        }
+        step
+    }
+
+    fn step(&self, damping: f64) -> Vec<f64> {
+        let shares: Vec<f64> = self
+            .turned
+            .iter()
+            .zip(&self.values)
+            .map(|(g, value)| if *g == 0.0 { 0.0 } else { -g / value.mul_add(*value, damping) })
+            .collect();
+        combine(&self.right, &shares)
+    }
+
+    /// Minus the derivative of the step's length by the damping.
+    fn decrease(&self, damping: f64, size: f64) -> f64 {
+        self.turned
+            .iter()
+            .zip(&self.values)
+            .map(|(g, value)| g * g / value.mul_add(*value, damping).powi(3))
+            .sum::<f64>()
+            / size
+    }
+
+    /// The factor in low..=high of `direction` that minimizes the model from `from` on, and the value.
+    fn along(&self, from: &[f64], direction: &[f64], low: f64, high: f64) -> (f64, f64) {
+        let image = combine(&self.columns, direction);
+        let base = combine(&self.columns, from);
+        let curvature = 0.5 * dot(&image, &image);
+        let slope = dot(&base, &image) + dot(&self.gradient, direction);
+        let constant = self.value(from);
+        let at = |factor: f64| (factor, factor.mul_add(factor.mul_add(curvature, slope), constant));
+        let inner = -0.5 * slope / curvature;
+        let ends = if at(low).1 <= at(high).1 { at(low) } else { at(high) };
+        if curvature > 0.0 && inner > low && inner < high && at(inner).1 < ends.1 { at(inner) } else { ends }
+    }
+}
+
+/// A box.
+pub(super) struct Walls<'a> {
+    pub(super) low: &'a [f64],
+    pub(super) high: &'a [f64],
+}
+
+impl Walls<'_> {
+    pub(super) fn contain(&self, x: &[f64]) -> bool {
+        x.iter().zip(self.low.iter().zip(self.high)).all(|(x, (low, high))| low < x && x < high)
+    }
+
+    /// How far along a direction the box goes, and which walls end it.
+    fn reach(&self, x: &[f64], direction: &[f64]) -> (f64, Vec<bool>) {
+        let room: Vec<f64> = x
+            .iter()
+            .zip(direction)
+            .zip(self.low.iter().zip(self.high))
+            .map(|((x, d), (low, high))| match *d {
+                d if d > 0.0 => (high - x) / d,
+                d if d < 0.0 => (low - x) / d,
+                _ => f64::INFINITY,
+            })
+            .collect();
+        let least = room.iter().copied().fold(f64::INFINITY, f64::min);
+        (least, room.iter().map(|room| *room == least).collect())
+    }
+
+    /// The nearest point strictly inside.
+    pub(super) fn inside(&self, x: &[f64]) -> Vec<f64> {
+        x.iter()
+            .zip(self.low.iter().zip(self.high))
+            .map(|(x, (low, high))| {
+                let inner = x.max(low.next_up()).min(high.next_down());
+                // Bounds next to each other leave nothing strictly between.
+                if *low < inner && inner < *high { inner } else { f64::midpoint(*low, *high) }
+            })
+            .collect()
+    }
+}
+
+/// The best of three steps in scaled variables s (x moves by d∘s): the trust-region step cut short of
+/// the walls, the same reflected at the first wall, and the gradient's. Gives s and the model's value.
+///
+/// Reference: Branch, Coleman, Li, SIAM J. Sci. Comput. 21 (1999) 1, section 4.
+pub(super) fn select(
+    model: &Model,
+    walls: &Walls,
+    x: &[f64],
+    scale: &[f64],
+    radius: f64,
+    share: f64,
+) -> (Vec<f64>, f64) {
+    let step = model.within(radius);
+    let moved = |s: &[f64]| {
+        let mut x = x.to_vec();
+        add_scaled(&mut x, 1.0, &times(scale, s));
+        x
+    };
+    if walls.contain(&moved(&step)) {
+        let value = model.value(&step);
+        return (step, value);
+    }
+    let (room, hits) = walls.reach(x, &times(scale, &step));
+    let to_wall: Vec<f64> = step.iter().map(|s| s * room).collect();
+
+    let cut: Vec<f64> = to_wall.iter().map(|s| s * share).collect();
+    let mut best = (model.value(&cut), cut);
+
+    let mut reflected = step.clone();
+    for (s, hit) in reflected.iter_mut().zip(&hits) {
+        if *hit {
+            *s = -*s;
+        }
+    }
+    let (next_room, _) = walls.reach(&moved(&to_wall), &times(scale, &reflected));
+    let to_sphere = exit(&to_wall, &reflected, radius);
+    let (low, high) = if next_room < to_sphere {
+        ((1.0 - share) * room / next_room, share * next_room)
+    } else {
+        ((1.0 - share) * room / to_sphere, to_sphere)
+    };
+    if high > 0.0 && low <= high {
+        let (factor, value) = model.along(&to_wall, &reflected, low, high);
+        if value < best.0 {
+            let mut s = to_wall;
+            add_scaled(&mut s, factor, &reflected);
+            best = (value, s);
+        }
+    }
+
+    let down: Vec<f64> = model.gradient().iter().map(|g| -g).collect();
+    let to_sphere = radius / length(&down);
+    let (room, _) = walls.reach(x, &times(scale, &down));
+    let most = if room < to_sphere { share * room } else { to_sphere };
+    let (factor, value) = model.along(&vec![0.0; down.len()], &down, 0.0, most);
+    if value < best.0 {
+        best = (value, down.iter().map(|s| s * factor).collect());
+    }
+    (best.1, best.0)
+}
+
+/// Where a ray from inside a ball leaves it.
+fn exit(from: &[f64], direction: &[f64], radius: f64) -> f64 {
+    let (a, b) = (dot(direction, direction), dot(from, direction));
+    let c = dot(from, from) - radius * radius;
+    let root = (b * b - a * c).max(0.0).sqrt();
+    if b > 0.0 { -c / (b + root) } else { (root - b) / a }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Model, exit};
+    use crate::classical::vectors::length;
+
+    #[test]
+    fn the_step_in_the_ball_solves_the_damped_equations() {
+        let model = Model::new(vec![vec![2.0, 0.0, 1.0], vec![1.0, 3.0, -1.0]], vec![-4.0, 7.0]);
+        let free = model.within(1e3);
+        // BᵀB = [[5, 1], [1, 11]].
+        assert!((5.0 * free[0] + free[1] - 4.0).abs() < 1e-13, "{free:?}");
+        assert!((free[0] + 11.0 * free[1] + 7.0).abs() < 1e-13, "{free:?}");
+        let held = model.within(0.3);
+        assert!((length(&held) - 0.3).abs() < 1e-15);
+        // −g − BᵀB·s is parallel to s, to within the hundredth that the damping is found to.
+        let rest = [4.0 - 5.0 * held[0] - held[1], -7.0 - held[0] - 11.0 * held[1]];
+        assert!((rest[0] * held[1] - rest[1] * held[0]).abs() < 0.02 * 8.0 * 0.3);
+    }
+
+    #[test]
+    fn a_singular_model_still_gives_a_step() {
+        let model = Model::new(vec![vec![1.0, 1.0], vec![1.0, 1.0]], vec![1.0, 0.0]);
+        assert!((length(&model.within(2.0)) - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_ray_leaves_the_ball_on_the_sphere() {
+        for direction in [[1.0, 2.0], [-1.0, 0.5]] {
+            let from = [0.5, -0.25];
+            let t = exit(&from, &direction, 2.0);
+            let end = [from[0] + t * direction[0], from[1] + t * direction[1]];
+            assert!(t > 0.0 && (length(&end) - 2.0).abs() < 1e-14);
+        }
+    }
+}
