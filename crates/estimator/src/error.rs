@@ -15,6 +15,19 @@ pub enum FitError {
         /// Fewest peaks it can work with.
         needed: usize,
     },
+    /// The envelope has more peaks than this method is allowed to spend its time on.
+    #[error(
+        "{estimator} takes at most {most} peaks, its time going with their cube; the envelope has {found}: \
+         thin the envelope or raise estimator.most_peaks"
+    )]
+    TooManyPeaks {
+        /// The estimator.
+        estimator: &'static str,
+        /// Peaks found.
+        found: usize,
+        /// Most peaks allowed.
+        most: usize,
+    },
     /// Every amplitude is the same, or the spread is not finite: nothing to scale by.
     #[error("the amplitudes of the envelope have a spread of {spread:e}: there is no decay to learn from")]
     NoSpread {

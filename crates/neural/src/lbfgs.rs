@@ -102,20 +102,14 @@ impl Lbfgs {
             if steps >= self.max_steps {
                 break StopReason::StepsSpent;
             }
-            let mut direction = -inverse_hessian_times(&pairs, &point.gradient);
-            if direction.dot(&point.gradient) >= 0.0 {
+            let mut next = descend(problem, &point, &pairs)?;
+            if next.is_none() && !pairs.is_empty() {
                 // Rounding has spoiled the pairs: begin anew downhill.
                 pairs.clear();
-                direction = -&point.gradient;
+                next = descend(problem, &point, &pairs)?;
             }
-            // Without a curvature pair the gradient has no scale.
-            let length = if pairs.is_empty() { (1.0 / point.gradient.norm()).min(1.0) } else { 1.0 };
-            let Some(next) = line_search(problem, &point, &direction, length)? else {
-                if pairs.is_empty() {
-                    break StopReason::Stationary;
-                }
-                pairs.clear();
-                continue;
+            let Some(next) = next else {
+                break StopReason::Stationary;
             };
             steps += 1;
             last_gain = (point.loss - next.loss) / point.loss.abs();
@@ -124,6 +118,17 @@ impl Lbfgs {
         };
         Ok(Minimum { parameters: point.parameters, loss: point.loss, last_gain, steps, reason })
     }
+}
+
+/// The point a step further along the quasi-Newton direction; `None` where that does not lead down.
+fn descend<P: Smooth>(problem: &P, point: &Point, pairs: &VecDeque<Pair>) -> Result<Option<Point>, P::Error> {
+    let direction = -inverse_hessian_times(pairs, &point.gradient);
+    if direction.dot(&point.gradient) >= 0.0 {
+        return Ok(None);
+    }
+    // Without a curvature pair the gradient has no scale.
+    let length = if pairs.is_empty() { (1.0 / point.gradient.norm()).min(1.0) } else { 1.0 };
+    line_search(problem, point, &direction, length)
 }
 
 /// The two-loop recursion: the approximate inverse Hessian times a vector.
@@ -257,6 +262,17 @@ mod tests {
             })
             .unwrap();
         assert_eq!((stopped.reason, stopped.steps), (StopReason::Interrupted, 2));
+    }
+
+    #[test]
+    fn every_step_is_told_once() {
+        let start = DVector::from_fn(20, |at, _| if at % 2 == 0 { -1.2 } else { 1.0 });
+        let mut told = Vec::new();
+        let minimum = METHOD.minimize(&Rosenbrock, start, |state| {
+            told.push(state.step);
+            ControlFlow::Continue(())
+        });
+        assert_eq!(told, (0..=minimum.unwrap().steps).collect::<Vec<_>>());
     }
 
     #[test]

@@ -1,5 +1,5 @@
-//! What the networks share on burn: double precision, affine-skip networks, Levenberg-Marquardt,
-//! limited-memory BFGS, safetensors.
+//! What the networks share on burn: double precision, affine-skip networks, encoders of a decay,
+//! parameters as a flat list, Levenberg-Marquardt, limited-memory BFGS, safetensors.
 //!
 //! burn computes forward and backward passes; what is added here is what reaching many digits takes:
 //! a device set to double precision, exact Jacobians of a network's values and of its input
@@ -8,14 +8,18 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod affine_skip;
+mod decay;
 mod device;
+mod flat;
 mod lbfgs;
 mod levenberg_marquardt;
 mod minimum;
 mod weights;
 
 pub use affine_skip::{AffineSkipNetwork, Linearization};
+pub use decay::{Differentiated, Encoder, Reconstruction, Sequence};
 pub use device::{device, tensor, values};
+pub use flat::{flat_gradient, named_parameters, with_parameters};
 pub use lbfgs::{Lbfgs, Smooth};
 pub use levenberg_marquardt::{LeastSquares, LevenbergMarquardt, Linearized};
 pub use minimum::{Iteration, Minimum, StopReason};

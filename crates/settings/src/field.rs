@@ -25,6 +25,13 @@ pub enum Kind {
     Text,
     /// One of a fixed set of words.
     Choice(&'static [&'static str]),
+    /// A list of texts.
+    Texts {
+        /// Fewest entries allowed.
+        at_least: usize,
+        /// Most entries allowed.
+        at_most: usize,
+    },
     /// A list of whole numbers within bounds.
     Integers {
         /// Smallest value allowed for an entry.
@@ -64,6 +71,8 @@ pub enum Default {
     Float(f64),
     /// Text.
     Text(&'static str),
+    /// A list of texts.
+    Texts(&'static [&'static str]),
     /// A list of whole numbers.
     Integers(&'static [i64]),
     /// A list of numbers.
@@ -80,6 +89,9 @@ impl Default {
             Self::Integer(value) => Some(Value::Integer(value)),
             Self::Float(value) => Some(Value::Float(value)),
             Self::Text(value) => Some(Value::String(value.to_owned())),
+            Self::Texts(values) => {
+                Some(Value::Array(values.iter().map(|&value| Value::String(value.to_owned())).collect()))
+            }
             Self::Integers(values) => {
                 Some(Value::Array(values.iter().map(|&value| Value::Integer(value)).collect()))
             }
@@ -131,6 +143,16 @@ impl Kind {
             (Self::Choice(words), Value::String(text)) => {
                 words.contains(&text.as_str()).then(|| value.clone())
             }
+            (&Self::Texts { at_least, at_most }, Value::Array(entries)) => {
+                let fits = (at_least..=at_most).contains(&entries.len())
+                    && entries.iter().all(|entry| matches!(entry, Value::String(_)));
+                fits.then(|| value.clone())
+            }
+            // On a command line `a,b` is easier to write than `["a","b"]`.
+            (Self::Texts { .. }, Value::String(text)) => {
+                let parts = text.split(',').map(|part| Value::String(part.trim().to_owned()));
+                return self.admit(&Value::Array(parts.collect()));
+            }
             (&Self::Integers { min, max, at_least, at_most }, Value::Array(entries)) => {
                 let fits = (at_least..=at_most).contains(&entries.len())
                     && entries
@@ -159,6 +181,9 @@ impl Kind {
             Self::Choice(words) => {
                 let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
                 format!("one of {}", quoted.join(", "))
+            }
+            Self::Texts { at_least, at_most } => {
+                format!("a list of {at_least} to {at_most} texts in quotes")
             }
             Self::Integers { min, max, at_least, at_most } => {
                 format!("a list of {at_least} to {at_most} whole numbers, each {}", range(min, max))

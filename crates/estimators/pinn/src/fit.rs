@@ -152,8 +152,9 @@ fn uncertainty(
         return Ok(None);
     };
     let peaks = objective.times.len();
-    let data: DMatrix<f64> = jacobian.rows(0, peaks).into_owned();
-    let effective = (&data * factor.solve(&data.transpose())).trace();
+    // The trace of D·A⁻¹·Dᵀ, D the data rows, as that of A⁻¹·DᵀD: parameters by parameters.
+    let data = jacobian.rows(0, peaks);
+    let effective = factor.solve(&data.tr_mul(&data)).trace();
     let degrees = peaks as f64 - effective;
     if degrees < 1.0 {
         return Ok(None);

@@ -1,0 +1,143 @@
+//! The settings.
+
+use serde::Deserialize;
+use settings::{Default, Field, Kind};
+
+/// What gives λ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Method {
+    /// The posterior mean in closed form.
+    Conjugate,
+    /// The mean of the no-U-turn sampler's draws.
+    Nuts,
+}
+
+/// Settings of the Bayesian regression. The ranges and defaults are in the registry's fields.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct BayesianConfig {
+    /// What gives λ.
+    pub method: Method,
+    /// κ: prior standard deviation of ln A₀ and λ, in units of the scatter.
+    pub prior_width: f64,
+    /// a₀: shape of the prior of the scatter's variance.
+    pub prior_noise_shape: f64,
+    /// b₀: rate of the prior of the scatter's variance, in units of the variance of ln A.
+    pub prior_noise_rate: f64,
+    /// Whether the sampler checks the closed form.
+    pub check_by_sampling: bool,
+    /// Number of chains.
+    pub chains: usize,
+    /// Transitions of each chain that tune the sampler and are thrown away.
+    pub warm_up: u64,
+    /// Draws of each chain after that.
+    pub draws: u64,
+    /// Acceptance that the step size is tuned for.
+    pub target_acceptance: f64,
+    /// Most doublings of a trajectory.
+    pub deepest_tree: u32,
+    /// Fewest effective draws, bulk and tail, for the sampler to have converged.
+    pub least_effective_draws: f64,
+    /// Half the width of the interval the chains' starts are drawn from, in scaled units.
+    pub initial_scale: f64,
+}
+
+/// The configuration keys.
+pub(crate) const FIELDS: &[Field] = &[
+    Field {
+        key: "method",
+        kind: Kind::Choice(&["conjugate", "nuts"]),
+        default: Default::Text("conjugate"),
+        unit: "",
+        meaning: "What gives the decay rate: the posterior mean in closed form or the sampler's draws.",
+        source: "both are the same posterior; the closed form has no Monte-Carlo error",
+    },
+    Field {
+        key: "prior_width",
+        kind: Kind::Float { min: 0.1, max: 1e8 },
+        default: Default::Float(1e5),
+        unit: "standard deviations of the scatter",
+        meaning: "Prior standard deviation of ln A0 about the mean ln A, and of the whole decay about 0.",
+        source: "pulls the rate of 69 peaks by 0.22 / width^2 of itself: 2e-11; 100 pulls by 2e-5",
+    },
+    Field {
+        key: "prior_noise_shape",
+        kind: Kind::Float { min: -1.0, max: 1e6 },
+        default: Default::Float(-1.0),
+        unit: "",
+        meaning: "Shape of the inverse-gamma prior of the scatter's variance; proper if both are above 0.",
+        source: "with a wide prior, -1 and rate 0 give the reference posterior (Gelman et al. 2013, 14.2)",
+    },
+    Field {
+        key: "prior_noise_rate",
+        kind: Kind::Float { min: 0.0, max: 1e6 },
+        default: Default::Float(0.0),
+        unit: "variances of ln A",
+        meaning: "Rate of the inverse-gamma prior of the scatter's variance.",
+        source: "see prior_noise_shape",
+    },
+    Field {
+        key: "check_by_sampling",
+        kind: Kind::Boolean,
+        default: Default::Boolean(true),
+        unit: "",
+        meaning: "Whether the sampler checks the closed form; it never changes it.",
+        source: "a few milliseconds",
+    },
+    Field {
+        key: "chains",
+        kind: Kind::Integer { min: 2, max: 64 },
+        default: Default::Integer(4),
+        unit: "",
+        meaning: "Number of chains, each from its own drawn start.",
+        source: "Vehtari et al. 2021, section 4",
+    },
+    Field {
+        key: "warm_up",
+        kind: Kind::Integer { min: 100, max: 1_000_000 },
+        default: Default::Integer(500),
+        unit: "",
+        meaning: "Transitions of each chain that tune step size and metric and are thrown away.",
+        source: "half of Stan's 1000: three parameters",
+    },
+    Field {
+        key: "draws",
+        kind: Kind::Integer { min: 4, max: 1_000_000 },
+        default: Default::Integer(1000),
+        unit: "",
+        meaning: "Draws of each chain after the warm-up.",
+        source: "Stan's default",
+    },
+    Field {
+        key: "target_acceptance",
+        kind: Kind::Float { min: 0.5, max: 0.99 },
+        default: Default::Float(0.8),
+        unit: "",
+        meaning: "Acceptance that the step size is tuned for.",
+        source: "Stan's default",
+    },
+    Field {
+        key: "deepest_tree",
+        kind: Kind::Integer { min: 1, max: 15 },
+        default: Default::Integer(10),
+        unit: "",
+        meaning: "Most doublings of a trajectory.",
+        source: "Stan's default",
+    },
+    Field {
+        key: "least_effective_draws",
+        kind: Kind::Float { min: 100.0, max: 1e9 },
+        default: Default::Float(400.0),
+        unit: "",
+        meaning: "Fewest effective draws, bulk and tail, for the sampler to have converged.",
+        source: "Vehtari et al. 2021, section 4: 400 with four chains",
+    },
+    Field {
+        key: "initial_scale",
+        kind: Kind::Float { min: 0.01, max: 10.0 },
+        default: Default::Float(1.0),
+        unit: "",
+        meaning: "The chains start uniformly within this far from zero, in scaled units.",
+        source: "many widths of the posterior apart, and short of any nearly straight envelope's answer",
+    },
+];

@@ -1,0 +1,176 @@
+//! The match as a problem of least squares.
+
+use crate::dual::Dual;
+use crate::oscillator::{Oscillator, Peak, Viscous};
+use envelope::Envelope;
+use estimator::FitError;
+use nalgebra::{Matrix2, Vector2};
+use std::f64::consts::TAU;
+
+/// Fewest periods that are simulated.
+const FEWEST_PERIODS: f64 = 4.0;
+
+/// Most that ln A may change within a simulated period, so that the motion stays an oscillation.
+const MOST_CHANGE_PER_PERIOD: f64 = 2.0;
+
+/// What rounding leaves of ln A after the simulation of some tens of periods.
+const SIMULATION_NOISE: f64 = 1e-13;
+
+/// Most periods however much ln A changes: a simulation of seconds. Beyond, it is not finite.
+const LIMIT: f64 = 1e6;
+
+/// The measured envelope in scaled coordinates, and the oscillator that it is matched by.
+///
+/// x = t/T in 0..1 with T the record's length, z = (ln A − mean)/spread: a range, a mean and a standard
+/// deviation, no line. Parameters: z at time 0, and λ·T/spread.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Matching {
+    duration_s: f64,
+    mean: f64,
+    spread: f64,
+    times: Vec<f64>,
+    targets: Vec<f64>,
+    /// Angular frequency per record.
+    omega: f64,
+    steps_per_period: f64,
+}
+
+/// The residuals' sum of squares and what Gauss and Newton need of it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Linearized {
+    pub(crate) loss: f64,
+    /// JᵀJ.
+    pub(crate) normal: Matrix2<f64>,
+    /// Jᵀr.
+    pub(crate) gradient: Vector2<f64>,
+    /// The simulated envelope at the measured times, scaled.
+    pub(crate) fitted: Vec<f64>,
+}
+
+impl Matching {
+    pub(crate) fn new(
+        envelope: &Envelope,
+        steps_per_period: usize,
+        most_periods: usize,
+    ) -> Result<Self, FitError> {
+        let duration_s = envelope.times_s().last().copied().unwrap_or_default();
+        let logs = envelope.log_amplitudes();
+        let count = logs.len() as f64;
+        let mean = logs.iter().sum::<f64>() / count;
+        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
+        // Below this the logarithms differ by their rounding only.
+        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
+            return Err(FitError::NoSpread { spread });
+        }
+        // The envelope of a linear oscillator does not depend on its frequency. So the frequency may leave
+        // the measured one where the record is too long to simulate, or too short for a second peak.
+        let fewest = FEWEST_PERIODS.max(4.0 * spread / MOST_CHANGE_PER_PERIOD).min(LIMIT);
+        let periods = (envelope.omega_rad_s() * duration_s / TAU).min(most_periods as f64).max(fewest);
+        Ok(Self {
+            duration_s,
+            mean,
+            spread,
+            times: envelope.times_s().iter().map(|time| time / duration_s).collect(),
+            targets: logs.iter().map(|log| (log - mean) / spread).collect(),
+            omega: TAU * periods,
+            steps_per_period: steps_per_period as f64,
+        })
+    }
+
+    /// Number of measured peaks.
+    pub(crate) fn len(&self) -> usize {
+        self.targets.len()
+    }
+
+    /// ln A of a scaled value.
+    pub(crate) fn log_amplitude(&self, scaled: f64) -> f64 {
+        self.mean + self.spread * scaled
+    }
+
+    /// A rate in 1/s from one in scaled units.
+    pub(crate) fn rate(&self, scaled: f64) -> f64 {
+        scaled * self.spread / self.duration_s
+    }
+
+    /// What rounding leaves of ln A after a simulation, scaled.
+    pub(crate) fn simulation_noise(&self) -> f64 {
+        SIMULATION_NOISE / self.spread
+    }
+
+    /// What the loss is when the match is exact but for rounding.
+    pub(crate) fn rounding(&self) -> f64 {
+        let digit = self.simulation_noise() + 4.0 * f64::EPSILON * (1.0 + (self.mean / self.spread).abs());
+        self.len() as f64 * digit * digit
+    }
+
+    /// Simulates and compares. `None` where the simulation is not finite.
+    pub(crate) fn linearize(&self, parameters: &Vector2<f64>) -> Option<Linearized> {
+        let rate = Dual::variable(parameters.y * self.spread);
+        let oscillator = Oscillator {
+            stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
+            damping: Viscous { rate },
+        };
+        let peaks = oscillator.peaks(1.0, TAU / self.omega / self.steps_per_period)?;
+        let mut normal = Matrix2::zeros();
+        let mut gradient = Vector2::zeros();
+        let mut loss = 0.0;
+        let mut fitted = Vec::with_capacity(self.len());
+        for (log_height, target) in read(&peaks, &self.times).zip(&self.targets) {
+            let value = parameters.x + log_height.value / self.spread;
+            // By λ·T/spread: both scales cancel.
+            let row = Vector2::new(1.0, log_height.slope);
+            let residual = value - target;
+            fitted.push(value);
+            loss += residual * residual;
+            gradient += row * residual;
+            normal += row * row.transpose();
+        }
+        let finite = loss.is_finite() && normal.iter().chain(&gradient).all(|entry| entry.is_finite());
+        (finite && fitted.len() == self.len()).then_some(Linearized { loss, normal, gradient, fitted })
+    }
+}
+
+/// The simulated envelope at increasing times: between two peaks the straight line of ln A.
+fn read<'a>(peaks: &'a [Peak], times: &'a [f64]) -> impl Iterator<Item = Dual> + 'a {
+    let mut spans = peaks.iter().zip(peaks.iter().skip(1)).peekable();
+    times.iter().map_while(move |&time| {
+        while spans.next_if(|(_, after)| after.time.value < time).is_some() {}
+        let (before, after) = spans.peek()?;
+        let share = (Dual::constant(time) - before.time) / (after.time - before.time);
+        Some(before.log_height + share * (after.log_height - before.log_height))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matching() -> Matching {
+        let times: Vec<f64> = [0.0, 0.31, 0.55, 0.9, 1.13, 1.49].to_vec();
+        let logs = vec![0.2, 0.1, 0.05, -0.1, -0.2, -0.22];
+        Matching::new(&Envelope::new(times, logs, 21.0).unwrap(), 8, 1000).unwrap()
+    }
+
+    #[test]
+    fn the_derivatives_are_those_of_differences() {
+        let (at, step) = (Vector2::new(0.3, 1.2), 1e-2);
+        let matching = matching();
+        let here = matching.linearize(&at).unwrap();
+        for (axis, unit) in [Vector2::x(), Vector2::y()].into_iter().enumerate() {
+            let loss = |way: f64| matching.linearize(&(at + unit * way)).unwrap().loss;
+            let slope = (loss(step) - loss(-step)) / (2.0 * step);
+            assert!((here.gradient[axis] - slope / 2.0).abs() < 1e-8, "{axis}");
+            let curvature = (loss(step) - 2.0 * here.loss + loss(-step)) / (step * step);
+            // The residuals are linear in the parameters but for the second order of the integrator.
+            assert!((here.normal[(axis, axis)] / curvature * 2.0 - 1.0).abs() < 1e-5, "{axis} {curvature}");
+        }
+    }
+
+    #[test]
+    fn the_simulated_envelope_is_read_between_its_peaks() {
+        let at = |time: f64, log: f64| Peak { time: Dual::constant(time), log_height: Dual::constant(log) };
+        let peaks = [at(0.0, 0.0), at(1.0, -1.0), at(2.0, -4.0)];
+        let found: Vec<f64> = read(&peaks, &[0.0, 0.5, 1.0, 1.5, 2.0, 2.1]).map(|log| log.value).collect();
+        assert_eq!(found, [0.0, -0.5, -1.0, -2.5, -4.0]);
+    }
+}

@@ -1,0 +1,238 @@
+//! Training.
+
+use crate::config::LstmConfig;
+use crate::network::Network;
+use envelope::Envelope;
+use estimator::{Estimate, Estimator, FitContext, FitError};
+use neural::{Reconstruction, device};
+
+impl Estimator for LstmConfig {
+    fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
+        let device = device()?;
+        let network = Network::zeros(self.hidden_units, &device);
+        let start = network.draw(self.initial_scale, &mut context.seed("initial weights").generator())?;
+        let training = Reconstruction {
+            longest_sequence: self.longest_sequence,
+            max_steps: self.max_steps,
+            memory: self.memory,
+            gradient_tolerance: self.gradient_tolerance,
+        };
+        training.fit(envelope, context, &network, start, &device)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ENTRY;
+    use estimator::{Cancel, Observer, Reached, Silent, Step};
+    use neural::from_safetensors;
+    use rand::RngExt;
+    use rand_distr::StandardNormal;
+    use seed::Seed;
+    use settings::{Document, Resolved, Section};
+    use std::cell::RefCell;
+
+    fn config() -> LstmConfig {
+        let sections = [Section { name: "estimator", fields: ENTRY.fields }];
+        let resolved = Resolved::new(&Document::default(), &sections).unwrap();
+        resolved.section("estimator").unwrap()
+    }
+
+    fn scatter(at: usize) -> f64 {
+        (at * 7919 % 101) as f64 / 101.0 - 0.5
+    }
+
+    /// Times that are not quite even.
+    fn times(count: usize) -> Vec<f64> {
+        (0..count).map(|at| 0.288 * at as f64 + 0.02 * (scatter(at) - scatter(0))).collect()
+    }
+
+    fn envelope_of(log_amplitude: impl Fn(usize, f64) -> f64) -> Envelope {
+        let times = times(69);
+        let logs = times.iter().enumerate().map(|(at, &t)| log_amplitude(at, t)).collect();
+        Envelope::new(times, logs, 21.8).unwrap()
+    }
+
+    /// An envelope that is no exponential: it bends and scatters.
+    fn envelope() -> Envelope {
+        envelope_of(|at, t| -0.6 - 0.25 * t + 0.004 * t * t + 0.05 * scatter(at))
+    }
+
+    /// The slope of the least-squares line, and its standard error, from the textbook.
+    fn line(envelope: &Envelope) -> (f64, f64) {
+        let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
+        let n = t.len() as f64;
+        let (mt, my) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
+        let sxx: f64 = t.iter().map(|t| (t - mt).powi(2)).sum();
+        let sxy: f64 = t.iter().zip(y).map(|(t, y)| (t - mt) * (y - my)).sum();
+        let slope = sxy / sxx;
+        let rss: f64 = t.iter().zip(y).map(|(t, y)| (y - my - slope * (t - mt)).powi(2)).sum();
+        (-slope, (rss / (n - 2.0) / sxx).sqrt())
+    }
+
+    fn try_fit(envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Result<Estimate, FitError> {
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(seed).child("lstm"), max_steps, &Silent, &cancel);
+        config().fit(envelope, &context)
+    }
+
+    fn fit(envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Estimate {
+        try_fit(envelope, seed, max_steps).unwrap()
+    }
+
+    #[test]
+    fn trained_it_agrees_with_the_line_and_its_error() {
+        let envelope = envelope();
+        let (rate, std_error) = line(&envelope);
+        for seed in 0..10 {
+            let estimate = fit(&envelope, seed, None);
+            let off = (estimate.decay_rate / rate - 1.0).abs();
+            assert_eq!(estimate.stop.reached, Reached::Converged, "{:?}", estimate.stop);
+            assert!(off < 5e-13, "seed {seed}: {off:e}");
+            let stated = estimate.uncertainty.unwrap().std_error;
+            assert!((stated / std_error - 1.0).abs() < 1e-9, "{stated} {std_error}");
+            assert!(estimate.steps < 40, "{}", estimate.steps);
+        }
+    }
+
+    #[test]
+    fn untrained_it_is_wrong_on_every_seed() {
+        let envelope = envelope();
+        let (rate, _) = line(&envelope);
+        for seed in 0..100 {
+            let estimate = fit(&envelope, seed, Some(0));
+            assert!((estimate.decay_rate / rate - 1.0).abs() > 0.01, "seed {seed}");
+            assert_eq!(estimate.stop.reached, Reached::BudgetSpent);
+            assert_eq!(estimate.uncertainty, None);
+        }
+    }
+
+    #[test]
+    fn the_same_seed_gives_the_same_bits_and_another_another_way() {
+        let envelope = envelope();
+        let [one, same, other] = [1, 1, 2].map(|seed| fit(&envelope, seed, Some(3)));
+        assert_eq!(one, same);
+        assert_ne!(one.decay_rate.to_bits(), other.decay_rate.to_bits());
+        // Other threads at work beside it change nothing.
+        std::thread::scope(|scope| {
+            for thread in [0, 1].map(|_| scope.spawn(|| fit(&envelope, 1, Some(3)))) {
+                assert_eq!(thread.join().unwrap(), one);
+            }
+        });
+    }
+
+    #[test]
+    fn an_exact_exponential_is_recovered() {
+        for rate in [0.2, 3e-6, -0.7] {
+            let envelope = envelope_of(|_, t| 1.5 - rate * t);
+            let estimate = fit(&envelope, 0, None);
+            assert!((estimate.decay_rate / rate - 1.0).abs() < 1e-9, "{estimate:?}");
+            assert!((estimate.log_amplitude - 1.5).abs() < 1e-11, "{}", estimate.log_amplitude);
+            assert_eq!(estimate.stop.reached, Reached::Converged);
+        }
+    }
+
+    #[test]
+    fn it_follows_the_units() {
+        let [plain, louder, slower, steeper] = [
+            envelope(),
+            envelope_of(|at, _| 7.0 + envelope().log_amplitudes()[at]),
+            {
+                let plain = envelope();
+                let times = plain.times_s().iter().map(|t| 60.0 * t).collect();
+                Envelope::new(times, plain.log_amplitudes().to_vec(), 21.8).unwrap()
+            },
+            envelope_of(|at, t| envelope().log_amplitudes()[at] - 0.4 * t),
+        ]
+        .map(|envelope| fit(&envelope, 5, None));
+        let rate = plain.decay_rate;
+        for (found, expected) in [
+            (louder.decay_rate, rate),
+            (louder.log_amplitude, plain.log_amplitude + 7.0),
+            (slower.decay_rate, rate / 60.0),
+            (steeper.decay_rate, rate + 0.4),
+        ] {
+            assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        }
+    }
+
+    #[test]
+    fn an_envelope_longer_than_the_sequence_is_fitted_at_all_its_peaks() {
+        let times: Vec<f64> = (0..3000).map(|at| 0.1 * at as f64).collect();
+        let logs: Vec<f64> =
+            times.iter().enumerate().map(|(at, t)| -0.02 * t + 1e-5 * t * t + scatter(at)).collect();
+        let envelope = Envelope::new(times, logs, 60.0).unwrap();
+        let estimate = fit(&envelope, 0, None);
+        assert!((estimate.decay_rate / line(&envelope).0 - 1.0).abs() < 1e-11, "{estimate:?}");
+        assert_eq!(estimate.fitted_log_amplitudes.len(), 3000);
+    }
+
+    #[test]
+    fn the_interval_covers_the_truth_as_often_as_it_says() {
+        let mut generator = Seed::new(0).child("scatter").generator();
+        let covered = (0..100).filter(|_| {
+            let times: Vec<f64> = (0..20).map(|at| 0.3 * f64::from(at)).collect();
+            let scattered = |t: &f64| -0.5 - 0.2 * t + 0.3 * generator.sample::<f64, _>(StandardNormal);
+            let logs = times.iter().map(scattered).collect();
+            let estimate = fit(&Envelope::new(times, logs, 21.0).unwrap(), 0, None);
+            let [low, high] = estimate.uncertainty.unwrap().interval_95;
+            (low..=high).contains(&0.2)
+        });
+        // Of 100, 95 ± 2.2; the bounds are four standard deviations off.
+        let covered = covered.count();
+        assert!((86..=100).contains(&covered), "{covered}");
+    }
+
+    #[test]
+    fn three_peaks_are_enough() {
+        let envelope = Envelope::new(vec![0.0, 1.0, 2.5], vec![0.3, 0.1, -0.4], 6.0).unwrap();
+        let estimate = fit(&envelope, 0, None);
+        assert!((estimate.decay_rate / line(&envelope).0 - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn envelopes_without_a_rate_are_refused() {
+        for (times, logs) in [
+            (vec![0.0, 1.0, 2.0, 3.0], vec![0.3; 4]),
+            (vec![0.0, 1.0, 2.0], vec![1e200, 2e200, 0.0]),
+            (vec![0.0, 1e-310, 2e-310], vec![2.0, 1.0, 0.0]),
+        ] {
+            let envelope = Envelope::new(times, logs, 6.0).unwrap();
+            assert!(matches!(try_fit(&envelope, 0, None), Err(FitError::NoSpread { .. })));
+        }
+    }
+
+    #[test]
+    fn every_step_is_told_once_and_a_request_to_stop_is_heard() {
+        struct Steps(RefCell<Vec<u64>>);
+        impl Observer for Steps {
+            fn observe(&self, step: &Step) {
+                assert!(step.decay_rate.is_finite() && step.loss.is_finite());
+                self.0.borrow_mut().push(step.step);
+            }
+        }
+        let (steps, cancel) = (Steps(RefCell::default()), Cancel::new());
+        let fit = || {
+            let context = FitContext::new(Seed::new(0), None, &steps, &cancel);
+            config().fit(&envelope(), &context).unwrap()
+        };
+        let estimate = fit();
+        assert_eq!(*steps.0.borrow(), (0..=estimate.steps).collect::<Vec<_>>());
+        cancel.request();
+        let estimate = fit();
+        assert_eq!((estimate.stop.reached, estimate.steps), (Reached::Interrupted, 0));
+    }
+
+    #[test]
+    fn the_weights_are_all_in_the_file() {
+        let estimate = fit(&envelope(), 0, Some(2));
+        let weights = from_safetensors(&estimate.model.unwrap().bytes).unwrap();
+        assert!(
+            weights.iter().any(|tensor| tensor.name == "lstm.forget_gate.hidden_transform.weight"),
+            "{weights:?}"
+        );
+        let count: usize = weights.iter().map(|tensor| tensor.values.len()).sum();
+        assert_eq!(count, estimate.parameters);
+    }
+}

@@ -1,0 +1,66 @@
+//! Neural ordinary differential equation for the envelope.
+//!
+//! A network is the vector field of y = ln A, in scaled units: y′ = f(y, s) = c + net(y, s), from a
+//! trainable initial state y(−1). The classical Runge–Kutta method solves it, and what is trained is the
+//! numerical solution: Levenberg–Marquardt on its exact Jacobian, which the solver's own arithmetic,
+//! differentiated, gives from one batched backward pass over all its stages.
+//!
+//! The field knows the time besides the state, so that damping may change with amplitude and drift with
+//! time; one trajectory cannot tell which, and none is claimed. A field of the state alone could draw
+//! monotonic trajectories only, and would bias λ. The constant part c is the affine skip: its trajectory
+//! is a line, an exponential decay.
+//!
+//! A field this flexible would run after the scatter of the peaks. Two terms hold it back: the
+//! trajectory's mean squared second derivative, which is what makes a smoothing spline smooth and a
+//! neural ODE easy to solve, and weight decay, without which weights grow without end for gains in the
+//! loss that mean nothing.
+//!
+//! λ is minus the slope of the least-squares line through the trained trajectory's values at the peaks:
+//! a property of the fitted function. It agrees with the slope of the line through the peaks themselves
+//! wherever training has converged, by this argument. y + a + b·s solves the field whose first layer sees
+//! y − a − b·s and whose c is larger by b; so a line added to the trajectory is a change of parameters,
+//! for the numerical solution too. It changes no second derivative, and the weights it changes are left
+//! out of the decay. Hence at a stationary point the residuals are orthogonal to 1 and to t, and what
+//! they leave out of the trajectory has no slope. The start knows nothing of that: an untrained field is
+//! wrong.
+//!
+//! References: Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 31 (2018), equation 2 (the model); Kelly,
+//! Bettencourt, Johnson, Duvenaud, NeurIPS 33 (2020), section 3 (the derivative of order K as a
+//! regularizer; K = 2 here).
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod config;
+mod field;
+mod fit;
+mod objective;
+mod scaling;
+mod solver;
+#[cfg(test)]
+mod tests;
+
+pub use config::NeuralOdeConfig;
+
+use estimator::{Entry, Estimator, Tag};
+
+/// The registry's line.
+pub const ENTRY: Entry = Entry {
+    id: "neural-ode",
+    paper_number: Some(14),
+    title: "Neural ordinary differential equation",
+    summary: "A network as the vector field of ln A, trained through a Runge-Kutta solver; λ is the slope of \
+              its trajectory.",
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    citations: &[
+        "Chen, Rubanova, Bettencourt, Duvenaud, Advances in Neural Information Processing Systems 31 (2018) \
+         6571-6583",
+        "Kelly, Bettencourt, Johnson, Duvenaud, Advances in Neural Information Processing Systems 33 (2020) \
+         4370-4380",
+        "Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431-441",
+    ],
+    fields: config::FIELDS,
+    build: |settings| {
+        let config: NeuralOdeConfig = settings.section("estimator")?;
+        Ok(Box::new(config) as Box<dyn Estimator>)
+    },
+};

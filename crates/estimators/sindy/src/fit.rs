@@ -1,0 +1,136 @@
+//! The path of laws, and the estimate.
+
+use crate::config::SindyConfig;
+use envelope::Envelope;
+use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Stop, Uncertainty};
+use nalgebra::{DMatrix, DVector};
+use sparse::{
+    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, running_integral, solve,
+};
+
+/// Passes after which a law that has not settled will not.
+const MOST_PASSES: usize = 200;
+
+impl Estimator for SindyConfig {
+    fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
+        let scaled = Scaled::of(envelope)?;
+        let mut progress = Progress::new(context, self.max_steps, &scaled);
+        let path = self.path(&scaled, &mut progress);
+        Ok(self.describe(&scaled, &path, progress.steps()))
+    }
+}
+
+impl SindyConfig {
+    /// Raises the threshold until the constant alone is left.
+    fn path(&self, scaled: &Scaled, progress: &mut Progress<'_>) -> Path {
+        let mut columns: Vec<Column> = self.terms().filter_map(|term| Column::over(term, scaled)).collect();
+        // The initial value and the constant are unknowns too, and a scatter needs a degree of freedom.
+        columns.truncate(scaled.peaks().saturating_sub(3));
+        Path::over(columns, scaled, |columns, latest| self.settle(columns, scaled, progress, latest))
+    }
+
+    /// Regresses along the trajectory until it reproduces itself; `latest` follows. Gives whether it does.
+    fn settle(
+        &self,
+        columns: &[Column],
+        scaled: &Scaled,
+        progress: &mut Progress<'_>,
+        latest: &mut Law,
+    ) -> Result<bool, Halt> {
+        let phase = format!("{} terms", columns.len() + 1);
+        let mut relaxation = 1.0;
+        let mut last_change = f64::INFINITY;
+        let mut along: Option<Law> = None;
+        for _ in 0..MOST_PASSES {
+            progress.advance()?;
+            let Some(mut law) = regress(columns, along.as_ref(), scaled) else {
+                // Drop by the coefficients of the last law that was finite, if there was one.
+                *latest = along.unwrap_or_else(|| Law::null(scaled));
+                return Ok(false);
+            };
+            let before = along.as_ref().map_or(&scaled.logs, |along| &along.trajectory);
+            let change = largest_difference(&law.trajectory, before);
+            if change > last_change && along.is_some() {
+                relaxation = f64::max(relaxation / 2.0, 1.0 / 16.0);
+            }
+            if let Some(along) = along.as_ref().filter(|_| relaxation < 1.0) {
+                law = law.toward(along, 1.0 - relaxation, scaled);
+            }
+            progress.tell(&law, &phase, scaled);
+            *latest = law.clone();
+            // A law of the constant alone has no terms to evaluate anew.
+            if columns.is_empty() || (along.is_some() && change <= self.settle_tolerance * scaled.spread) {
+                return Ok(true);
+            }
+            last_change = change;
+            along = Some(law);
+        }
+        Ok(false)
+    }
+
+    fn describe(&self, scaled: &Scaled, path: &Path, steps: u64) -> Estimate {
+        let chosen = choose(&path.laws, scaled, self.evidence);
+        let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
+        let equation = law.equation(scaled);
+        let criteria = chosen.as_ref().map_or(&[][..], |(_, criteria)| criteria);
+        let stop = path.halt.map_or_else(
+            || Stop { reached: Reached::Converged, because: because(&equation, law, path, criteria) },
+            |halt| halt.stop(steps, &equation),
+        );
+        let decay_rate = scaled.decay_rate(&law.trajectory);
+        let fitted: Vec<f64> = law.trajectory.iter().map(|x| x + scaled.mean).collect();
+        Estimate {
+            decay_rate,
+            log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
+            uncertainty: uncertainty(scaled, law, decay_rate).filter(|_| steps > 0),
+            stop,
+            steps,
+            parameters: law.parameters(),
+            model: Some(ModelFile {
+                name: "equation.txt".to_owned(),
+                bytes: model_text(scaled, law, path, criteria, "").into_bytes(),
+            }),
+            fitted_log_amplitudes: fitted,
+        }
+    }
+}
+
+/// One regression of x on 1, s and the integrals of the terms, evaluated along a law's trajectory, or at
+/// the measured peaks. `None` where a number overflows.
+fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<Law> {
+    let points = along.map_or(&scaled.logs, |along| &along.trajectory);
+    // Measured peaks have no derivative that could be trusted.
+    let slopes: Option<Vec<f64>> = along.map(|along| {
+        along.trajectory.iter().zip(&scaled.times).map(|(&x, &time)| along.rate(x, time)).collect()
+    });
+    let integral = |column: &Column| {
+        let at = || points.iter().zip(&scaled.times);
+        let values: Vec<f64> = at().map(|(&x, &time)| column.value(x, time)).collect();
+        let derivatives = slopes.as_ref().map_or_else(
+            || vec![0.0; points.len()],
+            |slopes| points.iter().zip(slopes).map(|(&x, &slope)| column.derivative(x, slope)).collect(),
+        );
+        running_integral(&scaled.times, &values, &derivatives)
+    };
+    let ones = std::iter::repeat_n(1.0, scaled.peaks());
+    let entries = ones.chain(scaled.times.iter().copied()).chain(columns.iter().flat_map(integral));
+    let matrix = DMatrix::from_iterator(scaled.peaks(), 2 + columns.len(), entries);
+    let solution = solve(matrix.clone(), DVector::from_column_slice(&scaled.logs))?;
+    let trajectory: Vec<f64> = (matrix * &solution).iter().copied().collect();
+    let constant = solution.get(1).copied()?;
+    let terms = columns.iter().copied().zip(solution.iter().copied().skip(2)).collect();
+    let law = Law::new(constant, terms, trajectory, scaled);
+    law.squares.is_finite().then_some(law)
+}
+
+fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
+    one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
+}
+
+/// The scatter about the law, spread over the peaks as a line's slope sees it: the projection of the
+/// trajectory is the projection of the peaks, because the residuals are orthogonal to 1 and t.
+fn uncertainty(scaled: &Scaled, law: &Law, decay_rate: f64) -> Option<Uncertainty> {
+    let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)? as f64;
+    let std_error = (law.squares / degrees / scaled.squared_times()).sqrt() / scaled.span_s;
+    Uncertainty::students_t(decay_rate, std_error, degrees)
+}

@@ -1,0 +1,81 @@
+//! The space that small changes of the constants move a fitted function in.
+
+/// Share of a column's length below which it counts as lying in the others' space.
+const DEPENDENT: f64 = 1e-7;
+
+/// An orthonormal basis of the space of the derivatives by the constants.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct TangentSpace {
+    basis: Vec<Vec<f64>>,
+}
+
+impl TangentSpace {
+    /// Gram–Schmidt, each column twice ("twice is enough": Giraud, Langou, Rozložník 2005).
+    pub(crate) fn of<'a>(columns: impl IntoIterator<Item = &'a [f64]>) -> Self {
+        let mut space = Self::default();
+        for column in columns {
+            space.extend(column);
+        }
+        space
+    }
+
+    /// Number of constants that matter, to first order.
+    pub(crate) fn rank(&self) -> usize {
+        self.basis.len()
+    }
+
+    /// Adds a column; whether it lay outside of the space before.
+    pub(crate) fn extend(&mut self, column: &[f64]) -> bool {
+        let length = norm(column);
+        if !length.is_normal() {
+            return false;
+        }
+        let mut rest: Vec<f64> = column.iter().map(|entry| entry / length).collect();
+        for _ in 0..2 {
+            for direction in &self.basis {
+                let along: f64 = direction.iter().zip(&rest).map(|(a, b)| a * b).sum();
+                rest.iter_mut().zip(direction).for_each(|(rest, entry)| *rest -= along * entry);
+            }
+        }
+        let left = norm(&rest);
+        if left <= DEPENDENT {
+            return false;
+        }
+        rest.iter_mut().for_each(|entry| *entry /= left);
+        self.basis.push(rest);
+        true
+    }
+
+    /// The leverage of each of `points` points: by how much its fitted value follows its measured one.
+    pub(crate) fn leverages(&self, points: usize) -> Vec<f64> {
+        let mut leverages = vec![0.0; points];
+        for direction in &self.basis {
+            leverages.iter_mut().zip(direction).for_each(|(sum, entry)| *sum += entry * entry);
+        }
+        leverages
+    }
+}
+
+fn norm(column: &[f64]) -> f64 {
+    column.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::TangentSpace;
+
+    #[test]
+    fn a_line_has_the_leverages_of_the_textbook() {
+        let times = [0.0, 0.1, 0.5, 0.6, 1.0];
+        let mut space = TangentSpace::of([&[3.0; 5][..], &times]);
+        assert_eq!(space.rank(), 2);
+        let mean = 0.44;
+        let scatter: f64 = times.iter().map(|time: &f64| (time - mean).powi(2)).sum();
+        for (time, leverage) in times.iter().zip(space.leverages(5)) {
+            assert!((leverage - 0.2 - (time - mean).powi(2) / scatter).abs() < 1e-14);
+        }
+        let line: Vec<f64> = times.iter().map(|time| 2.0 - 7.0 * time).collect();
+        assert!(!space.extend(&line));
+        assert!(space.extend(&times.map(|time| time * time)));
+    }
+}

@@ -1,0 +1,303 @@
+//! Fitting an expression's constants.
+
+use crate::basis::TangentSpace;
+use crate::data::Data;
+use crate::expression::{Expression, Workspace};
+use nalgebra::{Cholesky, DMatrix, DVector};
+
+/// A step so small that the change of the loss drowns in its rounding, as a share of the loss.
+const ROUNDING_SHARE: f64 = 1e-10;
+
+/// Most rejected steps in a row before the constants are called the best there are.
+const MOST_REJECTIONS: u32 = 10;
+
+/// Largest cosine between residuals and derivatives at constants that are called settled.
+const SETTLED: f64 = 1e-9;
+
+/// What a fit of the constants gave.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Fitted {
+    /// The loss: infinite where it is not finite on every peak.
+    pub(crate) loss: f64,
+    /// Whether there are best constants and these are they. An expression that gets better the farther
+    /// its constants run, such as a·exp(b·x) + c on its way to a line, has none.
+    pub(crate) settled: bool,
+}
+
+/// When the fit of the constants ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Effort {
+    /// Most steps.
+    pub(crate) steps: u64,
+    /// It ends when a step promises to lower the loss by a smaller share of itself than this.
+    pub(crate) loss_tolerance: f64,
+}
+
+impl Effort {
+    /// All that rounding leaves.
+    pub(crate) const FULL: Self = Self { steps: 300, loss_tolerance: 1e-28 };
+}
+
+/// The loss of an expression: its mean square error, infinite where it is not finite on every peak.
+pub(crate) fn loss(expression: &Expression, data: &Data, workspace: &mut Workspace) -> f64 {
+    let values = workspace.values(expression, &data.times);
+    let sum: f64 = values.iter().zip(&data.targets).map(|(value, target)| (value - target).powi(2)).sum();
+    finite_or_infinite(sum / data.len() as f64)
+}
+
+fn finite_or_infinite(loss: f64) -> f64 {
+    if loss.is_finite() { loss } else { f64::INFINITY }
+}
+
+/// The loss at a point with what Gauss and Newton need of it.
+struct Point {
+    constants: Vec<f64>,
+    loss: f64,
+    gradient: DVector<f64>,
+    normal: DMatrix<f64>,
+}
+
+impl Point {
+    fn new(expression: &Expression, data: &Data, workspace: &mut Workspace) -> Option<Self> {
+        let constants: Vec<f64> = expression.constants().collect();
+        let share = 1.0 / data.len() as f64;
+        let values = workspace.values(expression, &data.times);
+        let residuals: Vec<f64> = values.iter().zip(&data.targets).map(|(value, z)| value - z).collect();
+        let columns = workspace.derivatives(expression, data.len());
+        let dot = |a: &[f64], b: &[f64]| share * a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let gradient =
+            DVector::from_iterator(columns.len(), columns.iter().map(|column| dot(column, &residuals)));
+        let mut normal = DMatrix::zeros(columns.len(), columns.len());
+        for (row, one) in columns.iter().enumerate() {
+            for (column, other) in columns.iter().enumerate().take(row + 1) {
+                let entry = dot(one, other);
+                for place in [(row, column), (column, row)] {
+                    if let Some(target) = normal.get_mut(place) {
+                        *target = entry;
+                    }
+                }
+            }
+        }
+        let loss = dot(&residuals, &residuals);
+        let finite = loss.is_finite() && gradient.iter().chain(&normal).all(|entry| entry.is_finite());
+        finite.then_some(Self { constants, loss, gradient, normal })
+    }
+
+    /// Whether the residuals are orthogonal to every derivative, or gone.
+    fn is_settled(&self, rounding: f64) -> bool {
+        self.loss <= rounding || self.steepness() <= SETTLED * SETTLED * self.loss
+    }
+
+    /// The gradient in units that do not depend on how the constants are scaled.
+    fn steepness(&self) -> f64 {
+        let scales = self.normal.diagonal();
+        let terms = self.gradient.iter().zip(&scales);
+        terms.filter(|(_, scale)| **scale > 0.0).map(|(slope, scale)| slope * slope / scale).sum()
+    }
+}
+
+/// Fits an expression's constants by the Levenberg–Marquardt method from the values they have.
+/// Marquardt's scaling of the damping keeps constants of all sizes moving.
+///
+/// Near the minimum, where the loss no longer shows a step, one is taken when it lowers the gradient.
+///
+/// Reference: Marquardt, SIAM J. Appl. Math. 11 (1963) 431; Nielsen, report IMM-REP-1999-05 (DTU 1999);
+/// for fitting constants within genetic programming: Kommenda et al., Genet. Program. Evolvable Mach. 21
+/// (2020) 471.
+pub(crate) fn fit_constants(
+    expression: &mut Expression,
+    data: &Data,
+    effort: Effort,
+    workspace: &mut Workspace,
+) -> Fitted {
+    let start = Point::new(expression, data, workspace).filter(|point| !point.constants.is_empty());
+    let Some(mut point) = start else {
+        // Nothing to fit, or nowhere to go.
+        let loss = loss(expression, data, workspace);
+        return Fitted { loss, settled: expression.constants().next().is_none() };
+    };
+    let rounding = data.rounding();
+    let (mut damping, mut growth, mut rejections) = (1e-3, 2.0, 0);
+    for _ in 0..effort.steps {
+        if rejections >= MOST_REJECTIONS || point.loss <= rounding {
+            break;
+        }
+        let mut damped = point.normal.clone();
+        // A constant without effect keeps its value.
+        let floor = f64::MIN_POSITIVE.max(1e-30 * damped.diagonal().max());
+        for index in 0..damped.nrows() {
+            if let Some(entry) = damped.get_mut((index, index)) {
+                *entry += damping * entry.max(floor);
+            }
+        }
+        let trial = Cholesky::new(damped).and_then(|factor| {
+            let step = -factor.solve(&point.gradient);
+            // ‖r‖² − ‖r + J·s‖² for the damped step s, whose damping counts once more.
+            let scales = point.normal.diagonal().map(|scale| damping * scale.max(floor));
+            let predicted = step.dot(&(step.component_mul(&scales) - &point.gradient));
+            let moved: Vec<f64> = point.constants.iter().zip(&step).map(|(at, step)| at + step).collect();
+            expression.set_constants(&moved);
+            let next = Point::new(expression, data, workspace)?;
+            let gain = if predicted <= ROUNDING_SHARE * point.loss {
+                let no_worse = next.loss <= point.loss * (1.0 + ROUNDING_SHARE);
+                (no_worse && next.steepness() < point.steepness()).then_some(1.0)
+            } else {
+                (next.loss < point.loss).then(|| ((point.loss - next.loss) / predicted).min(1.0))
+            };
+            gain.map(|gain| (next, gain, predicted))
+        });
+        match trial {
+            Some((next, gain, predicted)) => {
+                let settled = predicted <= effort.loss_tolerance * point.loss;
+                point = next;
+                damping = (damping * (1.0 - (2.0 * gain - 1.0_f64).powi(3)).max(1.0 / 3.0)).max(1e-15);
+                growth = 2.0;
+                rejections = 0;
+                if settled {
+                    break;
+                }
+            }
+            None => {
+                damping *= growth;
+                growth *= 2.0;
+                rejections += 1;
+            }
+        }
+    }
+    expression.set_constants(&point.constants);
+    Fitted { loss: point.loss, settled: point.is_settled(rounding) }
+}
+
+/// The error of an expression on peaks that it has not seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HeldOut {
+    /// Mean square error over the peaks, each left out in turn; infinite where there is no degree of
+    /// freedom.
+    pub(crate) mean: f64,
+    /// Standard error of that mean.
+    pub(crate) std_error: f64,
+}
+
+/// Leaving one peak out in turn, without fitting again: the residual over one minus the leverage. Exact
+/// where the constants enter linearly, and to first order otherwise.
+///
+/// Reference: Allen, Technometrics 16 (1974) 125.
+pub(crate) fn held_out(expression: &Expression, data: &Data, workspace: &mut Workspace) -> HeldOut {
+    let never = HeldOut { mean: f64::INFINITY, std_error: f64::INFINITY };
+    let space = tangent_space(expression, data, workspace);
+    let count = data.len();
+    if space.rank() >= count {
+        return never;
+    }
+    let leverages = space.leverages(count);
+    let values = workspace.values(expression, &data.times).iter().zip(&data.targets);
+    let squares: Vec<f64> = values
+        .zip(leverages)
+        .map(|((value, z), leverage)| ((value - z) / (1.0 - leverage)).powi(2))
+        .collect();
+    let mean = squares.iter().sum::<f64>() / count as f64;
+    let variance = squares.iter().map(|square| (square - mean).powi(2)).sum::<f64>() / (count as f64 - 1.0);
+    let std_error = (variance / count as f64).sqrt();
+    if mean.is_finite() && std_error.is_finite() { HeldOut { mean, std_error } } else { never }
+}
+
+/// The space of the derivatives by the constants.
+pub(crate) fn tangent_space(expression: &Expression, data: &Data, workspace: &mut Workspace) -> TangentSpace {
+    workspace.values(expression, &data.times);
+    TangentSpace::of(workspace.derivatives(expression, data.len()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::operators::{Binary, Unary};
+    use envelope::Envelope;
+
+    fn data(bend: f64) -> Data {
+        let times: Vec<f64> = (0..40).map(|i| 0.3 * f64::from(i)).collect();
+        let scatter = |i: usize| (i * 7919 % 101) as f64 / 101.0 - 0.5;
+        let logs =
+            times.iter().enumerate().map(|(i, t)| 0.4 - 0.2 * t - bend * (0.3 * t).exp() + 0.1 * scatter(i));
+        Data::new(&Envelope::new(times.clone(), logs.collect(), 21.0).unwrap()).unwrap()
+    }
+
+    fn line() -> Expression {
+        let product = Expression::binary(Binary::Multiply, Expression::constant(0.3), &Expression::time());
+        Expression::binary(Binary::Add, product, &Expression::constant(-0.2))
+    }
+
+    /// a·exp(b·x) + c
+    fn exponential() -> Expression {
+        let inner = Expression::binary(Binary::Multiply, Expression::constant(0.5), &Expression::time());
+        let scaled = Expression::binary(
+            Binary::Multiply,
+            Expression::constant(0.1),
+            &Expression::unary(Unary::Exp, inner),
+        );
+        Expression::binary(Binary::Add, scaled, &Expression::constant(0.0))
+    }
+
+    #[test]
+    fn a_line_is_fitted_to_the_last_digits() {
+        let data = data(0.0);
+        let mut expression = line();
+        let found = fit_constants(&mut expression, &data, Effort::FULL, &mut Workspace::default());
+        let slope = expression.constants().next().unwrap();
+        let expected = data.projected_slope(&data.targets);
+        assert!((slope / expected - 1.0).abs() < 1e-14, "{slope} {expected}");
+        assert!(found.settled);
+        assert_eq!(found.loss, loss(&expression, &data, &mut Workspace::default()));
+    }
+
+    #[test]
+    fn an_exponential_is_fitted_until_its_residuals_are_orthogonal() {
+        let data = data(0.05);
+        let (mut expression, mut workspace) = (exponential(), Workspace::default());
+        expression.set_constants(&[-0.1, 2.0, 1.0]);
+        fit_constants(&mut expression, &data, Effort::FULL, &mut workspace);
+        let values = workspace.values(&expression, &data.times).to_vec();
+        let residuals: Vec<f64> = values.iter().zip(&data.targets).map(|(value, z)| value - z).collect();
+        for column in workspace.derivatives(&expression, data.len()) {
+            let along: f64 = column.iter().zip(&residuals).map(|(a, b)| a * b).sum();
+            let length: f64 = column.iter().map(|entry| entry * entry).sum::<f64>().sqrt();
+            assert!((along / length).abs() < 1e-12, "{along:e} {length:e}");
+        }
+    }
+
+    #[test]
+    fn constants_on_their_way_to_infinity_are_not_settled() {
+        let (mut expression, mut workspace) = (exponential(), Workspace::default());
+        let found = fit_constants(&mut expression, &data(0.05), Effort::FULL, &mut workspace);
+        assert!(found.loss < 0.05 && !found.settled, "{found:?}");
+    }
+
+    #[test]
+    fn the_held_out_error_is_that_of_fitting_again() {
+        let data = data(0.0);
+        let mut workspace = Workspace::default();
+        let mut expression = line();
+        fit_constants(&mut expression, &data, Effort::FULL, &mut workspace);
+        let quick = held_out(&expression, &data, &mut workspace);
+        let slow: f64 = (0..data.len())
+            .map(|left_out| {
+                let mut rest = data.clone();
+                let (time, target) = (rest.times.remove(left_out), rest.targets.remove(left_out));
+                let mut again = line();
+                fit_constants(&mut again, &rest, Effort::FULL, &mut workspace);
+                (workspace.values(&again, &[time])[0] - target).powi(2)
+            })
+            .sum();
+        assert!((quick.mean / (slow / 40.0) - 1.0).abs() < 1e-10);
+    }
+
+    #[test]
+    fn a_function_outside_of_its_domain_has_an_infinite_loss() {
+        let data = data(0.0);
+        for (operator, at) in [(Unary::Log, 0.0), (Unary::SquareRoot, -0.5)] {
+            let shifted = Expression::binary(Binary::Add, Expression::time(), &Expression::constant(at));
+            let mut expression = Expression::unary(operator, shifted);
+            let found = fit_constants(&mut expression, &data, Effort::FULL, &mut Workspace::default());
+            assert_eq!(found.loss, f64::INFINITY, "{operator:?}");
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! From the evolution to the estimate.
+
+use crate::basis::TangentSpace;
+use crate::config::SymbolicConfig;
+use crate::constants::{Effort, fit_constants, loss, tangent_space};
+use crate::data::Data;
+use crate::equation::Equation;
+use crate::evolution::{Evolved, evolve};
+use crate::expression::{Expression, Workspace};
+use crate::front::{Front, Member};
+use crate::operators::Binary;
+use envelope::Envelope;
+use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Stop, Uncertainty};
+use std::fmt::Write;
+
+/// Fewest peaks: two parameters and a degree of freedom.
+const FEWEST_PEAKS: usize = 3;
+
+impl Estimator for SymbolicConfig {
+    fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
+        if envelope.len() < FEWEST_PEAKS {
+            return Err(FitError::TooFewPeaks {
+                estimator: "symbolic",
+                found: envelope.len(),
+                needed: FEWEST_PEAKS,
+            });
+        }
+        let data = Data::new(envelope)?;
+        let mut workspace = Workspace::default();
+        let evolved = evolve(self, &data.thinned(self.search_peaks), context);
+        if evolved.generations == 0 {
+            return Ok(untrained(&data, &evolved, &mut workspace));
+        }
+        let front = whole_front(&evolved.front, &data, &mut workspace);
+        // Where the line makes the constants run away, the next expression is asked.
+        let settled = front.by_preference(&data).find_map(|member| {
+            let joined = with_line(member, &data, &mut workspace)?;
+            Some((member, joined))
+        });
+        let Some((chosen, joined)) = settled else {
+            return Ok(untrained(&data, &evolved, &mut workspace));
+        };
+        let rank = tangent_space(&joined, &data, &mut workspace).rank();
+        let report = report(&front, chosen, &joined, &data);
+        let stop = stop(&evolved, &Equation::new(&chosen.expression, &data));
+        let mut estimate = describe(&joined, &data, stop, &mut workspace);
+        estimate.steps = evolved.generations;
+        estimate.uncertainty = uncertainty(&estimate, &joined, rank, &data, &mut workspace);
+        estimate.model = Some(ModelFile { name: "equation.txt".to_owned(), bytes: report.into_bytes() });
+        Ok(estimate)
+    }
+}
+
+/// The front fitted to all peaks; a constant, should an odd envelope leave nothing else.
+fn whole_front(front: &Front, data: &Data, workspace: &mut Workspace) -> Front {
+    let mut polished = front.polished(data, workspace);
+    if polished.members().is_empty() {
+        // The mean of the scaled amplitudes is zero.
+        let constant = Expression::constant(0.0);
+        let loss = loss(&constant, data, workspace);
+        polished.offer(&constant, loss, data, workspace);
+    }
+    polished
+}
+
+/// The expression with as much of a straight line a + b·x joined as it lacks, all constants fitted
+/// together from where they are.
+///
+/// Without it the slope of a bent expression would hold what its shape leaves over: it is fitted to the
+/// peaks, not to their slope. With it the residuals are orthogonal to every straight line, and the
+/// expression's projected slope is that of the best exponential. A line, or whatever has a free line in
+/// it, stays as it is. `None` where the constants then find no rest.
+fn with_line(chosen: &Member, data: &Data, workspace: &mut Workspace) -> Option<Expression> {
+    let mut joined = chosen.expression.clone();
+    let mut space: TangentSpace = tangent_space(&joined, data, workspace);
+    let level = vec![1.0; data.len()];
+    if space.extend(&level) {
+        joined = Expression::binary(Binary::Add, joined, &Expression::constant(0.0));
+    }
+    if space.extend(&data.times) {
+        let slope = Expression::binary(Binary::Multiply, Expression::constant(0.0), &Expression::time());
+        joined = Expression::binary(Binary::Add, joined, &slope);
+    }
+    let fitted = fit_constants(&mut joined, data, Effort::FULL, workspace);
+    (fitted.settled && fitted.loss.is_finite()).then_some(joined)
+}
+
+fn untrained(data: &Data, evolved: &Evolved, workspace: &mut Workspace) -> Estimate {
+    let equation = Equation::new(&evolved.drawn.expression, data);
+    describe(&evolved.drawn.expression, data, stop(evolved, &equation), workspace)
+}
+
+fn stop(evolved: &Evolved, equation: &Equation) -> Stop {
+    let generations = evolved.generations;
+    let why = match evolved.reached {
+        Reached::Converged => format!("the held-out error fell no more by generation {generations}"),
+        Reached::Interrupted => format!("interrupted after {generations} generations"),
+        _ => format!(
+            "the budget of {generations} generations ended; raise estimator.max_generations or fit.max_steps"
+        ),
+    };
+    Stop { reached: evolved.reached, because: format!("{why}: ln A = {equation}") }
+}
+
+fn describe(expression: &Expression, data: &Data, stop: Stop, workspace: &mut Workspace) -> Estimate {
+    let values = workspace.values(expression, &data.times);
+    let fitted: Vec<f64> = values.iter().map(|&z| data.log_amplitude(z)).collect();
+    Estimate {
+        decay_rate: data.rate(-data.projected_slope(values)),
+        log_amplitude: fitted.first().copied().unwrap_or(data.mean),
+        uncertainty: None,
+        stop,
+        steps: 0,
+        parameters: expression.constants().count(),
+        fitted_log_amplitudes: fitted,
+        model: None,
+    }
+}
+
+/// The standard error of the projected slope, s/√Σ(x − x̄)², and Student's t on the peaks minus the
+/// constants that matter.
+///
+/// To first order in the scatter it is exact for the expression at hand, since the space of its
+/// derivatives holds every line. That the expression was chosen after a look at the data is not in it.
+fn uncertainty(
+    estimate: &Estimate,
+    expression: &Expression,
+    rank: usize,
+    data: &Data,
+    workspace: &mut Workspace,
+) -> Option<Uncertainty> {
+    let degrees = data.len().checked_sub(rank).filter(|degrees| *degrees > 0)? as f64;
+    let squares = loss(expression, data, workspace) * data.len() as f64;
+    let std_error = (squares / degrees / data.time_scatter()).sqrt();
+    Uncertainty::students_t(estimate.decay_rate, data.rate(std_error), degrees)
+}
+
+/// The front as a text.
+fn report(front: &Front, chosen: &Member, joined: &Expression, data: &Data) -> String {
+    let mut text = String::new();
+    let equation = Equation::new(&chosen.expression, data);
+    let with_line = Equation::new(joined, data);
+    let mut line = |written: std::fmt::Arguments<'_>| {
+        // Writing to a string does not fail.
+        let _ = text.write_fmt(written);
+        text.push('\n');
+    };
+    line(format_args!("ln A = {equation}"));
+    line(format_args!(""));
+    line(format_args!(
+        "# t in seconds after the first peak. The simplest expression whose held-out error is"
+    ));
+    line(format_args!(
+        "# within one standard error (+-) of the least, from the front of error against nodes."
+    ));
+    if *joined != chosen.expression {
+        line(format_args!("#"));
+        line(format_args!("# Fitted together with the straight line that it lacks, for the decay rate:"));
+        line(format_args!("# ln A = {with_line}"));
+    }
+    line(format_args!("#"));
+    line(format_args!("# nodes  error (rms of ln A)  held-out error  held-out mean square +-  ln A"));
+    for member in front.members() {
+        let mark = if member == chosen { '>' } else { ' ' };
+        let variance = data.spread * data.spread;
+        line(format_args!(
+            "#{mark}{:5}  {:19.4e}  {:14.4e}  {:11.4e} {:11.4e}  {}",
+            member.expression.complexity(),
+            data.spread * member.loss.sqrt(),
+            data.spread * member.held_out.mean.sqrt(),
+            variance * member.held_out.mean,
+            variance * member.held_out.std_error,
+            Equation::new(&member.expression, data),
+        ));
+    }
+    text
+}

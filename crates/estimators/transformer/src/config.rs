@@ -1,0 +1,103 @@
+//! The settings.
+
+use serde::Deserialize;
+use settings::{Default, Field, Kind};
+
+/// Settings of the transformer. The ranges and defaults are in the registry's fields.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct TransformerConfig {
+    /// Layers of attention and feed-forward.
+    pub layers: usize,
+    /// Heads of the attention.
+    pub heads: usize,
+    /// Width of a head; the network's own width is heads times this.
+    pub head_width: usize,
+    /// Width between the two linear maps of the feed-forward part.
+    pub feed_forward_width: usize,
+    /// Most entries the network reads.
+    pub longest_sequence: usize,
+    /// Most L-BFGS steps.
+    pub max_steps: u64,
+    /// Curvature pairs L-BFGS remembers.
+    pub memory: usize,
+    /// Training has converged when the gradient has fallen to this share of its length at the start.
+    pub gradient_tolerance: f64,
+    /// Factor on the drawn start values of the weights before the head.
+    pub initial_scale: f64,
+}
+
+/// The configuration keys.
+pub(crate) const FIELDS: &[Field] = &[
+    Field {
+        key: "layers",
+        kind: Kind::Integer { min: 1, max: 8 },
+        default: Default::Integer(1),
+        unit: "",
+        meaning: "Layers, each of self-attention and feed-forward, each followed by a layer norm.",
+        source: "1 to 4 agree to rounding; one trains fastest",
+    },
+    Field {
+        key: "heads",
+        kind: Kind::Integer { min: 1, max: 16 },
+        default: Default::Integer(4),
+        unit: "",
+        meaning: "Heads of the attention.",
+        source: "a small transformer for a short sequence",
+    },
+    Field {
+        key: "head_width",
+        kind: Kind::Integer { min: 1, max: 64 },
+        default: Default::Integer(4),
+        unit: "",
+        meaning: "Width of a head; the network's own width is heads times this.",
+        source: "a small transformer for a short sequence",
+    },
+    Field {
+        key: "feed_forward_width",
+        kind: Kind::Integer { min: 1, max: 1024 },
+        default: Default::Integer(32),
+        unit: "",
+        meaning: "Width between the two linear maps of the feed-forward part, with tanh there.",
+        source: "twice the network's width",
+    },
+    Field {
+        key: "longest_sequence",
+        kind: Kind::Integer { min: 3, max: 1000 },
+        default: Default::Integer(256),
+        unit: "peaks",
+        meaning: "Most entries the network reads; a longer envelope is read as means over even runs of neighboring peaks. The loss is over all peaks.",
+        source: "the attention costs as the square of the length",
+    },
+    Field {
+        key: "max_steps",
+        kind: Kind::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(200),
+        unit: "",
+        meaning: "Most L-BFGS steps.",
+        source: "several times what ten seeds take on the shipped record",
+    },
+    Field {
+        key: "memory",
+        kind: Kind::Integer { min: 1, max: 100 },
+        default: Default::Integer(10),
+        unit: "",
+        meaning: "Curvature pairs that L-BFGS remembers.",
+        source: "Nocedal, Wright, Numerical Optimization (2006), section 7.2: 3 to 20",
+    },
+    Field {
+        key: "gradient_tolerance",
+        kind: Kind::Float { min: 0.0, max: 0.1 },
+        default: Default::Float(1e-13),
+        unit: "",
+        meaning: "Training has converged when the gradient has fallen to this share of its length at the start.",
+        source: "a few roundings above what double precision leaves",
+    },
+    Field {
+        key: "initial_scale",
+        kind: Kind::Float { min: 1e-3, max: 10.0 },
+        default: Default::Float(1.0),
+        unit: "",
+        meaning: "Factor on the drawn start values of the weights before the head.",
+        source: "Glorot, Bengio 2010",
+    },
+];

@@ -1,0 +1,211 @@
+//! The network.
+
+use burn::module::Module;
+use burn::nn::activation::ActivationConfig;
+use burn::nn::transformer::{TransformerEncoder, TransformerEncoderConfig, TransformerEncoderInput};
+use burn::nn::{Initializer, Linear, LinearConfig};
+use burn::tensor::{Device, Tensor, TensorData};
+use estimator::FitError;
+use neural::{Encoder, NamedTensor, Sequence, named_parameters};
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+use crate::config::TransformerConfig;
+
+/// burn's transformer encoder over the entries of the sequence, the mean of what it gives, and a linear
+/// head.
+///
+/// The head has no bias: whatever the network says comes from what it has read.
+#[derive(Module, Debug)]
+pub(crate) struct Network {
+    embedding: Linear,
+    encoder: TransformerEncoder,
+    head: Linear,
+}
+
+impl Network {
+    /// A network of the given sizes, all of it zero but the factors of the layer norms, which are one.
+    ///
+    /// The activation is tanh, smooth as a quasi-Newton method wants it; burn's error function, hence its
+    /// GELU, has five digits only. Nothing is dropped out: the loss has to be a function.
+    pub(crate) fn zeros(config: &TransformerConfig, device: &Device) -> Self {
+        let width = config.heads * config.head_width;
+        let linear = |inputs, outputs| {
+            LinearConfig::new(inputs, outputs).with_bias(false).with_initializer(Initializer::Zeros)
+        };
+        Self {
+            embedding: linear(1, width).init(device),
+            encoder: TransformerEncoderConfig::new(
+                width,
+                config.feed_forward_width,
+                config.heads,
+                config.layers,
+            )
+            .with_dropout(0.0)
+            .with_activation(ActivationConfig::Tanh)
+            .with_initializer(Initializer::Zeros)
+            .init(device),
+            head: linear(width, 2).init(device),
+        }
+    }
+
+    /// Start values in the order of the flat list.
+    ///
+    /// Weights normal with variance 2/(inputs + outputs) (Glorot, Bengio, AISTATS 2010) times `scale`;
+    /// biases zero, factors of the layer norms one. The head's weights are uniform within ±1/(2·width);
+    /// since the layer norm before it leaves a vector no longer than √width, the untrained rate lies in
+    /// −0.5..0.5.
+    pub(crate) fn draw(&self, scale: f64, generator: &mut impl Rng) -> Result<Vec<f64>, FitError> {
+        let mut drawn = Vec::new();
+        for NamedTensor { name, shape, values } in named_parameters(self)? {
+            match *shape.as_slice() {
+                [inputs, outputs] if name.starts_with("head") => {
+                    let uniform = |_| (generator.random::<f64>() - 0.5) / inputs as f64;
+                    drawn.extend((0..inputs * outputs).map(uniform));
+                }
+                [inputs, outputs] => {
+                    let spread = scale * (2.0 / (inputs + outputs) as f64).sqrt();
+                    let normal = |_| spread * generator.sample::<f64, _>(StandardNormal);
+                    drawn.extend((0..inputs * outputs).map(normal));
+                }
+                _ => drawn.extend(values),
+            }
+        }
+        Ok(drawn)
+    }
+
+    fn width(&self) -> usize {
+        self.encoder.d_model
+    }
+}
+
+/// Sines and cosines of a time in units of the mean interval: of `width` numbers the pair k is
+/// sin(time·ω), cos(time·ω) with ω = 10,000^(−2k/width).
+///
+/// For peaks at even times it is the encoding of the position in the sequence, as published; for uneven
+/// ones it follows the clock.
+///
+/// Reference: Vaswani et al., NeurIPS 30 (2017), section 3.5.
+fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64> {
+    (0..width).map(move |at| {
+        let pair = (at / 2 * 2) as f64;
+        let angle = time * 10_000_f64.powf(-pair / width as f64);
+        if at % 2 == 0 { angle.sin() } else { angle.cos() }
+    })
+}
+
+impl Encoder for Network {
+    /// z, then the encoding of the entry's time since the first.
+    fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3> {
+        let (first, interval) = (sequence.times.first().copied().unwrap_or(0.0), sequence.mean_interval());
+        let entries = sequence.times.iter().zip(&sequence.values);
+        let features = entries
+            .flat_map(|(time, value)| {
+                std::iter::once(*value).chain(time_encoding((time - first) / interval, self.width()))
+            })
+            .collect();
+        Tensor::from_data(TensorData::new(features, [1, sequence.len(), 1 + self.width()]), device)
+    }
+
+    fn encode(&self, input: Tensor<3>) -> Tensor<2> {
+        let value = input.clone().narrow(2, 0, 1);
+        let encoding = input.narrow(2, 1, self.width());
+        let entries = self.embedding.forward(value) + encoding;
+        let read = self.encoder.forward(TransformerEncoderInput::new(entries));
+        self.head.forward(read.mean_dim(1).squeeze_dim::<2>(1))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Network, time_encoding};
+    use crate::config::TransformerConfig;
+    use neural::{Encoder, Sequence, device, values, with_parameters};
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    fn config() -> TransformerConfig {
+        TransformerConfig {
+            layers: 2,
+            heads: 4,
+            head_width: 4,
+            feed_forward_width: 32,
+            longest_sequence: 256,
+            max_steps: 200,
+            memory: 10,
+            gradient_tolerance: 1e-13,
+            initial_scale: 1.0,
+        }
+    }
+
+    fn network(seed: u64, scale: f64) -> Network {
+        let device = device().unwrap();
+        let network = Network::zeros(&config(), &device);
+        let start = network.draw(scale, &mut StdRng::seed_from_u64(seed)).unwrap();
+        with_parameters(network, &start, &device).unwrap()
+    }
+
+    fn said(network: &Network, sequence: &Sequence) -> Vec<f64> {
+        values(network.encode(network.input(sequence, &device().unwrap()))).unwrap()
+    }
+
+    fn sequence() -> Sequence {
+        Sequence { times: vec![-1.0, -0.5, 0.4, 1.0], values: vec![1.3, 0.5, -0.6, -1.2] }
+    }
+
+    #[test]
+    fn the_encoding_is_the_published_one_at_even_times() {
+        let encoding: Vec<f64> = time_encoding(3.0, 4).collect();
+        let expected = [3_f64.sin(), 3_f64.cos(), 0.03_f64.sin(), 0.03_f64.cos()];
+        for (found, expected) in encoding.iter().zip(expected) {
+            assert!((found - expected).abs() < 1e-15, "{found} {expected}");
+        }
+        // The third of these four times is not two mean intervals (2/3 each) after the first.
+        let network = network(0, 1.0);
+        let input = values(network.input(&sequence(), &device().unwrap())).unwrap();
+        let third = &input[2 * 17..3 * 17];
+        assert_eq!(third[0], -0.6);
+        assert!((third[1] - (1.4_f64 * 1.5).sin()).abs() < 1e-15, "{}", third[1]);
+    }
+
+    #[test]
+    fn the_order_of_the_entries_tells_it_nothing() {
+        let network = network(3, 1.0);
+        let input = network.input(&sequence(), &device().unwrap());
+        let rows = |order: [usize; 4]| {
+            let rows = order.iter().map(|&at| input.clone().narrow(1, at, 1)).collect();
+            values(network.encode(burn::tensor::Tensor::cat(rows, 1))).unwrap()
+        };
+        let [sorted, shuffled] = [[0, 1, 2, 3], [2, 0, 3, 1]].map(rows);
+        for (one, other) in sorted.iter().zip(&shuffled) {
+            assert!((one - other).abs() < 1e-14, "{one} {other}");
+        }
+        // It does read which value belongs to which time.
+        let swapped = Sequence { values: vec![0.5, 1.3, -0.6, -1.2], ..sequence() };
+        assert!((said(&network, &swapped)[0] - sorted[0]).abs() > 1e-6);
+    }
+
+    #[test]
+    fn entries_attend_to_each_other() {
+        // Another value at one entry changes what the network makes of the others.
+        let network = network(3, 1.0);
+        let changed = Sequence { values: vec![1.3, 0.5, -0.6, 2.0], ..sequence() };
+        let read = |sequence: &Sequence| {
+            let input = network.input(sequence, &device().unwrap());
+            let entries = network.embedding.forward(input.clone().narrow(2, 0, 1)) + input.narrow(2, 1, 16);
+            let input = burn::nn::transformer::TransformerEncoderInput::new(entries);
+            values(network.encoder.forward(input).narrow(1, 0, 1)).unwrap()
+        };
+        let moved: f64 =
+            read(&sequence()).iter().zip(read(&changed)).map(|(one, other)| (one - other).abs()).sum();
+        assert!(moved > 1e-3, "{moved:e}");
+    }
+
+    #[test]
+    fn untrained_it_says_little() {
+        for seed in 0..100 {
+            let said = said(&network(seed, 10.0), &sequence());
+            assert!(said.iter().all(|number| number.abs() <= 0.5), "{said:?}");
+        }
+    }
+}

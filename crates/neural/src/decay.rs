@@ -1,0 +1,473 @@
+//! Encoders that read an envelope, and the exponential decay that decodes what they say.
+//!
+//! A network reads the peaks as a sequence and says two numbers, the level and the decay rate. The
+//! decoder is physics: ln A(t) = ln A₀ − λt. The loss is the mean squared error of the peaks
+//! reconstructed in this way; the network never sees a rate, only how well its own rate reconstructs.
+
+use crate::device::{tensor, values};
+use crate::flat::{flat_gradient, named_parameters, with_parameters};
+use crate::lbfgs::{Lbfgs, Smooth};
+use crate::minimum::{Minimum, StopReason};
+use crate::weights::to_safetensors;
+use burn::module::Module;
+use burn::tensor::{Device, Tensor};
+use envelope::Envelope;
+use estimator::{Estimate, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
+use nalgebra::DVector;
+use std::cell::RefCell;
+use std::ops::ControlFlow;
+
+/// What an encoder reads: peaks, or means of neighboring peaks, in scaled units.
+///
+/// Times s in −1..1 by the record's length, values z with mean 0 and standard deviation 1 over the
+/// peaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sequence {
+    /// Scaled times, increasing.
+    pub times: Vec<f64>,
+    /// Scaled ln A.
+    pub values: Vec<f64>,
+}
+
+impl Sequence {
+    /// Number of entries.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.times.len()
+    }
+
+    /// Whether there are no entries.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.times.is_empty()
+    }
+
+    /// The mean time between entries; 1 where there is one entry only.
+    #[must_use]
+    pub fn mean_interval(&self) -> f64 {
+        match (self.times.first(), self.times.last()) {
+            (Some(first), Some(last)) if self.len() > 1 => (last - first) / (self.len() - 1) as f64,
+            _ => 1.0,
+        }
+    }
+
+    /// At most `most` entries: the means of times and values over runs of neighbors, the runs' lengths
+    /// as even as they can be. A shorter sequence stays as it is.
+    #[must_use]
+    pub fn pooled(self, most: usize) -> Self {
+        let (count, runs) = (self.len(), most.max(1));
+        if count <= runs {
+            return self;
+        }
+        let means = |entries: &[f64]| -> Vec<f64> {
+            (0..runs)
+                .filter_map(|run| entries.get(run * count / runs..(run + 1) * count / runs))
+                .map(|part| part.iter().sum::<f64>() / part.len() as f64)
+                .collect()
+        };
+        Self { times: means(&self.times), values: means(&self.values) }
+    }
+}
+
+/// A network that reads a sequence and says (c, r): the level of z in the middle of the record and the
+/// decay rate, so that z(s) ≈ c − r·s.
+pub trait Encoder: Module {
+    /// The network's input, of shape 1 × entries × features: one sequence.
+    fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3>;
+
+    /// (c, r) of every sequence: sequences × 2 of sequences × entries × features.
+    fn encode(&self, input: Tensor<3>) -> Tensor<2>;
+
+    /// What the network says, the loss of it, and the loss's gradient: by burn's tape, unless the
+    /// network knows a shorter way.
+    ///
+    /// `self`, `input` and what `loss` computes with are on a recording device.
+    ///
+    /// # Errors
+    /// [`FitError::Backend`] where burn gives no gradient.
+    fn differentiate(
+        &self,
+        input: Tensor<3>,
+        loss: impl FnOnce(Tensor<2>) -> Tensor<1>,
+    ) -> Result<Differentiated, FitError> {
+        let said = self.encode(input);
+        let loss = loss(said.clone());
+        let gradient = flat_gradient(self, &loss.backward())?;
+        Ok(Differentiated { said, loss, gradient })
+    }
+}
+
+/// What [`Encoder::differentiate`] gives.
+#[derive(Debug, Clone)]
+pub struct Differentiated {
+    /// What the network says, sequences × 2.
+    pub said: Tensor<2>,
+    /// The loss of it.
+    pub loss: Tensor<1>,
+    /// The loss's derivatives with respect to the network's parameters, in the order of the flat list.
+    pub gradient: Vec<f64>,
+}
+
+/// What a fit by reconstruction needs besides the encoder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Reconstruction {
+    /// Most entries the encoder reads; longer envelopes are [pooled](Sequence::pooled) for it. The loss
+    /// is over all peaks.
+    pub longest_sequence: usize,
+    /// Most steps of the optimizer.
+    pub max_steps: u64,
+    /// Curvature pairs the optimizer remembers.
+    pub memory: usize,
+    /// Converged when the gradient has fallen to this share of its length at the start.
+    pub gradient_tolerance: f64,
+}
+
+impl Reconstruction {
+    /// Trains an encoder from start values on an envelope, and reads the estimate from its decoder.
+    ///
+    /// The uncertainty is that of a decoder with two outputs: the Laplace approximation in (c, r), whose
+    /// precision is the curvature of the loss there, with the residual variance over peaks − 2.
+    ///
+    /// Reference: MacKay, Neural Computation 4 (1992) 448, for the two outputs instead of the weights.
+    ///
+    /// # Errors
+    /// [`FitError::NoSpread`] for an envelope without spread, [`FitError::NotFinite`] where the loss
+    /// is not finite from the start, [`FitError::Backend`] where burn refuses.
+    pub fn fit<E: Encoder>(
+        &self,
+        envelope: &Envelope,
+        context: &FitContext<'_>,
+        encoder: &E,
+        start: Vec<f64>,
+        device: &Device,
+    ) -> Result<Estimate, FitError> {
+        let scaling = Scaling::of(envelope)?;
+        let peaks = scaling.sequence(envelope);
+        let recording = device.clone().autodiff();
+        let sequence = peaks.clone().pooled(self.longest_sequence);
+        let objective = Objective::new(encoder, &sequence, &peaks, &recording);
+        let method = Lbfgs {
+            max_steps: context.step_limit(self.max_steps),
+            memory: self.memory,
+            gradient_tolerance: self.gradient_tolerance,
+        };
+        let minimum = method.minimize(&objective, DVector::from_vec(start), |state| {
+            context.observe(&Step {
+                step: state.step,
+                planned: method.max_steps,
+                phase: "L-BFGS, reconstruction".to_owned(),
+                loss: state.loss,
+                decay_rate: scaling.rate(objective.code(state.parameters).map_or(f64::NAN, |c| c.rate)),
+            });
+            if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        })?;
+        if !minimum.loss.is_finite() {
+            return Err(FitError::NotFinite { loss: minimum.loss });
+        }
+        let code = objective.code(&minimum.parameters)?;
+        let stop = stop(&minimum, code.slope(&peaks));
+        let decay_rate = scaling.rate(code.rate);
+        let fitted = |s: f64| scaling.log_amplitude(code.level - code.rate * s);
+        let trained = with_parameters(encoder.clone(), minimum.parameters.as_slice(), device)?;
+        let uncertainty = match stop.reached {
+            // Away from the minimum the loss has no such shape.
+            Reached::Converged => code.uncertainty(&peaks, &scaling),
+            _ => None,
+        };
+        Ok(Estimate {
+            decay_rate,
+            log_amplitude: fitted(-1.0),
+            uncertainty,
+            stop,
+            steps: minimum.steps,
+            parameters: minimum.parameters.len(),
+            fitted_log_amplitudes: peaks.times.iter().map(|&s| fitted(s)).collect(),
+            model: Some(ModelFile {
+                name: "weights.safetensors".to_owned(),
+                bytes: to_safetensors(&named_parameters(&trained)?)?,
+            }),
+        })
+    }
+}
+
+/// The scaled coordinates: s = (t − middle)/half_range in −1..1 and z = (ln A − mean)/spread. No line is
+/// fitted here, only a range, a mean and a standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Scaling {
+    half_range: f64,
+    mean: f64,
+    spread: f64,
+}
+
+impl Scaling {
+    fn of(envelope: &Envelope) -> Result<Self, FitError> {
+        let half_range = envelope.times_s().last().copied().unwrap_or_default() / 2.0;
+        let logs = envelope.log_amplitudes();
+        let count = logs.len() as f64;
+        let mean = logs.iter().sum::<f64>() / count;
+        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
+        // Below this the logarithms differ by their rounding only.
+        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
+            return Err(FitError::NoSpread { spread });
+        }
+        // Within so short a time that no rate can be written down.
+        if !(spread / half_range).is_finite() {
+            return Err(FitError::NoSpread { spread: spread / half_range });
+        }
+        Ok(Self { half_range, mean, spread })
+    }
+
+    fn sequence(&self, envelope: &Envelope) -> Sequence {
+        let scaled = |time: &f64| (time - self.half_range) / self.half_range;
+        Sequence {
+            times: envelope.times_s().iter().map(scaled).collect(),
+            values: envelope.log_amplitudes().iter().map(|log| (log - self.mean) / self.spread).collect(),
+        }
+    }
+
+    /// ln A of a scaled value.
+    fn log_amplitude(&self, scaled: f64) -> f64 {
+        self.mean + self.spread * scaled
+    }
+
+    /// A rate in 1/s from one in scaled units.
+    fn rate(&self, scaled: f64) -> f64 {
+        scaled * self.spread / self.half_range
+    }
+}
+
+/// What an encoder says: z(s) ≈ level − rate·s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Code {
+    level: f64,
+    rate: f64,
+}
+
+impl Code {
+    fn of(output: Tensor<2>) -> Result<Self, FitError> {
+        match values(output)?.as_slice() {
+            &[level, rate] => Ok(Self { level, rate }),
+            other => Err(FitError::Backend { problem: format!("a code of {} numbers", other.len()) }),
+        }
+    }
+
+    fn residuals<'a>(&'a self, peaks: &'a Sequence) -> impl Iterator<Item = (f64, f64)> + 'a {
+        let pairs = peaks.times.iter().zip(&peaks.values);
+        pairs.map(|(s, z)| (*s, self.level - self.rate * s - z))
+    }
+
+    /// The loss's larger derivative with respect to level and rate.
+    fn slope(&self, peaks: &Sequence) -> f64 {
+        let (by_level, by_rate) = self.residuals(peaks).fold((0.0, 0.0), |(one, other), (s, residual)| {
+            (one + 2.0 * residual, other - 2.0 * residual * s)
+        });
+        f64::max(f64::abs(by_level), f64::abs(by_rate)) / peaks.len() as f64
+    }
+
+    /// The loss's curvature in (level, rate), Σ (1, −s)ᵀ(1, −s), inverted, times the residual variance.
+    fn uncertainty(&self, peaks: &Sequence, scaling: &Scaling) -> Option<Uncertainty> {
+        let count = peaks.len() as f64;
+        let degrees = count - 2.0;
+        let middle = peaks.times.iter().sum::<f64>() / count;
+        let curvature: f64 = peaks.times.iter().map(|s| (s - middle).powi(2)).sum();
+        let squares: f64 = self.residuals(peaks).map(|(_, residual)| residual * residual).sum();
+        let std_error = (squares / degrees / curvature).sqrt();
+        Uncertainty::students_t(scaling.rate(self.rate), scaling.rate(std_error), degrees)
+    }
+}
+
+/// mean over the peaks of (c − r·s − z)², (c, r) the encoder's.
+struct Objective<'a, E> {
+    encoder: &'a E,
+    recording: &'a Device,
+    input: Tensor<3>,
+    /// Rows 1 and −s: the decoder is a product with it.
+    decoder: Tensor<2>,
+    targets: Tensor<2>,
+    /// The last parameters evaluated and what the encoder said.
+    last: RefCell<Option<(DVector<f64>, Code)>>,
+}
+
+impl<'a, E: Encoder> Objective<'a, E> {
+    fn new(encoder: &'a E, sequence: &Sequence, peaks: &Sequence, recording: &'a Device) -> Self {
+        let count = peaks.len();
+        let rows = std::iter::repeat_n(1.0, count).chain(peaks.times.iter().map(|s| -s)).collect();
+        Self {
+            encoder,
+            recording,
+            input: encoder.input(sequence, recording),
+            decoder: tensor(rows, [2, count], recording),
+            targets: tensor(peaks.values.clone(), [1, count], recording),
+            last: RefCell::new(None),
+        }
+    }
+
+    /// What the encoder says with these parameters.
+    fn code(&self, parameters: &DVector<f64>) -> Result<Code, FitError> {
+        if let Some((_, code)) = self.last.borrow().as_ref().filter(|(last, _)| last == parameters) {
+            return Ok(*code);
+        }
+        let encoder = with_parameters(self.encoder.clone(), parameters.as_slice(), self.recording)?;
+        Code::of(encoder.encode(self.input.clone()))
+    }
+}
+
+impl<E: Encoder> Smooth for Objective<'_, E> {
+    type Error = FitError;
+
+    fn value_and_gradient(&self, parameters: &DVector<f64>) -> Result<(f64, DVector<f64>), FitError> {
+        let encoder = with_parameters(self.encoder.clone(), parameters.as_slice(), self.recording)?;
+        let found = encoder.differentiate(self.input.clone(), |said| {
+            let residuals = said.matmul(self.decoder.clone()) - self.targets.clone();
+            (residuals.clone() * residuals).mean()
+        })?;
+        self.last.replace(Some((parameters.clone(), Code::of(found.said)?)));
+        let loss = values(found.loss)?.first().copied().unwrap_or(f64::NAN);
+        Ok((loss, DVector::from_vec(found.gradient)))
+    }
+}
+
+/// A slope of the loss in the decoder's two numbers below which rounding may have the last word.
+const SLOPE_OF_ROUNDING: f64 = 1e-8;
+
+fn stop(minimum: &Minimum, slope: f64) -> Stop {
+    let steps = minimum.steps;
+    let (reached, because) = match minimum.reason {
+        StopReason::Settled => {
+            (Reached::Converged, format!("the loss slopes by {slope:.0e} in the decoder's scaled numbers"))
+        }
+        StopReason::Stationary if slope <= SLOPE_OF_ROUNDING => (
+            Reached::Converged,
+            format!("no step lowers the loss or its slope any more, {slope:.0e} in the decoder's numbers"),
+        ),
+        StopReason::Stationary => (
+            Reached::Diverged,
+            format!(
+                "no step lowers the loss, yet it slopes by {slope:.0e} in the decoder's numbers; lower \
+                 estimator.initial_scale or take another seed"
+            ),
+        ),
+        StopReason::StepsSpent => (
+            Reached::BudgetSpent,
+            format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
+        ),
+        StopReason::NotFinite => (
+            Reached::Diverged,
+            format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
+        ),
+        StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
+    };
+    Stop { reached, because }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Code, Encoder, Reconstruction, Scaling, Sequence, stop};
+    use crate::device::device;
+    use crate::minimum::{Minimum, StopReason};
+    use burn::module::Module;
+    use burn::nn::{Initializer, Linear, LinearConfig};
+    use burn::tensor::{Device, Tensor};
+    use envelope::Envelope;
+    use estimator::{Cancel, FitContext, FitError, Reached, Silent};
+    use nalgebra::DVector;
+    use seed::Seed;
+
+    fn sequence() -> Sequence {
+        Sequence { times: vec![-1.0, -0.4, 0.0, 0.5, 1.0], values: vec![1.0, 2.0, 4.0, 8.0, 16.0] }
+    }
+
+    #[test]
+    fn a_long_sequence_is_read_as_means_over_even_runs() {
+        assert_eq!(sequence().pooled(5), sequence());
+        // Five entries in two runs: two and three.
+        let pooled = sequence().pooled(2);
+        assert_eq!(pooled.values, [1.5, 28.0 / 3.0]);
+        assert_eq!(pooled.times, [-0.7, 0.5]);
+        let long = Sequence { times: vec![0.0; 100_000], values: vec![3.0; 100_000] };
+        assert_eq!(long.pooled(999).values, [3.0; 999]);
+    }
+
+    #[test]
+    fn scaled_units_are_what_they_are_said_to_be() {
+        let envelope = Envelope::new(vec![5.0, 6.0, 9.0], vec![3.0, 2.0, -2.0], 6.0).unwrap();
+        let scaling = Scaling::of(&envelope).unwrap();
+        let scaled = scaling.sequence(&envelope);
+        assert_eq!(scaled.times, [-1.0, -0.5, 1.0]);
+        assert!(scaled.values.iter().sum::<f64>().abs() < 1e-15);
+        let squares: f64 = scaled.values.iter().map(|z| z * z).sum();
+        assert!((squares / 3.0 - 1.0).abs() < 1e-15);
+        assert_eq!(scaled.mean_interval(), 1.0);
+        // z = c − r·s is ln A = ln A₀ − λ·t with λ = scaling.rate(r).
+        let [at_start, at_end] = [-1.0, 1.0].map(|s| scaling.log_amplitude(0.3 - 0.7 * s));
+        assert!((at_start - 4.0 * scaling.rate(0.7) - at_end).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_slope_is_the_derivative_of_the_loss() {
+        let peaks = sequence();
+        let loss = |level: f64, rate: f64| {
+            let errors = peaks.times.iter().zip(&peaks.values).map(|(s, z)| level - rate * s - z);
+            errors.map(|error| error * error).sum::<f64>() / 5.0
+        };
+        let h = 1e-3;
+        let by_level = (loss(5.0 + h, -3.0) - loss(5.0 - h, -3.0)) / (2.0 * h);
+        let by_rate = (loss(5.0, -3.0 + h) - loss(5.0, -3.0 - h)) / (2.0 * h);
+        let slope = Code { level: 5.0, rate: -3.0 }.slope(&peaks);
+        assert!((slope - by_level.abs().max(by_rate.abs())).abs() < 1e-9, "{slope}");
+    }
+
+    #[test]
+    fn every_end_is_told_with_what_to_do() {
+        let end = |reason, slope| {
+            let parameters = DVector::zeros(1);
+            stop(&Minimum { parameters, loss: 0.1, last_gain: 0.0, steps: 7, reason }, slope)
+        };
+        for (reason, slope, reached, because) in [
+            (StopReason::Settled, 3e-16, Reached::Converged, "the loss slopes by 3e-16"),
+            (StopReason::Stationary, 3e-16, Reached::Converged, "or its slope any more"),
+            (StopReason::Stationary, 0.1, Reached::Diverged, "lower estimator.initial_scale"),
+            (StopReason::StepsSpent, 0.1, Reached::BudgetSpent, "7 steps ended; raise"),
+            (StopReason::NotFinite, 0.1, Reached::Diverged, "lower estimator.initial_scale"),
+            (StopReason::Interrupted, 0.1, Reached::Interrupted, "after 7 steps"),
+        ] {
+            let stop = end(reason, slope);
+            assert_eq!(stop.reached, reached);
+            assert!(stop.because.contains(because), "{}", stop.because);
+        }
+    }
+
+    /// Says the mean of what it reads, times two weights.
+    #[derive(Module, Debug)]
+    struct Mean {
+        head: Linear,
+    }
+
+    impl Encoder for Mean {
+        fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3> {
+            Tensor::ones([1, sequence.len(), 1], device)
+        }
+
+        fn encode(&self, input: Tensor<3>) -> Tensor<2> {
+            self.head.forward(input.mean_dim(1).squeeze_dim::<2>(1))
+        }
+    }
+
+    #[test]
+    fn a_start_that_is_not_finite_or_of_another_size_is_refused() {
+        let device = device().unwrap();
+        let head = LinearConfig::new(1, 2).with_bias(false).with_initializer(Initializer::Zeros);
+        let encoder = Mean { head: head.init(&device) };
+        let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![2.0, 1.1, 0.0], 6.0).unwrap();
+        let training =
+            Reconstruction { longest_sequence: 10, max_steps: 50, memory: 5, gradient_tolerance: 1e-13 };
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
+        let fit = |start| training.fit(&envelope, &context, &encoder, start, &device);
+        let rate = fit(vec![0.1, 0.2]).unwrap().decay_rate;
+        assert!((rate - 1.0).abs() < 1e-12, "{rate}");
+        assert!(matches!(fit(vec![f64::NAN, 0.2]), Err(FitError::NotFinite { .. })));
+        assert!(matches!(fit(vec![1e200, 0.2]), Err(FitError::NotFinite { .. })));
+        assert!(matches!(fit(vec![0.1]), Err(FitError::Backend { .. })));
+    }
+}

@@ -1,0 +1,255 @@
+//! A law of the envelope's dynamics, fitted.
+
+use crate::scaled::Scaled;
+use crate::term::Term;
+
+/// A term brought to mean 0 and standard deviation 1 over the peaks, so that the coefficients of
+/// different terms can be compared with one threshold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Column {
+    /// The term.
+    pub term: Term,
+    mean: f64,
+    deviation: f64,
+}
+
+impl Column {
+    /// The term over an envelope; `None` where it overflows or does not vary.
+    pub fn over(term: Term, scaled: &Scaled) -> Option<Self> {
+        let values = || scaled.logs.iter().zip(&scaled.times).map(|(&log, &time)| term.value(log, time));
+        let count = scaled.peaks() as f64;
+        let mean = values().sum::<f64>() / count;
+        let deviation = (values().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+        let usable = deviation.is_finite() && deviation > 1e-13 * mean.abs();
+        usable.then_some(Self { term, mean, deviation })
+    }
+
+    /// The standardized value at x and s.
+    pub fn value(&self, log: f64, time: f64) -> f64 {
+        (self.term.value(log, time) - self.mean) / self.deviation
+    }
+
+    /// The standardized derivative with respect to x.
+    pub fn derivative_by_log(&self, log: f64) -> f64 {
+        self.term.gradient(log).0 / self.deviation
+    }
+
+    /// The standardized derivative along a function of slope dx/ds.
+    pub fn derivative(&self, log: f64, slope: f64) -> f64 {
+        let (by_log, by_time) = self.term.gradient(log);
+        (by_log * slope + by_time) / self.deviation
+    }
+}
+
+/// dx/ds = constant + Σ coefficient · column, with the trajectory fitted to the peaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Law {
+    /// The constant rate.
+    pub constant: f64,
+    /// Columns with their coefficients.
+    pub terms: Vec<(Column, f64)>,
+    /// x at the peaks.
+    pub trajectory: Vec<f64>,
+    /// Sum of the squared differences between the peaks and the trajectory.
+    pub squares: f64,
+}
+
+impl Law {
+    /// Nothing decays.
+    pub fn null(scaled: &Scaled) -> Self {
+        Self::new(0.0, Vec::new(), vec![0.0; scaled.peaks()], scaled)
+    }
+
+    /// A law with its trajectory.
+    pub fn new(constant: f64, terms: Vec<(Column, f64)>, trajectory: Vec<f64>, scaled: &Scaled) -> Self {
+        let squares = scaled.residuals(&trajectory).iter().map(|residual| residual * residual).sum();
+        Self { constant, terms, trajectory, squares }
+    }
+
+    /// This law moved a share of the way toward another with the same terms.
+    pub fn toward(&self, other: &Self, share: f64, scaled: &Scaled) -> Self {
+        let mix = |own: f64, theirs: f64| own + share * (theirs - own);
+        let terms = self
+            .terms
+            .iter()
+            .zip(&other.terms)
+            .map(|((column, own), (_, theirs))| (*column, mix(*own, *theirs)));
+        let trajectory =
+            self.trajectory.iter().zip(&other.trajectory).map(|(own, theirs)| mix(*own, *theirs));
+        Self::new(mix(self.constant, other.constant), terms.collect(), trajectory.collect(), scaled)
+    }
+
+    /// Coefficients and the initial value.
+    pub fn parameters(&self) -> usize {
+        2 + self.terms.len()
+    }
+
+    /// dx/ds at x and s.
+    pub fn rate(&self, log: f64, time: f64) -> f64 {
+        self.constant
+            + self.terms.iter().map(|(column, factor)| factor * column.value(log, time)).sum::<f64>()
+    }
+
+    /// The derivative of dx/ds with respect to x.
+    pub fn gradient(&self, log: f64) -> f64 {
+        self.terms.iter().map(|(column, factor)| factor * column.derivative_by_log(log)).sum()
+    }
+
+    /// The derivative of dx/ds along a function of slope dx/ds.
+    pub fn derivative(&self, log: f64, slope: f64) -> f64 {
+        self.terms.iter().map(|(column, factor)| factor * column.derivative(log, slope)).sum()
+    }
+
+    /// The law in seconds and the record's unit, as coefficients of d ln A/dt, the constant first.
+    ///
+    /// ln A and t enter as differences: ln A − mean, and t after the first peak.
+    pub fn coefficients(&self, scaled: &Scaled) -> Vec<(Term, f64)> {
+        let constant = self.terms.iter().fold(self.constant, |sum, (column, factor)| {
+            sum - factor * (column.mean + column.term.offset()) / column.deviation
+        });
+        let others = self.terms.iter().map(|(column, factor)| {
+            let scale = match column.term {
+                Term::InverseAmplitude => scaled.mean.exp(),
+                Term::Amplitude => (-scaled.mean).exp(),
+                Term::SquaredAmplitude => (-2.0 * scaled.mean).exp(),
+                Term::Time => 1.0 / scaled.span_s,
+                Term::Constant | Term::LogAmplitude | Term::SquaredLogAmplitude => 1.0,
+            };
+            (column.term, factor / column.deviation * scale / scaled.span_s)
+        });
+        std::iter::once((Term::Constant, constant / scaled.span_s)).chain(others).collect()
+    }
+
+    /// The law as an equation, `d ln A/dt = …`.
+    pub fn equation(&self, scaled: &Scaled) -> String {
+        self.written(scaled, "d ln A/dt", |term| match term {
+            Term::Constant => String::new(),
+            Term::InverseAmplitude => "/A".to_owned(),
+            Term::Amplitude => " A".to_owned(),
+            Term::SquaredAmplitude => " A^2".to_owned(),
+            Term::LogAmplitude => format!(" (ln A - {})", number(scaled.mean)),
+            Term::SquaredLogAmplitude => format!(" (ln A - {})^2", number(scaled.mean)),
+            Term::Time => " t".to_owned(),
+        })
+    }
+
+    /// The same law for the amplitude, `dA/dt = …`.
+    pub fn amplitude_equation(&self, scaled: &Scaled) -> String {
+        self.written(scaled, "dA/dt", |term| match term {
+            Term::Constant => " A".to_owned(),
+            Term::InverseAmplitude => String::new(),
+            Term::Amplitude => " A^2".to_owned(),
+            Term::SquaredAmplitude => " A^3".to_owned(),
+            Term::LogAmplitude => format!(" A (ln A - {})", number(scaled.mean)),
+            Term::SquaredLogAmplitude => format!(" A (ln A - {})^2", number(scaled.mean)),
+            Term::Time => " t A".to_owned(),
+        })
+    }
+
+    fn written(&self, scaled: &Scaled, left: &str, factor: impl Fn(Term) -> String) -> String {
+        let mut text = format!("{left} =");
+        for (at, (term, coefficient)) in self.coefficients(scaled).into_iter().enumerate() {
+            let sign = match (at, coefficient < 0.0) {
+                (0, true) => " -",
+                (0, false) => " ",
+                (_, true) => " - ",
+                (_, false) => " + ",
+            };
+            text.push_str(&format!("{sign}{}{}", number(coefficient.abs()), factor(term)));
+        }
+        text.replace("- -", "+ ")
+    }
+}
+
+/// ∫₀ˢ of a function at every peak, from its values and derivatives there: the corrected trapezoid rule
+/// h/2·(f₀ + f₁) + h²/12·(f₀′ − f₁′), exact for cubics.
+///
+/// `times`, `values` and `derivatives` have one entry per peak. Without derivatives (measured values have
+/// none) give zeros: the trapezoid rule remains.
+///
+/// Reference: Davis, Rabinowitz, Methods of Numerical Integration (1984), section 2.1.
+pub fn running_integral(times: &[f64], values: &[f64], derivatives: &[f64]) -> Vec<f64> {
+    let mut sum = 0.0;
+    let steps = times.iter().zip(times.iter().skip(1));
+    let ends = values.iter().zip(values.iter().skip(1));
+    let slopes = derivatives.iter().zip(derivatives.iter().skip(1));
+    let pieces = steps.zip(ends).zip(slopes).map(|(((from, to), (one, next)), (rise, next_rise))| {
+        let step = to - from;
+        step / 2.0 * (one + next) + step * step / 12.0 * (rise - next_rise)
+    });
+    std::iter::once(0.0)
+        .chain(pieces.map(|piece| {
+            sum += piece;
+            sum
+        }))
+        .collect()
+}
+
+/// A number with six digits.
+pub(crate) fn number(value: f64) -> String {
+    let magnitude = value.abs().log10().floor();
+    if value == 0.0 {
+        "0".to_owned()
+    } else if (-4.0..6.0).contains(&magnitude) {
+        format!("{value:.*}", (5.0 - magnitude) as usize)
+    } else {
+        format!("{value:.5e}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use envelope::Envelope;
+
+    #[test]
+    fn the_running_integral_is_exact_for_cubics() {
+        let times = [0.0, 0.2, 0.7, 1.0, 1.9];
+        let values = times.map(|t: f64| 4.0 * t.powi(3) - 3.0 * t * t + 1.0);
+        let derivatives = times.map(|t: f64| 12.0 * t * t - 6.0 * t);
+        let integral = running_integral(&times, &values, &derivatives);
+        for (t, found) in times.iter().zip(integral) {
+            assert!((found - (t.powi(4) - t.powi(3) + t)).abs() < 1e-14, "{t} {found}");
+        }
+    }
+
+    #[test]
+    fn a_law_is_written_in_seconds_and_the_records_unit() {
+        let logs: Vec<f64> = (0..5).map(|i| -2.0 - f64::from(i)).collect();
+        let envelope = Envelope::new(vec![0.0, 1.0, 2.0, 3.0, 5.0], logs, 6.0).unwrap();
+        let scaled = Scaled::of(&envelope).unwrap();
+        let columns: Vec<Column> =
+            Term::ALL.into_iter().filter_map(|term| Column::over(term, &scaled)).collect();
+        // The constant does not vary: it is no column.
+        assert_eq!(columns.len(), Term::ALL.len() - 1);
+        let terms = columns.into_iter().zip([-0.3, 0.2, 0.1, -0.4, 0.5, 0.6]).collect();
+        let law = Law::new(-1.1, terms, scaled.logs.clone(), &scaled);
+        let (log, time): (f64, f64) = (-2.7, 2.3);
+        let found: f64 = law
+            .coefficients(&scaled)
+            .into_iter()
+            .map(|(term, factor)| {
+                factor
+                    * match term {
+                        Term::Constant => 1.0,
+                        Term::InverseAmplitude => (-log).exp(),
+                        Term::Amplitude => log.exp(),
+                        Term::SquaredAmplitude => (2.0 * log).exp(),
+                        Term::LogAmplitude => log - scaled.mean,
+                        Term::SquaredLogAmplitude => (log - scaled.mean).powi(2),
+                        Term::Time => time,
+                    }
+            })
+            .sum();
+        let expected = law.rate(log - scaled.mean, time / 5.0) / 5.0;
+        assert!((found / expected - 1.0).abs() < 1e-12, "{found} {expected}");
+        let text = law.amplitude_equation(&scaled);
+        assert!(text.contains(" A (ln A + 4.00000)^2") && text.contains(" t A"), "{text}");
+    }
+
+    #[test]
+    fn numbers_have_six_digits() {
+        let texts = [0.0, -0.131_931_4, 0.003_532_34, 123.456_78, 1e-7, 2.5e9].map(number);
+        assert_eq!(texts, ["0", "-0.131931", "0.00353234", "123.457", "1.00000e-7", "2.50000e9"]);
+    }
+}

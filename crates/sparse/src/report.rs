@@ -1,0 +1,59 @@
+//! The discovered law in words.
+
+use crate::law::{Law, number};
+use crate::path::Path;
+use crate::scaled::Scaled;
+
+/// Why the fit stopped: the law, and what it was chosen by.
+pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> String {
+    let criterion_of = |parameters: usize| {
+        path.laws
+            .iter()
+            .zip(criteria)
+            .find(|(law, _)| law.parameters() == parameters)
+            .map(|(_, found)| *found)
+    };
+    let own = criterion_of(law.parameters()).unwrap_or(f64::NAN);
+    let compared = path.laws.len();
+    if law.terms.is_empty() {
+        format!("{equation}: of {compared} laws no richer one earns its terms")
+    } else {
+        let gain = criterion_of(2).unwrap_or(f64::NAN) - own;
+        format!(
+            "{equation}: of {compared} laws the simplest that explains the peaks; its information criterion is \
+             {gain:.1} below that of an exponential"
+        )
+    }
+}
+
+/// The model file: the law, what λ is, and the path it was chosen from.
+///
+/// `method` is what a method adds of its own before the path, whole paragraphs or nothing.
+pub fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
+    let start = law.trajectory.first().copied().unwrap_or(0.0) + scaled.mean;
+    let mut text = format!(
+        "{}\n{}\nA(0) = {}\n\nA in the record's unit, t in seconds after the first peak.\n",
+        law.equation(scaled),
+        law.amplitude_equation(scaled),
+        number(start.exp()),
+    );
+    text.push_str(&format!(
+        "lambda = {} 1/s: {}.\n\n",
+        scaled.decay_rate(&law.trajectory),
+        if law.terms.is_empty() {
+            "minus the constant"
+        } else {
+            "minus the slope of the line fitted to this law's ln A(t) at the peaks"
+        }
+    ));
+    text.push_str(method);
+    text.push_str("Laws compared (information criterion, rms scatter of ln A):\n");
+    for (law, criterion) in path.laws.iter().zip(criteria) {
+        let scatter = (law.squares / scaled.peaks() as f64).sqrt();
+        text.push_str(&format!("{criterion:10.2}  {scatter:.3e}  {}\n", law.equation(scaled)));
+    }
+    if path.unsettled > 0 {
+        text.push_str(&format!("{} more did not settle.\n", path.unsettled));
+    }
+    text
+}
