@@ -1,0 +1,18 @@
+//! The estimators there are, one line each: adding one is a line here and one in the manifest.
+
+use estimator::Entry;
+
+/// Every estimator, in the paper's order, the null estimator first.
+pub const ESTIMATORS: &[Entry] = &[
+    estimator_baseline::ENTRY,
+    estimator_sindy::ENTRY,
+    estimator_pinn::ENTRY,
+    estimator_neural_ode::ENTRY,
+    estimator_lstm::ENTRY,
+    estimator_symbolic::ENTRY,
+    estimator_weak_sindy::ENTRY,
+    estimator_bayesian::ENTRY,
+    estimator_envelope_matching::ENTRY,
+    estimator_gaussian_process::ENTRY,
+    estimator_transformer::ENTRY,
+];

@@ -1,0 +1,56 @@
+//! The battery: one named test for each registered estimator and each check, `pinn::untrained_it_is_wrong`.
+//!
+//! The tests come from the registry, so that a new estimator joins by its line there. Coverage over a
+//! thousand envelopes is left out unless asked for: `cargo test --release -p registry -- --ignored`.
+
+#![allow(clippy::print_stdout, reason = "a test harness")]
+
+use conformance::{CHECKS, Subject, Waiver, coverage, verdict};
+use estimator::{Entry, Tag};
+use libtest_mimic::{Arguments, Failed, Trial};
+use registry::ESTIMATORS;
+use std::collections::BTreeSet;
+use std::process::ExitCode;
+
+/// What an estimator is let off, and why. A waived check that passes fails.
+const WAIVERS: &[Waiver] = &[];
+
+/// Envelopes of the short and of the long coverage test.
+const SHORT: u64 = 40;
+const LONG: u64 = 1000;
+
+/// Largest distance from 95 % of the long test; the short one is allowed what chance allows.
+const COVERAGE_BAR: f64 = 0.015;
+
+fn main() -> ExitCode {
+    let mut trials = vec![Trial::test("no_two_estimators_share_a_name", no_two_share_a_name)];
+    for entry in ESTIMATORS {
+        for check in CHECKS.iter().filter(|check| (check.applies)(entry)) {
+            trials.push(Trial::test(format!("{}::{}", entry.id, check.name), move || {
+                if let Some(remark) = verdict(check, entry, WAIVERS)? {
+                    println!("{}: {}: {remark}", entry.id, check.name);
+                }
+                Ok(())
+            }));
+        }
+        if entry.has(Tag::Interval) {
+            let name = format!("{}::its_intervals_cover_the_truth", entry.id);
+            trials.push(Trial::test(name, || covers(entry, SHORT)));
+            let name = format!("{}::its_intervals_cover_over_a_thousand_envelopes", entry.id);
+            trials.push(Trial::test(name, || covers(entry, LONG)).with_ignored_flag(true));
+        }
+    }
+    libtest_mimic::run(&Arguments::from_args(), trials).exit_code()
+}
+
+fn no_two_share_a_name() -> Result<(), Failed> {
+    let ids: BTreeSet<&str> = ESTIMATORS.iter().map(|entry| entry.id).collect();
+    if ids.len() == ESTIMATORS.len() { Ok(()) } else { Err("two estimators share a name".into()) }
+}
+
+fn covers(entry: &Entry, envelopes: u64) -> Result<(), Failed> {
+    let subject = Subject::new(entry).map_err(|error| error.to_string())?;
+    let found = coverage(&subject, envelopes)?;
+    println!("{}: {:.1} % of {} intervals", entry.id, 100.0 * found.share(), found.envelopes);
+    if found.is_within(COVERAGE_BAR) { Ok(()) } else { Err(format!("{found:?}").into()) }
+}
