@@ -14,8 +14,10 @@
 
 mod architecture;
 mod bad_input;
+mod comparison;
 mod documents;
 mod measured_records;
 mod nist;
+mod recipe;
 mod runs;
 mod support;

@@ -154,7 +154,7 @@ fn estimators_are_listed() {
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     let ids: Vec<&str> =
         value["estimators"].as_array().unwrap().iter().map(|row| row["id"].as_str().unwrap()).collect();
-    assert_eq!(ids, ["baseline", "pinn"]);
+    assert!(ids.contains(&"baseline") && ids.contains(&"pinn"), "{ids:?}");
 }
 
 /// Both half-cycles, believed clock: the recommended pipeline finds the simulated oscillator's own

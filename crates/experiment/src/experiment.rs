@@ -1,6 +1,6 @@
 //! From a document to an experiment.
 
-use crate::schema::{SECTIONS, estimator_name_field};
+use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
 use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
 use estimator::{Entry, Estimator};
 use record::{
@@ -22,16 +22,41 @@ pub struct Experiment {
     pub envelope: EnvelopeSettings,
     /// The fits.
     pub fit: FitSettings,
-    /// The registry's line of the estimator.
-    pub entry: Entry,
-    /// The estimator, built from its settings.
-    pub estimator: Box<dyn Estimator>,
+    /// What to do.
+    pub task: Task,
     /// Every value in force.
     pub resolved: Resolved,
 }
 
+/// What to do with the record.
+pub enum Task {
+    /// Fit one estimator.
+    Estimate(Single),
+    /// Compare many methods.
+    Compare(Comparison),
+}
+
+/// One estimator.
+pub struct Single {
+    /// The registry's line of the estimator.
+    pub entry: Entry,
+    /// The estimator, built from its settings.
+    pub estimator: Box<dyn Estimator>,
+}
+
+/// The section `compare`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Comparison {
+    /// Names of the methods, each known; `None` for all of the paper's.
+    pub methods: Option<Vec<String>>,
+    /// Moment of inertia, in kg·m².
+    pub inertia_kg_m2: f64,
+}
+
 #[derive(Deserialize)]
 struct Top {
+    task: String,
     name: Option<String>,
     seed: u64,
 }
@@ -149,21 +174,38 @@ struct PipelineName {
     pipeline: Pipeline,
 }
 
-/// Checks a document, overrides applied, against the schema and the registry.
+/// Checks a document, overrides applied, against the schema and what there is to choose from: the
+/// registry of estimators, and the names of the classical methods.
 ///
 /// # Errors
 /// [`SettingsError`], with file, line and column or the override that caused it.
-pub fn resolve(document: &Document, registry: &[Entry]) -> Result<Experiment, SettingsError> {
-    let entry = find_estimator(document, registry)?;
-    let fields: Vec<Field> =
-        std::iter::once(estimator_name_field()).chain(entry.fields.iter().copied()).collect();
-    let sections: Vec<Section<'_>> =
-        SECTIONS.iter().copied().chain([Section { name: "estimator", fields: &fields }]).collect();
+pub fn resolve(
+    document: &Document,
+    registry: &[Entry],
+    classical: &[&str],
+) -> Result<Experiment, SettingsError> {
+    let compares = document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("compare"));
+    // An estimator's keys can only be checked once it is known which estimator it is.
+    let entry = if compares { None } else { Some(find_estimator(document, registry)?) };
+    let fields: Vec<Field> = std::iter::once(estimator_name_field())
+        .chain(entry.iter().flat_map(|entry| entry.fields.iter().copied()))
+        .collect();
+    let own = if compares { COMPARE } else { Section { name: "estimator", fields: &fields } };
+    let sections: Vec<Section<'_>> = SECTIONS.iter().copied().chain([own]).collect();
     let resolved = Resolved::new(document, &sections)?;
+
     let top: Top = resolved.section("")?;
     let pipeline: PipelineName = resolved.section("envelope")?;
+    let task = match entry {
+        Some(entry) => Task::Estimate(Single { entry, estimator: (entry.build)(&resolved)? }),
+        None => Task::Compare(comparison(document, &resolved, registry, classical)?),
+    };
+    let default_name = match &task {
+        Task::Estimate(single) => single.entry.id.to_owned(),
+        Task::Compare(_) => top.task,
+    };
     Ok(Experiment {
-        name: top.name.unwrap_or_else(|| entry.id.to_owned()),
+        name: top.name.unwrap_or(default_name),
         seed: top.seed,
         data: resolved.section("data")?,
         envelope: EnvelopeSettings {
@@ -172,18 +214,32 @@ pub fn resolve(document: &Document, registry: &[Entry]) -> Result<Experiment, Se
             recommended: resolved.section("envelope.recommended")?,
         },
         fit: resolved.section("fit")?,
-        estimator: (entry.build)(&resolved)?,
-        entry,
+        task,
         resolved,
     })
 }
 
-/// The registry's line that `estimator.name` names. What is wrong otherwise with the key is left to the
-/// check of all keys: without a line the first of the registry stands in.
+fn comparison(
+    document: &Document,
+    resolved: &Resolved,
+    registry: &[Entry],
+    classical: &[&str],
+) -> Result<Comparison, SettingsError> {
+    let comparison: Comparison = resolved.section(COMPARE.name)?;
+    let known: Vec<String> =
+        classical.iter().copied().chain(registry.iter().map(|entry| entry.id)).map(str::to_owned).collect();
+    let origin =
+        || document.get("compare.methods").map_or(settings::Origin::Default, |leaf| leaf.origin.clone());
+    match comparison.methods.iter().flatten().find(|name| !known.contains(name)) {
+        Some(name) => Err(SettingsError::unknown_name(origin(), "method", name, known)),
+        None => Ok(comparison),
+    }
+}
+
+/// The registry's line that `estimator.name` names.
 fn find_estimator(document: &Document, registry: &[Entry]) -> Result<Entry, SettingsError> {
     let ids = || registry.iter().map(|entry| entry.id.to_owned()).collect::<Vec<_>>();
-    let leaf = document.get("estimator.name");
-    let Some(leaf) = leaf else {
+    let Some(leaf) = document.get("estimator.name") else {
         return Err(SettingsError::Missing {
             file: document.file().to_owned(),
             key: "estimator.name".to_owned(),

@@ -6,5 +6,7 @@
 mod experiment;
 mod schema;
 
-pub use experiment::{DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, resolve};
-pub use schema::{SECTIONS, estimator_name_field};
+pub use experiment::{
+    Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,
+};
+pub use schema::{COMPARE, SECTIONS, estimator_name_field};

@@ -7,7 +7,7 @@ use settings::{Default, Field, Kind, Section};
 const PLAIN: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// Every section but the estimator's.
+/// Every section but those of a single task.
 pub const SECTIONS: &[Section<'static>] = &[
     Section { name: "", fields: TOP },
     Section { name: "data", fields: DATA },
@@ -28,12 +28,32 @@ pub const fn estimator_name_field() -> Field {
     }
 }
 
+/// The section of `task = "compare"`.
+pub const COMPARE: Section<'static> = Section { name: "compare", fields: COMPARE_FIELDS };
+
+const COMPARE_FIELDS: &[Field] = &[
+    Field {
+        key: "methods",
+        kind: Kind::Texts { at_least: 1, at_most: 1000 },
+        meaning: "Which methods, classical and learned, by name; left open, all of the paper's.",
+        ..PLAIN
+    },
+    Field {
+        key: "inertia_kg_m2",
+        kind: Kind::Float { min: 1e-12, max: 1e12 },
+        default: Default::Float(5.0e-4),
+        unit: "kg m^2",
+        meaning: "Moment of inertia, for stiffness and damping coefficient; the record does not tell it.",
+        source: "the paper's m L^2 = 50 g (100 mm)^2",
+    },
+];
+
 const TOP: &[Field] = &[
     Field {
         key: "task",
-        kind: Kind::Choice(&["estimate"]),
+        kind: Kind::Choice(&["estimate", "compare"]),
         default: Default::Text("estimate"),
-        meaning: "What to do: fit one estimator to one record.",
+        meaning: "What to do with the record: fit one estimator, or compare many methods.",
         ..PLAIN
     },
     Field {

@@ -37,6 +37,17 @@ pub enum ReportError {
         /// What the file says.
         found: String,
     },
+    /// The run was asked for something that this report is not about.
+    #[error(
+        "result.json, field `task`: this report reads {expected}, the file says \"{found}\"; \
+         report on a run of that kind, or make the report with the program that made the run"
+    )]
+    Task {
+        /// The tasks that the report reads, in quotation marks.
+        expected: String,
+        /// What the file says.
+        found: String,
+    },
     /// A table has a row that does not fit its columns.
     #[error(
         "{file}, {place}: {reason}; the table must be as the run left it: restore it, or run the \

@@ -113,7 +113,6 @@ fn loss(run: &Run) -> Option<Figure> {
 
 fn decay_rate(run: &Run) -> Option<Figure> {
     let first = run.trace.first()?;
-    #[allow(clippy::cast_precision_loss)]
     let level = [(first.step as f64, run.result.oracle.decay_rate)];
     let plot = Plot {
         x: step_axis(),
@@ -136,7 +135,6 @@ fn distance(run: &Run) -> Option<Figure> {
         label: label.to_owned(),
         hue,
         mark,
-        #[allow(clippy::cast_precision_loss)]
         points: vec![(first.step as f64, height)],
     };
     let plot = Plot {
@@ -162,7 +160,7 @@ fn distance(run: &Run) -> Option<Figure> {
     figure("digits", title, explanation, &plot, csv)
 }
 
-fn figure(
+pub(crate) fn figure(
     id: &'static str,
     title: &'static str,
     explanation: &str,
@@ -192,7 +190,7 @@ fn figure(
     Some(Figure { id, title, explanation: explanation.to_owned(), notes, legend, wide, narrow, csv, rows })
 }
 
-fn time_axis() -> Axis {
+pub(crate) fn time_axis() -> Axis {
     Axis::linear("time after the first peak (s)")
 }
 
@@ -200,7 +198,7 @@ fn step_axis() -> Axis {
     Axis::linear("training step")
 }
 
-fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
+pub(crate) fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
     Series {
         label: "closed-form least squares (oracle)".into(),
         hue: Hue::Oracle,
@@ -214,7 +212,6 @@ fn estimate(run: &Run, mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> 
 }
 
 fn estimate_steps(run: &Run, value: impl Fn(&TraceRow) -> f64) -> Series {
-    #[allow(clippy::cast_precision_loss)]
     let points = run.trace.iter().map(|row| (row.step as f64, value(row)));
     estimate(run, Mark::Line, points)
 }
@@ -229,17 +226,14 @@ impl<'a> Phase<'a> {
         self.rows.first().map_or("", |row| row.phase.as_str())
     }
 
-    #[allow(clippy::cast_precision_loss)]
     fn start(&self) -> f64 {
         self.rows.first().map_or(0.0, |row| row.step as f64)
     }
 
-    #[allow(clippy::cast_precision_loss)]
     fn end(&self) -> f64 {
         self.rows.last().map_or(0.0, |row| row.step as f64)
     }
 
-    #[allow(clippy::cast_precision_loss)]
     fn points(&self, value: impl Fn(&TraceRow) -> f64) -> Vec<(f64, f64)> {
         self.rows.iter().map(|row| (row.step as f64, value(row))).collect()
     }
@@ -274,12 +268,16 @@ fn numbers(values: &[f64]) -> Vec<String> {
 }
 
 /// As few digits as read back as the same double.
-fn number(value: f64) -> String {
+pub(crate) fn number(value: f64) -> String {
     if value == 0.0 || (1e-4..1e15).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
 }
 
 /// The table as text, and how many rows of it that is, in words.
-fn csv<Row>(header: &[&str], rows: &[Row], fields: impl Fn(&Row) -> Vec<String>) -> (String, String) {
+pub(crate) fn csv<Row>(
+    header: &[&str],
+    rows: &[Row],
+    fields: impl Fn(&Row) -> Vec<String>,
+) -> (String, String) {
     let stride = rows.len().div_ceil(MOST_ROWS).max(1);
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory fails on no input; where it did, the table would end early.

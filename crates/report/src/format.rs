@@ -106,6 +106,20 @@ pub fn percent(value: f64) -> String {
     quantity(&significant(value, 2), "%")
 }
 
+/// A span of time to three significant digits, in the unit from nanoseconds to seconds that leaves
+/// no leading zeros: `1.20 µs`, `45.1 s`.
+#[must_use]
+pub fn duration(seconds: f64) -> String {
+    let (scale, unit) = match seconds.abs() {
+        0.0 => return quantity("0", "s"),
+        size if size < 1e-6 => (1e9, "ns"),
+        size if size < 1e-3 => (1e6, "µs"),
+        size if size < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    quantity(&significant(seconds * scale, 3), unit)
+}
+
 /// A number and its unit, kept on one line. An empty unit leaves the number alone.
 #[must_use]
 pub fn quantity(number: &str, unit: &str) -> String {
@@ -280,6 +294,16 @@ mod tests {
         assert_eq!(interval([0.181_98, 0.199_94]), "[0.1820, 0.1999]");
         assert_eq!(plain(&interval([-2.0e-7, 3.0e-7])), "[−2.0, 3.0] × 10⁻⁷");
         assert_eq!(interval([1.0, 1.0]), "[1.0000000, 1.0000000]");
+    }
+
+    #[test]
+    fn spans_of_time_choose_their_unit() {
+        assert_eq!(plain(&duration(1.2e-6)), "1.20 µs");
+        assert_eq!(plain(&duration(4.51e-2)), "45.1 ms");
+        assert_eq!(plain(&duration(3.4e-8)), "34.0 ns");
+        assert_eq!(plain(&duration(83.25)), "83.2 s");
+        assert_eq!(plain(&duration(0.0)), "0 s");
+        assert_eq!(plain(&duration(f64::NAN)), "not finite s");
     }
 
     #[test]

@@ -1,14 +1,20 @@
 //! From a run's results to one HTML file, a pure function.
 //!
-//! [`render_run`] takes the texts of a run folder and gives back the page: no disk, no clock, no
-//! network, and no number in it that is not in those texts or a plain difference or ratio of
-//! numbers that are. The same texts give the same bytes.
+//! [`render`] takes the texts of a run folder and gives back the page: no disk, no clock, no
+//! network, and no number in it that is not in those texts or follows from numbers that are by a
+//! difference, a ratio or a conversion of units. The same texts give the same bytes.
+//!
+//! What was run decides the page: [`render_run`] shows one estimator's estimate,
+//! [`render_comparison`] many methods on one envelope, whose tables [`comparison_markdown`] gives
+//! as Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod comparison;
 mod error;
 mod figures;
 pub mod format;
+mod frame;
 mod page;
 mod parse;
 pub mod plot;
@@ -27,9 +33,11 @@ pub struct RunTexts<'a> {
     pub name: &'a str,
     /// `config.toml`: the resolved settings. Shown as it is; may be empty.
     pub config: &'a str,
-    /// `result.json`: see [`runs::result::EstimationResult`].
+    /// `result.json`: see [`runs::result::EstimationResult`] and
+    /// [`runs::result::ComparisonResult`].
     pub result: &'a str,
-    /// `trace.csv`: see [`runs::result::TraceRow`]. Empty for a method that takes no steps.
+    /// `trace.csv`: see [`runs::result::TraceRow`]. Empty for a method that takes no steps, and
+    /// for a comparison.
     pub trace: &'a str,
     /// `envelope.csv`: see [`runs::result::EnvelopeRow`].
     pub envelope: &'a str,
@@ -37,12 +45,43 @@ pub struct RunTexts<'a> {
     pub environment: &'a str,
 }
 
-/// The report on one run: a complete HTML page that loads nothing and runs no script.
+/// The report on a run, whatever it was asked for: a complete HTML page that loads nothing and runs
+/// no script.
 ///
 /// # Errors
 ///
 /// [`ReportError`] where the result or the envelope is missing, or where a file does not have the
 /// form that a run gives it; the message says which file, where, and what to do.
+pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    match parse::task(texts.result)? {
+        parse::Task::Estimate => render_run(texts),
+        parse::Task::Compare => render_comparison(texts),
+    }
+}
+
+/// The report on an estimation, `task = "estimate"`.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
 pub fn render_run(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     page::render(texts, &parse::parse(texts)?)
+}
+
+/// The report on a comparison, `task = "compare"`. Of `texts`, the trace may be empty.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
+pub fn render_comparison(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    comparison::render(texts, &parse::parse_comparison(texts)?)
+}
+
+/// The verdict and the tables of a comparison as GitHub Markdown, from its `result.json`.
+///
+/// # Errors
+///
+/// As [`render`], for that file.
+pub fn comparison_markdown(result: &str) -> Result<String, ReportError> {
+    Ok(comparison::markdown(&parse::comparison_result(result)?))
 }

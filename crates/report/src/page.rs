@@ -3,43 +3,37 @@
 use askama::Template;
 
 use crate::figures::{Figure, figures};
+use crate::frame::Frame;
 use crate::parse::Run;
-use crate::plot::Hue;
-use crate::tables::{self, ComparisonRow, Fact, PipelineView, SeedView};
-use crate::verdict::{self, Origin, Verdict};
+use crate::tables::{self, ComparisonRow, Fact, SeedView};
+use crate::verdict;
 use crate::{ReportError, RunTexts};
 
 #[derive(Template)]
 #[template(path = "run.html")]
 struct RunPage<'a> {
-    hues: &'static [Hue],
-    texts: &'a RunTexts<'a>,
+    frame: Frame<'a>,
     estimator: &'a str,
-    verdict: Verdict,
-    origin: Origin,
-    warnings: Vec<String>,
     comparison: Vec<ComparisonRow>,
     /// Titles and facts.
     cards: [(&'static str, Vec<Fact>); 3],
     seeds: Vec<SeedView>,
-    pipelines: Vec<PipelineView<'a>>,
-    data: Vec<Fact>,
-    findings: &'a [String],
     figures: Vec<Figure>,
     has_trace: bool,
-    /// What the files are, and their texts.
-    files: [(&'static str, &'a str); 3],
 }
 
 pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportError> {
     let result = &run.result;
     let page = RunPage {
-        hues: &Hue::ALL,
-        texts,
+        frame: Frame::new(
+            texts,
+            "estimation of a damping ratio",
+            verdict::verdict(result),
+            &result.data,
+            &result.oracle,
+            &result.pipelines,
+        ),
         estimator: &result.estimator_title,
-        verdict: verdict::verdict(result),
-        origin: verdict::origin(&result.data.origin),
-        warnings: verdict::warnings(result),
         comparison: tables::comparison(result),
         cards: [
             ("Training", tables::training(result)),
@@ -47,16 +41,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
             ("Oracle", tables::oracle(result)),
         ],
         seeds: tables::seeds(&result.seeds),
-        pipelines: tables::pipelines(&result.pipelines),
-        data: tables::data(&result.data),
-        findings: &result.data.findings,
         figures: figures(run),
         has_trace: !run.trace.is_empty(),
-        files: [
-            ("Resolved configuration (config.toml)", texts.config),
-            ("Environment (environment.json)", texts.environment),
-            ("Every number, unrounded (result.json)", texts.result),
-        ],
     };
     Ok(page.render()?)
 }

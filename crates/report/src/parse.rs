@@ -1,12 +1,12 @@
 //! From the texts of a run folder to typed values.
 
-use runs::result::{EnvelopeRow, EstimationResult, RESULT_SCHEMA, TraceRow};
+use runs::result::{ComparisonResult, EnvelopeRow, EstimationResult, RESULT_SCHEMA, TraceRow};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::{ReportError, RunTexts};
 
-/// The parsed content of a run folder.
+/// The parsed content of the folder of an estimation.
 pub(crate) struct Run {
     pub(crate) result: EstimationResult,
     /// Empty where the method takes no steps.
@@ -14,26 +14,73 @@ pub(crate) struct Run {
     pub(crate) envelope: Vec<EnvelopeRow>,
 }
 
-/// The one field that every schema has.
+/// The parsed content of the folder of a comparison.
+pub(crate) struct Comparison {
+    pub(crate) result: ComparisonResult,
+    pub(crate) envelope: Vec<EnvelopeRow>,
+}
+
+/// What a run was asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Task {
+    Estimate,
+    Compare,
+}
+
+impl Task {
+    /// As the field `task` has it.
+    fn name(self) -> &'static str {
+        match self {
+            Self::Estimate => "estimate",
+            Self::Compare => "compare",
+        }
+    }
+}
+
+/// The fields that every schema has.
 #[derive(Deserialize)]
 struct Tag {
     schema: String,
+    /// Looked at only once the schema is known to be this program's.
+    #[serde(default)]
+    task: String,
 }
 
 pub(crate) fn parse(texts: &RunTexts<'_>) -> Result<Run, ReportError> {
-    let envelope: Vec<EnvelopeRow> = table("envelope.csv", texts.envelope)?;
-    if envelope.is_empty() {
-        return Err(ReportError::Empty { file: "envelope.csv" });
-    }
     Ok(Run {
-        result: result(texts.result)?,
+        envelope: envelope(texts.envelope)?,
+        result: result(texts.result, Task::Estimate)?,
         // No rows is a valid trace: a closed-form method takes no steps.
         trace: table("trace.csv", texts.trace)?,
-        envelope,
     })
 }
 
-fn result(text: &str) -> Result<EstimationResult, ReportError> {
+pub(crate) fn parse_comparison(texts: &RunTexts<'_>) -> Result<Comparison, ReportError> {
+    Ok(Comparison { envelope: envelope(texts.envelope)?, result: comparison_result(texts.result)? })
+}
+
+pub(crate) fn comparison_result(text: &str) -> Result<ComparisonResult, ReportError> {
+    result(text, Task::Compare)
+}
+
+fn envelope(text: &str) -> Result<Vec<EnvelopeRow>, ReportError> {
+    let rows: Vec<EnvelopeRow> = table("envelope.csv", text)?;
+    if rows.is_empty() { Err(ReportError::Empty { file: "envelope.csv" }) } else { Ok(rows) }
+}
+
+fn result<Content: DeserializeOwned>(text: &str, expected: Task) -> Result<Content, ReportError> {
+    let found = task(text)?;
+    if found != expected {
+        return Err(ReportError::Task {
+            expected: format!("\"{}\"", expected.name()),
+            found: found.name().to_owned(),
+        });
+    }
+    serde_json::from_str(text).map_err(json_error)
+}
+
+/// What the run was asked for, by its `result.json`.
+pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     if text.trim().is_empty() {
         return Err(ReportError::Empty { file: "result.json" });
     }
@@ -43,7 +90,9 @@ fn result(text: &str) -> Result<EstimationResult, ReportError> {
     if tag.schema != RESULT_SCHEMA {
         return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });
     }
-    serde_json::from_str(text).map_err(json_error)
+    [Task::Estimate, Task::Compare].into_iter().find(|task| task.name() == tag.task).ok_or_else(|| {
+        ReportError::Task { expected: "\"estimate\" or \"compare\"".to_owned(), found: tag.task }
+    })
 }
 
 fn json_error(error: serde_json::Error) -> ReportError {
@@ -147,6 +196,18 @@ mod tests {
             "result.json, field `schema`: this program reads \"ringdown.result/1\", the file says \
              \"ringdown.result/9\"; make the report with the program that made the run"
         );
+    }
+
+    #[test]
+    fn another_task_is_named() {
+        let mut sample = Sample::new();
+        sample.result.task = "dream".into();
+        let text = sample.render().unwrap_err().to_string();
+        assert!(text.starts_with("result.json, field `task`: this report reads \"estimate\" or "), "{text}");
+        assert!(text.contains("\"compare\", the file says \"dream\""), "{text}");
+        sample.result.task = "compare".into();
+        let text = sample.render().unwrap_err().to_string();
+        assert!(text.contains("reads \"estimate\", the file says \"compare\""), "{text}");
     }
 
     #[test]

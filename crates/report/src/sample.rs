@@ -62,7 +62,7 @@ impl Sample {
     }
 }
 
-fn table<Row: Serialize>(rows: &[Row]) -> String {
+pub(crate) fn table<Row: Serialize>(rows: &[Row]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in rows {
         writer.serialize(row).unwrap();

@@ -10,7 +10,7 @@ pub(crate) struct Fact {
     pub(crate) value: String,
 }
 
-fn fact(name: &'static str, value: impl Into<String>) -> Fact {
+pub(crate) fn fact(name: &'static str, value: impl Into<String>) -> Fact {
     Fact { name, value: value.into() }
 }
 
@@ -221,7 +221,7 @@ pub(crate) fn pipelines(rows: &[PipelineRow]) -> Vec<PipelineView<'_>> {
 }
 
 /// `reached` in words.
-fn reached(state: &str) -> String {
+pub(crate) fn reached(state: &str) -> String {
     match state {
         "converged" => "converged".to_owned(),
         "budget_spent" => "budget of steps spent".to_owned(),
@@ -229,7 +229,7 @@ fn reached(state: &str) -> String {
     }
 }
 
-fn whole(value: usize) -> String {
+pub(crate) fn whole(value: usize) -> String {
     count(u64::try_from(value).unwrap_or(u64::MAX))
 }
 

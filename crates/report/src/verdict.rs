@@ -1,6 +1,6 @@
 //! What a run came to, in one sentence, and what kind of record it is about.
 
-use runs::result::EstimationResult;
+use runs::result::{EstimationResult, OracleSummary};
 
 use crate::format;
 
@@ -108,12 +108,20 @@ fn comparison(result: &EstimationResult) -> String {
     }
 }
 
-/// A title as it stands inside a sentence: its first letter small, unless it begins an acronym.
-fn in_a_sentence(title: &str) -> String {
-    let mut letters = title.chars();
-    match (letters.next(), letters.next()) {
-        (Some(first), Some(second)) if second.is_lowercase() => {
-            first.to_lowercase().chain(title.chars().skip(1)).collect()
+/// A title as it stands inside a sentence: its first letter small, unless its first word is a name or
+/// holds another capital.
+pub(crate) fn in_a_sentence(title: &str) -> String {
+    const NAMES: [&str; 4] = ["Bayesian", "Gaussian", "Levenberg", "Newton"];
+    let is_end = |letter: char| !letter.is_alphabetic();
+    let word = title.split(is_end).next().unwrap_or_default();
+    let mut rest = title.chars();
+    match rest.next() {
+        Some(first)
+            if !NAMES.contains(&word)
+                && word.chars().count() > 1
+                && word.chars().skip(1).all(char::is_lowercase) =>
+        {
+            first.to_lowercase().chain(rest).collect()
         }
         _ => title.to_owned(),
     }
@@ -150,9 +158,9 @@ pub(crate) fn origin(stated: &str) -> Origin {
 }
 
 /// What the reader has to know before believing the numbers.
-pub(crate) fn warnings(result: &EstimationResult) -> Vec<String> {
+pub(crate) fn warnings(oracle: &OracleSummary) -> Vec<String> {
     let mut warnings = Vec::new();
-    let correlation = result.oracle.residual_autocorrelation;
+    let correlation = oracle.residual_autocorrelation;
     if correlation.abs() > 0.5 {
         let consequence = if correlation > 0.0 { "are therefore too small" } else { "therefore do not hold" };
         warnings.push(format!(
@@ -232,6 +240,20 @@ mod tests {
     }
 
     #[test]
+    fn names_keep_their_capitals_inside_a_sentence() {
+        for (title, expected) in [
+            ("Gradient descent", "gradient descent"),
+            ("NumPy polyfit", "NumPy polyfit"),
+            ("L-BFGS-B", "L-BFGS-B"),
+            ("QR decomposition", "QR decomposition"),
+            ("Bayesian regression", "Bayesian regression"),
+            ("", ""),
+        ] {
+            assert_eq!(in_a_sentence(title), expected);
+        }
+    }
+
+    #[test]
     fn an_origin_that_is_not_known_is_not_stated() {
         assert_eq!(origin("measured").class, "measured");
         assert_eq!(origin("simulated").class, "simulated");
@@ -243,11 +265,11 @@ mod tests {
     fn correlated_residuals_are_warned_about() {
         let mut result = Sample::new().result;
         result.oracle.residual_autocorrelation = 0.5;
-        assert!(warnings(&result).is_empty());
+        assert!(warnings(&result.oracle).is_empty());
         result.oracle.residual_autocorrelation = 0.61;
-        assert!(warnings(&result)[0].contains("0.61): the standard errors"));
-        assert!(warnings(&result)[0].contains("too small"));
+        assert!(warnings(&result.oracle)[0].contains("0.61): the standard errors"));
+        assert!(warnings(&result.oracle)[0].contains("too small"));
         result.oracle.residual_autocorrelation = -0.7;
-        assert!(warnings(&result)[0].contains("do not hold"));
+        assert!(warnings(&result.oracle)[0].contains("do not hold"));
     }
 }

@@ -14,14 +14,15 @@ use std::path::PathBuf;
     after_help = "\
 Examples:
   trainer configs/pinn.toml                       the shipped, simulated record
+  trainer configs/paper.toml                      all of the paper's methods
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer list estimators
   trainer report reports/runs/RUN
 
-Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or usage; 130 interrupted, the best
-so far is saved."
+Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
+usage; 130 interrupted, the best so far is saved."
 )]
 pub(crate) struct Arguments {
     /// A command other than running a configuration.

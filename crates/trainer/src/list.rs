@@ -4,8 +4,8 @@ use crate::Outcome;
 use crate::cli::{Listing, Output};
 use crate::console;
 use crate::error::TrainerError;
-use crate::registry::ESTIMATORS;
 use crate::summary::table;
+use registry::ESTIMATORS;
 use serde_json::json;
 
 pub(crate) fn list(what: Listing, output: Output) -> Result<Outcome, TrainerError> {

@@ -2,16 +2,20 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod cautions;
 mod cli;
+mod compare;
 mod console;
 mod environment;
 mod error;
 mod estimate;
+mod fit;
+mod input;
 mod interrupt;
 mod list;
 mod progress;
-mod registry;
 mod rerender;
+mod run;
 mod summary;
 
 use clap::Parser;
@@ -20,7 +24,7 @@ use error::TrainerError;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match run(Arguments::parse()) {
+    match dispatch(Arguments::parse()) {
         Ok(outcome) => ExitCode::from(outcome.exit_code()),
         Err(error) => {
             console::error(&error.to_string());
@@ -50,10 +54,10 @@ impl Outcome {
     }
 }
 
-fn run(arguments: Arguments) -> Result<Outcome, TrainerError> {
+fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
         Some(Command::List { what, output }) => list::list(what, output),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
-        None => estimate::estimate(&arguments.experiment),
+        None => run::run(&arguments.experiment),
     }
 }

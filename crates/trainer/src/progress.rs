@@ -4,51 +4,65 @@ use crate::console;
 use estimator::{Observer, Step};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use runs::result::{SeedRow, TraceRow};
+use std::fmt::Display;
 use std::io::IsTerminal;
 use std::sync::Mutex;
 
-/// Progress over the seeds of an experiment.
+/// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {
     bar: ProgressBar,
-    seeds: u64,
+    counts_steps: bool,
     lines: bool,
 }
 
 impl Progress {
-    pub(crate) fn new(seeds: u64, quiet: bool) -> Self {
+    /// Over the steps of one seed, or over several seeds.
+    pub(crate) fn over_seeds(seeds: u64, quiet: bool) -> Self {
+        let unit = if seeds == 1 { "steps" } else { "seeds" };
+        Self::new(seeds, unit, seeds == 1, quiet)
+    }
+
+    /// Over the fits of several methods.
+    pub(crate) fn over_fits(fits: u64, quiet: bool) -> Self {
+        Self::new(fits, "fits", false, quiet)
+    }
+
+    fn new(length: u64, unit: &str, counts_steps: bool, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
-        let bar = ProgressBar::with_draw_target(Some(seeds), ProgressDrawTarget::hidden());
+        let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
         if terminal && !quiet {
             bar.set_draw_target(ProgressDrawTarget::stderr());
         }
-        let unit = if seeds == 1 { "steps" } else { "seeds" };
-        let template = format!("{{bar:30}} {{pos}}/{{len}} {unit}, {{eta}} left  {{msg}}");
+        let template = format!("{{bar:30}} {{pos}}/{{len}} {unit}, {{eta}} left  {{wide_msg}}");
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        Self { bar, seeds, lines: !terminal && !quiet }
+        Self { bar, counts_steps, lines: !terminal && !quiet }
     }
 
-    /// A step of the only seed. With several seeds the bar counts those.
     fn step(&self, step: &Step) {
-        if self.seeds == 1 {
+        if self.counts_steps {
             self.bar.set_length(step.planned);
             self.bar.set_position(step.step);
             self.bar.set_message(format!("loss {:.3e}, λ {:.9} 1/s", step.loss, step.decay_rate));
         }
     }
 
-    /// A seed that is done.
-    pub(crate) fn seed_done(&self, row: &SeedRow) {
-        if self.seeds > 1 {
-            self.bar.inc(1);
-            self.bar.set_message(format!("seed {}: {:.1e} %", row.seed, row.error_percent));
-        }
+    /// A fit that is done, or why it is not.
+    pub(crate) fn fit_done<E: Display>(&self, method: &str, seed: u64, fit: Result<&SeedRow, E>) {
+        let line = match fit {
+            Ok(row) => format!(
+                "{method}, seed {seed}: {} after {} steps, {:.2} s, error {:.1e} %",
+                row.reached, row.steps, row.seconds, row.error_percent
+            ),
+            Err(error) => format!("{method}, seed {seed}: FAILED: {error}"),
+        };
         if self.lines {
-            console::remark(&format!(
-                "seed {}: {} after {} steps, {:.2} s, error {:.1e} %",
-                row.seed, row.reached, row.steps, row.seconds, row.error_percent
-            ));
+            console::remark(&line);
+        }
+        if !self.counts_steps {
+            self.bar.inc(1);
+            self.bar.set_message(line);
         }
     }
 

@@ -4,7 +4,7 @@ use crate::Outcome;
 use crate::cli::Output;
 use crate::console;
 use crate::error::TrainerError;
-use report::{RunTexts, render_run};
+use report::{RunTexts, render};
 use runs::RunFolder;
 use serde_json::json;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub(crate) fn rerender(run: &Path, output: Output) -> Result<Outcome, TrainerErr
 /// Writes `report.html` from the folder's other files.
 pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
     let texts = folder.texts()?;
-    let html = render_run(&RunTexts {
+    let html = render(&RunTexts {
         name: &texts.name,
         config: &texts.config,
         result: &texts.result,

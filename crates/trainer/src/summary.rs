@@ -2,7 +2,9 @@
 
 use comfy_table::{ContentArrangement, Table, presets};
 use report::format;
-use runs::result::{EstimationResult, PipelineOutcome};
+use runs::result::{
+    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, PipelineOutcome, PipelineRow,
+};
 use std::path::Path;
 
 /// A table with aligned columns, as wide as the terminal at most.
@@ -28,9 +30,9 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
             result.seeds.iter().map(|row| row.seconds).fold(0.0, f64::max),
         ));
     }
-    parts.push(pipelines(result));
+    parts.push(pipelines(&result.pipelines));
     parts.push(remarks(result).join("\n"));
-    parts.push(format!("run: {0}\nreport: {0}/report.html", folder.display()));
+    parts.push(ending(folder));
     parts.join("\n\n")
 }
 
@@ -83,15 +85,122 @@ fn numbers(result: &EstimationResult) -> String {
     )
 }
 
+/// A comparison as a person wants to read it: the paper's Tables 3 to 5 in one screen or two.
+pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
+    let parts = [
+        comparison_headline(result),
+        oscillation(result),
+        methods(result),
+        pipelines(&result.pipelines),
+        comparison_remarks(result),
+        ending(folder),
+    ];
+    parts.join("\n\n")
+}
+
+fn comparison_headline(result: &ComparisonResult) -> String {
+    let passed = result.results.iter().filter(|row| passes(row)).count();
+    let count = result.results.len();
+    let verdict = if result.pass { "pass" } else { "PASS, THE OTHERS FAIL" };
+    format!(
+        "{passed} of {count} methods on {} ({} record) {verdict} the {} % bar; largest error {:.1e} %, \
+         seeds {} to {}, {:.1} s",
+        result.data.path,
+        result.data.origin,
+        result.tolerance_percent,
+        result.max_error_percent,
+        result.seed,
+        result.seed + result.seeds.saturating_sub(1),
+        result.seconds,
+    )
+}
+
+fn passes(row: &MethodRow) -> bool {
+    matches!(&row.outcome, MethodOutcome::Estimate(estimate) if estimate.pass)
+}
+
+fn oscillation(result: &ComparisonResult) -> String {
+    let (oracle, derived) = (&result.oracle, &result.derived);
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    table(
+        &[],
+        vec![
+            row("peaks", result.envelope.peaks.to_string()),
+            row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
+            row("angular frequency ω", format!("{:.6} rad/s", result.envelope.omega_rad_s)),
+            row("decay rate λ", format!("{} 1/s", digits(oracle.decay_rate))),
+            row("R²", format!("{:.6}", oracle.r_squared)),
+            row(
+                "damping ratio ζ",
+                format!("{} ± {:.1e} (standard error)", digits(oracle.zeta), oracle.zeta_std_error),
+            ),
+            row("stiffness", format!("{:.4} N m/rad", derived.stiffness_n_m_per_rad)),
+            row("damping coefficient", format!("{:.4e} N m s/rad", derived.damping_n_m_s_per_rad)),
+            row("critical damping", format!("{:.4e} N m s/rad", derived.critical_damping_n_m_s_per_rad)),
+            row(
+                "quality factor",
+                format!(
+                    "{:.2}; to 1/e in {:.2} cycles",
+                    derived.quality_factor, derived.cycles_to_one_over_e
+                ),
+            ),
+            row(
+                "half-life, time constant",
+                format!("{:.3} s, {:.3} s", derived.half_life_s, derived.time_constant_s),
+            ),
+        ],
+    )
+}
+
+fn methods(result: &ComparisonResult) -> String {
+    let rows = result
+        .results
+        .iter()
+        .map(|row| {
+            let number = row.number.map_or_else(|| "-".to_owned(), |number| number.to_string());
+            let mut cells = vec![number, row.id.clone()];
+            match &row.outcome {
+                MethodOutcome::Estimate(found) => cells.extend([
+                    format!("{:.8}", found.zeta),
+                    found.zeta_std_error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
+                    format!("{:.1e}", found.error_percent),
+                    format!("{:.1e}", found.worst_error_percent),
+                    format!("{:.1}", found.digits_of_agreement),
+                    found.seeds.to_string(),
+                    found.steps.to_string(),
+                    found.parameters.to_string(),
+                    format!("{:.3}", found.seconds),
+                    format!("{}{}", found.reached.replace('_', " "), if found.pass { "" } else { ", FAILS" }),
+                ]),
+                MethodOutcome::Failed { reason } => {
+                    cells.extend(std::iter::repeat_n(String::new(), 9));
+                    cells.push(format!("FAILED: {reason}"));
+                }
+            }
+            cells
+        })
+        .collect();
+    let header =
+        ["#", "method", "ζ", "±", "error %", "worst %", "digits", "seeds", "steps", "par.", "s", "state"];
+    table(&header, rows)
+}
+
+fn comparison_remarks(result: &ComparisonResult) -> String {
+    let cautions = result
+        .cautions
+        .iter()
+        .map(|caution| format!("not borne out: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
+    clock(&result.data).into_iter().chain(cautions).collect::<Vec<_>>().join("\n")
+}
+
 /// Ten significant digits.
 fn digits(value: f64) -> String {
     format::significant(value, 10)
 }
 
-fn pipelines(result: &EstimationResult) -> String {
+fn pipelines(pipelines: &[PipelineRow]) -> String {
     let mark = |in_force: bool| if in_force { "*" } else { "" }.to_owned();
-    let rows = result
-        .pipelines
+    let rows = pipelines
         .iter()
         .map(|row| {
             let mut cells = vec![mark(row.in_force), row.pipeline.clone(), row.clock.clone()];
@@ -114,8 +223,12 @@ fn pipelines(result: &EstimationResult) -> String {
     format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows))
 }
 
-fn remarks(result: &EstimationResult) -> Vec<String> {
-    let data = &result.data;
+fn ending(folder: &Path) -> String {
+    format!("run: {0}\nreport: {0}/report.html", folder.display())
+}
+
+/// Which clock, the sensor's rate, and what was noticed about the file.
+fn clock(data: &DataSummary) -> Vec<String> {
     let mut remarks = vec![
         format!("clock in force: {} ({})", data.clock, data.clock_reason),
         format!(
@@ -132,6 +245,11 @@ fn remarks(result: &EstimationResult) -> Vec<String> {
         ));
     }
     remarks.extend(data.findings.iter().map(|finding| format!("note: {finding}")));
+    remarks
+}
+
+fn remarks(result: &EstimationResult) -> Vec<String> {
+    let mut remarks = clock(&result.data);
     if result.oracle.residual_autocorrelation.abs() > 0.5 {
         remarks.push(format!(
             "note: the residuals of ln A are autocorrelated ({:.2}): the envelope is no pure \

@@ -133,7 +133,6 @@ impl Ticks {
                 format::tick(value, self.low, high, self.step)
             }
             // Exact: a whole number, and no double's exponent exceeds 324.
-            #[allow(clippy::cast_possible_truncation)]
             Scale::Log => format::power_of_ten(value.round() as i32),
         }
     }
@@ -154,7 +153,6 @@ mod tests {
 
     fn labels(axis: &Axis, values: &[f64]) -> Vec<String> {
         let ticks = axis.ticks(values.iter().copied(), 5.0).unwrap();
-        #[allow(clippy::cast_possible_truncation)]
         let count = ticks.ends.1 as i32;
         (0..=count).map(|k| ticks.label(f64::from(k))).collect()
     }

@@ -1,6 +1,6 @@
 //! Plots as inline SVG: the one place that draws.
 //!
-//! A [`Plot`] says what is to be seen; [`Plot::draw`] gives a [`Drawing`], for which the style
+//! A [`Plot`] of two quantities or [`DotRows`], one quantity by name, say what is to be seen; `draw` gives a [`Drawing`], for which the style
 //! sheet of the page supplies the colors (see [`Hue`]). Each plot is drawn twice, for a wide and
 //! for a narrow page, because text in an SVG shrinks with it: the page shows one of the two.
 //!
@@ -9,11 +9,13 @@
 
 mod axis;
 mod hue;
+mod rows;
 mod svg;
 mod thin;
 
 pub use axis::{Axis, Scale};
 pub use hue::Hue;
+pub use rows::{DotRow, DotRows};
 
 /// Beyond this many points in all its lines, a plot looks the same with fewer.
 const MOST_POINTS: usize = 2_000;

@@ -7,7 +7,7 @@ use kuva::plot::{LinePlot, ScatterPlot};
 use kuva::render::annotations::ShadedRegion;
 use kuva::render::layout::{AxisLabelOverlap, Layout, TickFormat};
 use kuva::render::plots::Plot as KuvaPlot;
-use kuva::render::render::{Primitive, render_multiple};
+use kuva::render::render::{Primitive, Scene, render_multiple};
 use kuva::render::theme::Theme;
 
 use super::axis::Ticks;
@@ -15,17 +15,17 @@ use super::{Hue, Mark, Plot, Run, Series};
 
 /// The canvas, in SVG units that are CSS pixels where the page shows it full size.
 pub(super) struct Canvas {
-    class: &'static str,
-    width: f64,
-    height: f64,
+    pub(super) class: &'static str,
+    pub(super) width: f64,
+    pub(super) height: f64,
     /// Font sizes of the axis labels and of the ticks.
-    label_size: u32,
-    tick_size: u32,
+    pub(super) label_size: u32,
+    pub(super) tick_size: u32,
     /// About how many ticks there is room for.
-    x_ticks: f64,
+    pub(super) x_ticks: f64,
     y_ticks: f64,
-    dot_radius: f64,
-    line_width: f64,
+    pub(super) dot_radius: f64,
+    pub(super) line_width: f64,
 }
 
 pub(super) const WIDE: Canvas = Canvas {
@@ -54,7 +54,7 @@ pub(super) const NARROW: Canvas = Canvas {
 
 /// Dash patterns, shared by the plots and the swatches. Dashes and gaps are of equal length: where a
 /// dashed line lies on a drawn-through one, both are seen in turn.
-const DASHES: &str = "8 8";
+pub(super) const DASHES: &str = "8 8";
 const DOTS: &str = "2 3";
 
 /// `runs` holds the points of each series of the plot, in unbroken stretches.
@@ -82,7 +82,11 @@ pub(super) fn render(plot: &Plot, runs: &[Vec<Run>], canvas: &Canvas, descriptio
         }
     }
 
-    let mut scene = render_multiple(layers, layout);
+    finish(render_multiple(layers, layout), canvas, canvas.height, description)
+}
+
+/// The scene as SVG whose size, font and colors the page chooses.
+pub(super) fn finish(mut scene: Scene, canvas: &Canvas, height: f64, description: &str) -> Option<String> {
     // kuva numbers its clip paths with a counter of the process, which would make the text depend
     // on what was drawn before. Nothing here lies outside the axes, so nothing is to be clipped.
     scene.defs.clear();
@@ -96,27 +100,32 @@ pub(super) fn render(plot: &Plot, runs: &[Vec<Run>], canvas: &Canvas, descriptio
          font-family=\"sans-serif\" fill=\"{}\" role=\"img\" aria-label=\"{}\">{body}",
         canvas.class,
         canvas.width,
-        canvas.height,
+        height,
         Hue::Ink.light(),
         escape(description),
     ))
 }
 
-fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
-    let theme = Theme {
+/// kuva's theme in the hues that the page's style sheet knows.
+pub(super) fn theme() -> Theme {
+    Theme {
         background: "none".into(),
         axis_color: Hue::Axis.light().into(),
         tick_color: Hue::Axis.light().into(),
         grid_color: Hue::Grid.light().into(),
         text_color: Hue::Ink.light().into(),
         ..Theme::light()
-    };
-    let labels = |ticks: &Ticks| {
-        let ticks = ticks.clone();
-        TickFormat::Custom(Arc::new(move |position| ticks.label(position)))
-    };
+    }
+}
+
+pub(super) fn labels(ticks: &Ticks) -> TickFormat {
+    let ticks = ticks.clone();
+    TickFormat::Custom(Arc::new(move |position| ticks.label(position)))
+}
+
+fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
     Layout::new(x.ends, y.ends)
-        .with_theme(theme)
+        .with_theme(theme())
         .with_width(canvas.width)
         .with_height(canvas.height)
         .with_label_size(canvas.label_size)
@@ -183,6 +192,10 @@ pub(super) fn swatch(series: &Series) -> String {
         Mark::Dashes | Mark::Level => dashed(DASHES),
         Mark::DottedLine | Mark::DottedLevel => dashed(DOTS),
     };
+    swatch_of(&shape)
+}
+
+pub(super) fn swatch_of(shape: &str) -> String {
     format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"swatch\" viewBox=\"0 0 28 12\" \
          aria-hidden=\"true\">{shape}</svg>"
@@ -190,7 +203,7 @@ pub(super) fn swatch(series: &Series) -> String {
 }
 
 /// Axis labels may quote a unit from a file. kuva escapes them, but reads `$…$` as mathematics.
-fn plain(label: &str) -> String {
+pub(super) fn plain(label: &str) -> String {
     label.chars().filter(|c| *c != '$').take(60).collect()
 }
 

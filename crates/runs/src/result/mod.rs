@@ -4,6 +4,10 @@
 //! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
 //! is not.
 
+mod comparison;
+
+pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
+
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
@@ -240,6 +244,6 @@ pub struct EnvelopeRow {
 }
 
 /// JSON has no word for infinite or no number; it writes `null`.
-fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
+pub(crate) fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }

@@ -1,0 +1,188 @@
+//! The tables of a comparison as GitHub Markdown.
+
+use runs::result::ComparisonResult;
+
+use super::methods::{self, MethodTable, MethodView};
+use super::{WordTable, guidelines, oscillation, verdict};
+use crate::tables::{self, PipelineView};
+use crate::verdict::{origin, warnings};
+
+pub(crate) fn markdown(result: &ComparisonResult) -> String {
+    let origin = origin(&result.data.origin);
+    let verdict = verdict::verdict(result);
+    let mut blocks = vec![
+        format!("# One damping ratio by {} methods", result.results.len()),
+        format!("**{}.** {}", origin.label, origin.note),
+        format!("**{}.** {}", verdict.label, escape(&verdict.sentence)),
+    ];
+    blocks
+        .extend(warnings(&result.oracle).iter().map(|warning| format!("**Take care.** {}", escape(warning))));
+    blocks.extend(word_table(&oscillation::parameters(result)));
+    blocks.extend(word_table(&oscillation::derived(result)));
+    for table in methods::tables(result) {
+        blocks.extend(method_table(&table));
+    }
+    blocks.push(escape(methods::READING));
+    blocks.extend(word_table(&guidelines::guidelines(result)));
+    if !result.cautions.is_empty() {
+        blocks.push("## What does not follow from these numbers".to_owned());
+        blocks.push(list(
+            result
+                .cautions
+                .iter()
+                .map(|caution| format!("“{}” – {}", escape(&caution.statement), escape(&caution.finding))),
+        ));
+    }
+    if !result.pipelines.is_empty() {
+        blocks.push("## The same record through each pipeline".to_owned());
+        blocks.push(pipelines(&tables::pipelines(&result.pipelines)));
+    }
+    blocks.push("## Data".to_owned());
+    let facts = tables::data(&result.data);
+    let facts = facts.iter().map(|fact| format!("{}: {}", fact.name, escape(&fact.value)));
+    let findings = result.data.findings.iter().map(|finding| format!("Noticed: {}", escape(finding)));
+    blocks.push(list(facts.chain(findings)));
+    blocks.join("\n\n") + "\n"
+}
+
+fn word_table(table: &WordTable) -> [String; 3] {
+    let rows = table.rows.iter().map(|row| row.iter().map(|cell| escape(cell)).collect());
+    let columns = table.columns.map(|title| (title, false));
+    [format!("## {}", escape(&table.title)), escape(&table.note), grid(&columns, rows)]
+}
+
+fn method_table(table: &MethodTable) -> [String; 2] {
+    let last = table.columns.len().saturating_sub(1);
+    let columns: Vec<_> = table
+        .columns
+        .iter()
+        .enumerate()
+        .map(|(index, title)| (*title, index != 1 && index + 1 < last))
+        .collect();
+    let rows = table.rows.iter().map(|row| method_cells(row, table.columns.len()));
+    [format!("## {}", escape(table.title)), grid(&columns, rows)]
+}
+
+fn method_cells(row: &MethodView, width: usize) -> Vec<String> {
+    let mut cells = vec![escape(&row.number), escape(&row.title)];
+    cells.extend(row.numbers.iter().map(|cell| escape(cell)));
+    // Beside the state and the verdict; a method without an estimate has no numbers.
+    cells.resize(width.saturating_sub(2), String::new());
+    cells.push(escape(&row.state));
+    cells.push(if row.passes { row.verdict().to_owned() } else { format!("**{}**", row.verdict()) });
+    cells
+}
+
+fn pipelines(rows: &[PipelineView<'_>]) -> String {
+    let columns = [
+        ("pipeline", false),
+        ("clock", false),
+        ("ζ ± standard error", true),
+        ("λ, 1/s", true),
+        ("ω, rad/s", true),
+        ("peaks", true),
+        ("R²", true),
+        ("", false),
+    ];
+    let rows = rows.iter().map(|row| {
+        let mut cells = vec![escape(row.pipeline), escape(row.clock)];
+        match &row.fit {
+            Some(fit) => cells.extend(
+                [&fit.zeta, &fit.decay_rate, &fit.omega, &fit.peaks, &fit.r_squared].map(|cell| escape(cell)),
+            ),
+            None => cells.extend(std::iter::repeat_n(String::new(), 5)),
+        }
+        cells.push(match (&row.fit, row.is_in_force) {
+            (None, _) => format!("does not apply: {}", escape(row.reason)),
+            (Some(_), true) => "**in force**".to_owned(),
+            (Some(_), false) => String::new(),
+        });
+        cells
+    });
+    grid(&columns, rows)
+}
+
+/// A table; of each column its title, and whether it is aligned to the right.
+fn grid(columns: &[(&str, bool)], rows: impl Iterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
+    let titles: Vec<String> = columns.iter().map(|(title, _)| escape(title)).collect();
+    let rule: Vec<String> =
+        columns.iter().map(|(_, right)| if *right { "---:" } else { "---" }.to_owned()).collect();
+    let mut lines = vec![line(&titles), line(&rule)];
+    lines.extend(rows.map(|row| line(&row)));
+    lines.join("\n")
+}
+
+fn list(items: impl Iterator<Item = String>) -> String {
+    items.map(|item| format!("- {item}")).collect::<Vec<_>>().join("\n")
+}
+
+/// Text that stands in Markdown as itself, on one line. The caller sees to it that no line begins
+/// with it.
+fn escape(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for letter in text.chars() {
+        match letter {
+            '<' => escaped.push_str("&lt;"),
+            '>' => escaped.push_str("&gt;"),
+            '&' => escaped.push_str("&amp;"),
+            '\\' | '`' | '*' | '_' | '[' | ']' | '#' | '|' | '~' | '$' | '!' => {
+                escaped.push('\\');
+                escaped.push(letter);
+            }
+            // A line break ends a table.
+            _ if letter.is_control() => escaped.push(' '),
+            _ => escaped.push(letter),
+        }
+    }
+    escaped
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::comparison::sample;
+
+    #[test]
+    fn every_row_of_a_table_has_its_columns() {
+        let text = markdown(&sample::result());
+        let mut width = None;
+        let mut rows = 0;
+        for line in text.lines() {
+            if !line.starts_with('|') {
+                width = None;
+                continue;
+            }
+            let cells = line.replace("\\|", "").matches('|').count();
+            assert_eq!(*width.get_or_insert(cells), cells, "{line}");
+            rows += 1;
+        }
+        // Five tables with two lines of head, and one for the pipelines.
+        assert_eq!(rows, 6 * 2 + 9 + 8 + 11 + 10 + 6 + 4);
+    }
+
+    #[test]
+    fn what_comes_from_files_is_escaped() {
+        const EVIL: &str = "<script>|a|\n# b `c` *d* [e](f) $g$ \\";
+        let mut result = sample::result();
+        result.results[0].title = EVIL.into();
+        result.data.path = EVIL.into();
+        result.data.findings = vec![EVIL.into()];
+        result.cautions[0].statement = EVIL.into();
+        let text = markdown(&result);
+        assert!(!text.contains("<script") && !text.contains("\n# b"));
+        assert!(text.contains("&lt;script&gt;\\|a\\| \\# b \\`c\\` \\*d\\* \\[e\\](f) \\$g\\$ \\\\"));
+    }
+
+    #[test]
+    fn two_texts_are_equal_bytes() {
+        assert_eq!(markdown(&sample::result()), markdown(&sample::result()));
+    }
+
+    #[test]
+    fn a_failure_stands_with_its_reason() {
+        let text = markdown(&sample::result());
+        let row = text.lines().find(|line| line.starts_with("| 16 |")).unwrap();
+        assert!(row.contains("no estimate: the budget") && row.ends_with("| **FAIL** |"), "{row}");
+    }
+}

@@ -1,0 +1,153 @@
+//! A row for each method: the paper's Tables 4 and 5.
+
+use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
+
+use crate::format::{count, duration, fixed, significant};
+use crate::tables::{reached, whole};
+
+/// How to read these tables.
+pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀ is that of certified least squares; the worst is the largest over a \
+     method’s seeds. Digits are the significant digits in which the worst seed agrees with ζ₀; a double has \
+     15.7. ± is the method’s own standard error of ζ, where it states one. ζ, steps and state are the first \
+     seed’s, the time of a fit is the median over the seeds. A method passes where every seed is within the \
+     stated tolerance.";
+
+/// What the columns say. The first is the method's number, the second its name, the last whether it
+/// passes; a method without an estimate has its reason in place of all others.
+pub(super) const COLUMNS: [&str; 13] = [
+    "#",
+    "method",
+    "ζ",
+    "error, %",
+    "worst error, %",
+    "digits",
+    "± of ζ",
+    "seeds",
+    "steps",
+    "parameters",
+    "time",
+    "state",
+    "",
+];
+
+/// The methods of one family.
+pub(super) struct MethodTable {
+    /// Name of its anchor in the page.
+    pub(super) id: &'static str,
+    pub(super) title: &'static str,
+    pub(super) columns: &'static [&'static str],
+    pub(super) rows: Vec<MethodView>,
+}
+
+/// One method as it stands in its table.
+pub(super) struct MethodView {
+    pub(super) number: String,
+    pub(super) title: String,
+    /// The cells between name and verdict that hold numbers; none where there is no estimate.
+    pub(super) numbers: Vec<String>,
+    /// The state, or why there is no estimate.
+    pub(super) state: String,
+    /// What stopped the first seed's fit; empty where there is no estimate.
+    pub(super) because: String,
+    pub(super) passes: bool,
+}
+
+impl MethodView {
+    /// The last cell.
+    pub(super) fn verdict(&self) -> &'static str {
+        if self.passes { "pass" } else { "FAIL" }
+    }
+}
+
+/// The tables that have rows, in the paper's order.
+pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
+    let is_known = |family: &str| matches!(family, "classical" | "learned");
+    let table = |id, title, of: &dyn Fn(&str) -> bool| MethodTable {
+        id,
+        title,
+        columns: &COLUMNS,
+        rows: result.results.iter().filter(|row| of(&row.family)).map(view).collect(),
+    };
+    [
+        table("classical", "Table 4: classical numerical methods", &|family| family == "classical"),
+        table("learned", "Table 5: learned methods", &|family| family == "learned"),
+        table("further", "Further methods", &|family| !is_known(family)),
+    ]
+    .into_iter()
+    .filter(|table| !table.rows.is_empty())
+    .collect()
+}
+
+fn view(row: &MethodRow) -> MethodView {
+    let number = row.number.map_or_else(|| "–".to_owned(), |number| number.to_string());
+    let title = row.title.clone();
+    match &row.outcome {
+        MethodOutcome::Estimate(estimate) => MethodView {
+            number,
+            title,
+            numbers: vec![
+                significant(estimate.zeta, 8),
+                error(estimate.error_percent),
+                error(estimate.worst_error_percent),
+                fixed(estimate.digits_of_agreement, 1),
+                estimate.zeta_std_error.map_or_else(|| "–".to_owned(), |error| significant(error, 2)),
+                count(estimate.seeds),
+                count(estimate.steps),
+                whole(estimate.parameters),
+                duration(estimate.seconds),
+            ],
+            state: reached(&estimate.reached),
+            because: estimate.stopped_because.clone(),
+            passes: estimate.pass,
+        },
+        MethodOutcome::Failed { reason } => MethodView {
+            number,
+            title,
+            numbers: Vec::new(),
+            state: format!("no estimate: {reason}"),
+            because: String::new(),
+            passes: false,
+        },
+    }
+}
+
+/// An error in percent, without the sign; an exact zero is one.
+fn error(percent: f64) -> String {
+    if percent == 0.0 { "0".to_owned() } else { significant(percent, 2) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::comparison::sample;
+
+    #[test]
+    fn every_method_has_one_row_in_one_table() {
+        let mut result = sample::result();
+        let sizes = |result: &ComparisonResult| -> Vec<_> {
+            tables(result).iter().map(|table| (table.id, table.rows.len())).collect()
+        };
+        assert_eq!(sizes(&result), [("classical", 11), ("learned", 10)]);
+        result.results[20].family = "dreamt".into();
+        assert_eq!(sizes(&result), [("classical", 11), ("learned", 9), ("further", 1)]);
+        result.results.truncate(3);
+        assert_eq!(sizes(&result), [("classical", 3)]);
+    }
+
+    #[test]
+    fn a_failed_method_gives_its_reason_and_fails() {
+        let tables = tables(&sample::result());
+        let row = tables[1].rows.iter().find(|row| row.number == "16").unwrap();
+        assert!(row.state.starts_with("no estimate: the budget"), "{}", row.state);
+        assert_eq!(row.verdict(), "FAIL");
+        assert!(row.numbers.is_empty());
+    }
+
+    #[test]
+    fn the_numbers_of_a_row_fill_its_columns() {
+        for row in tables(&sample::result()).iter().flat_map(|table| &table.rows) {
+            // Beside number, name, state and verdict.
+            assert!(row.numbers.is_empty() || row.numbers.len() == COLUMNS.len() - 4);
+        }
+    }
+}

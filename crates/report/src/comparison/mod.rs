@@ -1,0 +1,85 @@
+//! The page on a comparison of many methods, and its tables as Markdown.
+
+mod figures;
+mod guidelines;
+mod markdown;
+mod methods;
+mod oscillation;
+mod verdict;
+
+#[cfg(test)]
+mod sample;
+#[cfg(test)]
+mod tests;
+
+use askama::Template;
+use runs::result::{Caution, ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
+
+use crate::figures::Figure;
+use crate::frame::Frame;
+use crate::parse::Comparison;
+use crate::tables::Fact;
+use crate::{ReportError, RunTexts};
+
+pub(crate) use markdown::markdown;
+use methods::MethodTable;
+
+/// A table of three columns: what a row is about, and two things said of it.
+struct WordTable {
+    /// Name of its anchor in the page.
+    id: &'static str,
+    title: String,
+    /// How to read it.
+    note: String,
+    columns: [&'static str; 3],
+    rows: Vec<[String; 3]>,
+    /// Whether the cells hold sentences, which want the whole width of a narrow page.
+    is_prose: bool,
+}
+
+#[derive(Template)]
+#[template(path = "comparison.html")]
+struct ComparisonPage<'a> {
+    frame: Frame<'a>,
+    oscillation: [WordTable; 2],
+    methods: Vec<MethodTable>,
+    reading: &'static str,
+    guidelines: WordTable,
+    figures: Vec<Figure>,
+    summary: Vec<Fact>,
+    cautions: &'a [Caution],
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<String, ReportError> {
+    let result = &comparison.result;
+    let page = ComparisonPage {
+        frame: Frame::new(
+            texts,
+            "many methods for one damping ratio",
+            verdict::verdict(result),
+            &result.data,
+            &result.oracle,
+            &result.pipelines,
+        ),
+        oscillation: [oscillation::parameters(result), oscillation::derived(result)],
+        methods: methods::tables(result),
+        reading: methods::READING,
+        guidelines: guidelines::guidelines(result),
+        figures: figures::figures(comparison),
+        summary: oscillation::summary(result),
+        cautions: &result.cautions,
+    };
+    Ok(page.render()?)
+}
+
+/// The methods that gave an estimate, with it.
+fn estimates(result: &ComparisonResult) -> impl Iterator<Item = (&MethodRow, &MethodEstimate)> {
+    result.results.iter().filter_map(|row| estimate(row).map(|estimate| (row, estimate)))
+}
+
+fn estimate(row: &MethodRow) -> Option<&MethodEstimate> {
+    match &row.outcome {
+        MethodOutcome::Estimate(estimate) => Some(estimate),
+        MethodOutcome::Failed { .. } => None,
+    }
+}

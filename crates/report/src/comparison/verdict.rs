@@ -1,0 +1,225 @@
+//! What a comparison came to, in a sentence or two.
+
+use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
+
+use super::{estimate, estimates};
+use crate::format;
+use crate::verdict::{Tone, Verdict, in_a_sentence};
+
+/// Names in one list, beyond which the rest is counted.
+const MOST_NAMES: usize = 4;
+
+/// How many methods are within the tolerance on every seed.
+pub(super) fn passed(result: &ComparisonResult) -> usize {
+    estimates(result).filter(|(_, estimate)| estimate.pass).count()
+}
+
+pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
+    let count = result.results.len();
+    if count == 0 {
+        return Verdict {
+            tone: Tone::Bad,
+            label: "No methods",
+            sentence: "No method was fitted: there is nothing to compare.".to_owned(),
+        };
+    }
+    let passed = passed(result);
+    let tolerance = format::quantity(&format::exact(result.tolerance_percent), "%");
+    let first = if passed == count {
+        agreement(result, count, &tolerance)
+    } else {
+        let who = agree(passed, count);
+        format!("{who} with certified least squares within {tolerance}{}.", shortfalls(result))
+    };
+    let mut sentences = vec![first];
+    sentences.extend(unfinished(result));
+    let was_interrupted = result.results.iter().any(is_interrupted);
+    let (tone, label) = if was_interrupted {
+        sentences.push("The run was interrupted: an unfinished run is no result.".to_owned());
+        (Tone::Caution, "Interrupted")
+    } else if passed == count && result.pass {
+        (Tone::Good, "All within tolerance")
+    } else if passed == 0 {
+        (Tone::Bad, "None within tolerance")
+    } else {
+        (Tone::Bad, "Not all within tolerance")
+    };
+    Verdict { tone, label, sentence: sentences.join(" ") }
+}
+
+/// The sentence where every method passes.
+fn agreement(result: &ComparisonResult, count: usize, tolerance: &str) -> String {
+    let who = if count == 1 {
+        "The one method agrees".to_owned()
+    } else if count == 2 {
+        "Both methods agree".to_owned()
+    } else {
+        format!("All {count} methods agree")
+    };
+    let largest = worst(result).map_or_else(String::new, |(row, error)| {
+        if error == 0.0 {
+            "; none differs from it in any digit".to_owned()
+        } else {
+            format!("; the largest difference is {} ({})", format::percent(error), in_a_sentence(&row.title))
+        }
+    });
+    format!("{who} with certified least squares within {tolerance}{largest}.")
+}
+
+fn agree(passed: usize, count: usize) -> String {
+    match (passed, count) {
+        (0, 1) => "The one method does not agree".to_owned(),
+        (0, _) => format!("None of the {count} methods agrees"),
+        (1, _) => format!("1 of {count} methods agrees"),
+        _ => format!("{passed} of {count} methods agree"),
+    }
+}
+
+/// Who does not pass: outside the tolerance, or without an estimate.
+fn shortfalls(result: &ComparisonResult) -> String {
+    let outside: Vec<String> = estimates(result)
+        .filter(|(_, estimate)| !estimate.pass)
+        .map(|(row, estimate)| {
+            let title = in_a_sentence(&row.title);
+            let error = estimate.worst_error_percent;
+            if error.is_finite() {
+                format!("{title} (by {})", format::percent(error))
+            } else {
+                format!("{title} (not comparable)")
+            }
+        })
+        .collect();
+    let silent: Vec<String> = result
+        .results
+        .iter()
+        .filter(|row| estimate(row).is_none())
+        .map(|row| in_a_sentence(&row.title))
+        .collect();
+    [("outside", outside), ("no estimate", silent)]
+        .into_iter()
+        .filter(|(_, names)| !names.is_empty())
+        .map(|(what, names)| format!("; {what}: {}", listed(&names)))
+        .collect()
+}
+
+/// The methods within the tolerance that stopped before they converged.
+fn unfinished(result: &ComparisonResult) -> Option<String> {
+    let names: Vec<String> = estimates(result)
+        .filter(|(_, estimate)| estimate.pass && estimate.reached != "converged")
+        .map(|(row, _)| in_a_sentence(&row.title))
+        .collect();
+    (!names.is_empty()).then(|| format!("Within the tolerance, but stopped unconverged: {}.", listed(&names)))
+}
+
+/// The method with the largest error over its seeds; of equals the first.
+fn worst(result: &ComparisonResult) -> Option<(&MethodRow, f64)> {
+    let mut found: Option<(&MethodRow, f64)> = None;
+    for (row, estimate) in estimates(result) {
+        let error = estimate.worst_error_percent;
+        if error.is_finite() && found.is_none_or(|(_, largest)| error > largest) {
+            found = Some((row, error));
+        }
+    }
+    found
+}
+
+fn is_interrupted(row: &MethodRow) -> bool {
+    match &row.outcome {
+        MethodOutcome::Estimate(estimate) => estimate.reached == "interrupted",
+        MethodOutcome::Failed { reason } => reason.starts_with("interrupted"),
+    }
+}
+
+/// Names in a row, the last few only counted.
+pub(super) fn listed(names: &[String]) -> String {
+    let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => shown,
+        more => format!("{shown} and {more} more"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::comparison::sample;
+
+    fn of(result: &ComparisonResult) -> (Tone, &'static str, String) {
+        let verdict = verdict(result);
+        (verdict.tone, verdict.label, verdict.sentence.replace('\u{a0}', " "))
+    }
+
+    #[test]
+    fn all_agree() {
+        let (tone, label, text) = of(&sample::passing());
+        assert_eq!((tone, label), (Tone::Good, "All within tolerance"));
+        assert_eq!(
+            text,
+            "All 21 methods agree with certified least squares within 0.1 %; the largest difference is \
+             0.046 % (gradient descent). Within the tolerance, but stopped unconverged: gradient descent, \
+             differential evolution."
+        );
+    }
+
+    #[test]
+    fn who_fails_is_named() {
+        let mut result = sample::result();
+        let (tone, label, text) = of(&result);
+        assert_eq!((tone, label), (Tone::Bad, "Not all within tolerance"));
+        assert!(
+            text.starts_with(
+                "20 of 21 methods agree with certified least squares within 0.1 %; no estimate: symbolic \
+                 regression."
+            ),
+            "{text}"
+        );
+        let MethodOutcome::Estimate(estimate) = &mut result.results[14].outcome else { panic!() };
+        estimate.pass = false;
+        estimate.worst_error_percent = 0.254;
+        let (_, _, text) = of(&result);
+        assert!(
+            text.contains("19 of 21 methods agree")
+                && text.contains("; outside: long short-term memory network (by 0.25 %); no estimate:"),
+            "{text}"
+        );
+    }
+
+    #[test]
+    fn few_methods_and_none() {
+        let mut result = sample::passing();
+        result.results.truncate(2);
+        assert!(of(&result).2.starts_with("Both methods agree"), "{}", of(&result).2);
+        result.results.truncate(1);
+        assert!(of(&result).2.ends_with("; none differs from it in any digit."), "{}", of(&result).2);
+        result.results.clear();
+        assert_eq!(of(&result).0, Tone::Bad);
+        let mut failing = sample::result();
+        failing.results.retain(|row| estimate(row).is_none());
+        let (_, label, text) = of(&failing);
+        assert_eq!(label, "None within tolerance");
+        assert!(text.starts_with("The one method does not agree"), "{text}");
+    }
+
+    #[test]
+    fn an_unfinished_run_is_no_result() {
+        let mut result = sample::result();
+        result.results[20].outcome = MethodOutcome::Failed { reason: "interrupted before it began".into() };
+        let (tone, label, text) = of(&result);
+        assert_eq!((tone, label), (Tone::Caution, "Interrupted"));
+        assert!(text.ends_with("an unfinished run is no result."), "{text}");
+    }
+
+    #[test]
+    fn a_pass_that_the_run_does_not_state_is_none() {
+        let mut result = sample::passing();
+        result.pass = false;
+        assert_eq!(of(&result).0, Tone::Bad);
+    }
+
+    #[test]
+    fn long_lists_are_counted() {
+        let names: Vec<String> = ["a", "b", "c", "d", "e", "f"].map(str::to_owned).into();
+        assert_eq!(listed(&names), "a, b, c, d and 2 more");
+        assert_eq!(listed(&names[..2]), "a, b");
+    }
+}

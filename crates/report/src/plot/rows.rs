@@ -1,0 +1,325 @@
+//! One quantity by name: a row for each name, dots along a horizontal axis.
+//!
+//! On a wide page the names stand left of the axis, on a narrow one each above its own row, where it
+//! has the whole width.
+
+use kuva::plot::ScatterPlot;
+use kuva::render::color::Color;
+use kuva::render::layout::{AxisLabelOverlap, ComputedLayout, Layout, TickFormat};
+use kuva::render::plots::Plot as KuvaPlot;
+use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
+
+use super::axis::Ticks;
+use super::svg::{self, Canvas};
+use super::{Axis, Drawing, Hue, LegendEntry};
+
+/// Between the names and the axis on a wide page, in SVG units.
+const GAP: f64 = 10.0;
+/// About the width of a letter, in units of the font size.
+const LETTER: f64 = 0.56;
+/// Beyond this many letters a name is cut.
+const MOST_LETTERS: usize = 44;
+/// No axis is longer than so many rows: beyond, a table reads better than a plot.
+const MOST_ROWS: usize = 200;
+
+/// Rows of dots.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DotRows {
+    /// The axis of the quantity.
+    pub x: Axis,
+    /// The rows, from top to bottom.
+    pub rows: Vec<DotRow>,
+    /// What the dots of [`DotRow::value`] are, in the legend.
+    pub value_label: String,
+    /// What the rings of [`DotRow::extreme`] are, in the legend.
+    pub extreme_label: String,
+    /// A dashed line across all rows: its name and its place on the axis.
+    pub level: Option<(String, f64)>,
+}
+
+/// One name and its values; `None`, and what the axis cannot show, has no mark.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DotRow {
+    /// What the row is of.
+    pub name: String,
+    /// Drawn as a dot.
+    pub value: Option<f64>,
+    /// Drawn as a ring, joined to the dot.
+    pub extreme: Option<f64>,
+}
+
+impl DotRow {
+    fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        [self.value, self.extreme].into_iter().flatten()
+    }
+}
+
+/// What differs between the two drawings.
+struct Form {
+    canvas: &'static Canvas,
+    row_height: f64,
+    /// Whether names stand above their rows.
+    above: bool,
+}
+
+const WIDE: Form = Form { canvas: &svg::WIDE, row_height: 25.0, above: false };
+const NARROW: Form = Form { canvas: &svg::NARROW, row_height: 37.0, above: true };
+
+impl DotRows {
+    /// Draws the rows. `description` is what a screen reader says instead.
+    ///
+    /// `None` where no row has a value that the axis can show.
+    #[must_use]
+    pub fn draw(&self, description: &str) -> Option<Drawing> {
+        let rows = self.rows.get(..self.rows.len().min(MOST_ROWS)).unwrap_or_default();
+        let left_out = rows.iter().flat_map(DotRow::values).filter(|value| !self.x.can_show(*value)).count();
+        Some(Drawing {
+            wide: self.render(rows, &WIDE, description)?,
+            narrow: self.render(rows, &NARROW, description)?,
+            legend: self.legend(),
+            left_out,
+            thinned: false,
+        })
+    }
+
+    fn render(&self, rows: &[DotRow], form: &Form, description: &str) -> Option<String> {
+        let shown = || rows.iter().flat_map(DotRow::values).filter(|value| self.x.can_show(*value));
+        let mut values: Vec<f64> = shown().collect();
+        if values.is_empty() {
+            return None;
+        }
+        values.extend(self.level.iter().map(|level| level.1).filter(|level| self.x.can_show(*level)));
+        let ticks = self.x.ticks(values.into_iter(), form.canvas.x_ticks)?;
+
+        let height = rows.len() as f64 * form.row_height + form.bottom() + TOP;
+        let layout = self.layout(rows, form, &ticks, height);
+        let computed = ComputedLayout::from_layout(&layout);
+        // kuva draws axes only around a plot; the marks are drawn below, from the same layout.
+        let mut scene = render_multiple(vec![KuvaPlot::Scatter(ScatterPlot::new())], layout);
+        for (index, row) in rows.iter().enumerate() {
+            self.draw_row(&mut scene, row, place(index, rows.len()), form, &ticks, &computed);
+        }
+        if let Some((_, level)) = self.level.as_ref().filter(|level| self.x.can_show(level.1)) {
+            let x = computed.map_x(ticks.place(*level));
+            scene.add(Primitive::Line {
+                x1: x,
+                y1: computed.margin_top,
+                x2: x,
+                y2: computed.height - computed.margin_bottom,
+                stroke: Color::from(Hue::Data.light()),
+                stroke_width: form.canvas.line_width,
+                stroke_dasharray: Some(svg::DASHES.to_owned()),
+            });
+        }
+        svg::finish(scene, form.canvas, height, description)
+    }
+
+    fn layout(&self, rows: &[DotRow], form: &Form, ticks: &Ticks, height: f64) -> Layout {
+        let count = rows.len() as f64;
+        Layout::new(ticks.ends, (0.0, count))
+            .with_theme(svg::theme())
+            .with_width(form.canvas.width)
+            .with_height(height)
+            .with_label_size(form.canvas.label_size)
+            .with_tick_size(form.canvas.tick_size)
+            .with_force_margins(form.left(rows), RIGHT)
+            .with_force_margins_y(TOP, form.bottom())
+            .with_x_axis_min(ticks.ends.0)
+            .with_x_axis_max(ticks.ends.1)
+            .with_y_axis_min(0.0)
+            .with_y_axis_max(count)
+            .with_x_tick_step(1.0)
+            .with_y_tick_step(1.0)
+            .with_x_tick_format(svg::labels(ticks))
+            .with_y_tick_format(TickFormat::Custom(std::sync::Arc::new(|_| String::new())))
+            .with_x_label_overlap(AxisLabelOverlap::Thin)
+            .with_x_label(svg::plain(&self.x.label))
+    }
+
+    fn draw_row(
+        &self,
+        scene: &mut Scene,
+        row: &DotRow,
+        place: f64,
+        form: &Form,
+        ticks: &Ticks,
+        computed: &ComputedLayout,
+    ) {
+        let size = form.canvas.tick_size;
+        let half_letter = f64::from(size) * 0.36;
+        let middle = computed.map_y(place);
+        let (left, y, anchor, marks) = if form.above {
+            (computed.margin_left + 4.0, middle - 5.0, TextAnchor::Start, middle + form.row_height * 0.24)
+        } else {
+            (computed.margin_left - GAP, middle + half_letter, TextAnchor::End, middle)
+        };
+        scene.add(Primitive::Text {
+            x: left,
+            y,
+            content: shortened(&row.name),
+            size,
+            anchor,
+            rotate: None,
+            bold: false,
+            color: Some(Color::from(Hue::Ink.light())),
+        });
+        let at = |value: Option<f64>| {
+            value.filter(|v| self.x.can_show(*v)).map(|v| computed.map_x(ticks.place(v)))
+        };
+        let (value, extreme) = (at(row.value), at(row.extreme));
+        let radius = form.canvas.dot_radius;
+        if let (Some(x1), Some(x2)) = (value, extreme) {
+            scene.add(Primitive::Line {
+                x1,
+                y1: marks,
+                x2,
+                y2: marks,
+                stroke: Color::from(Hue::Second.light()),
+                stroke_width: form.canvas.line_width,
+                stroke_dasharray: None,
+            });
+        }
+        if let Some(x) = extreme {
+            scene.add(Primitive::Circle {
+                cx: x,
+                cy: marks,
+                r: radius + 2.6,
+                fill: Color::from("none"),
+                fill_opacity: None,
+                stroke: Some(Color::from(Hue::Second.light())),
+                stroke_width: Some(form.canvas.line_width),
+            });
+        }
+        if let Some(x) = value {
+            scene.add(Primitive::Circle {
+                cx: x,
+                cy: marks,
+                r: radius,
+                fill: Color::from(Hue::Estimate.light()),
+                fill_opacity: None,
+                stroke: None,
+                stroke_width: None,
+            });
+        }
+    }
+
+    fn legend(&self) -> Vec<LegendEntry> {
+        let dot = format!("<circle cx=\"14\" cy=\"6\" r=\"3.5\" fill=\"{}\" />", Hue::Estimate.light());
+        let ring = format!(
+            "<circle cx=\"14\" cy=\"6\" r=\"4.8\" fill=\"none\" stroke=\"{}\" stroke-width=\"2\" />",
+            Hue::Second.light()
+        );
+        let level = format!(
+            "<line x1=\"1\" y1=\"6\" x2=\"27\" y2=\"6\" stroke=\"{}\" stroke-width=\"2\" \
+             stroke-dasharray=\"{}\" />",
+            Hue::Data.light(),
+            svg::DASHES
+        );
+        let entry =
+            |label: &str, shape: &str| LegendEntry { label: label.to_owned(), swatch: svg::swatch_of(shape) };
+        let mut entries = vec![entry(&self.value_label, &dot), entry(&self.extreme_label, &ring)];
+        let drawn = self.level.iter().filter(|(_, value)| self.x.can_show(*value));
+        entries.extend(drawn.map(|(label, _)| entry(label, &level)));
+        entries
+    }
+}
+
+/// Above the first row.
+const TOP: f64 = 8.0;
+/// Right of the axis: half of the last tick's label.
+const RIGHT: f64 = 24.0;
+
+impl Form {
+    /// Below the last row: ticks, their labels and the axis's label.
+    fn bottom(&self) -> f64 {
+        26.0 + f64::from(self.canvas.tick_size) + f64::from(self.canvas.label_size)
+    }
+
+    /// Left of the axis.
+    fn left(&self, rows: &[DotRow]) -> f64 {
+        if self.above {
+            return 18.0;
+        }
+        let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
+        let names = letters as f64 * LETTER * f64::from(self.canvas.tick_size);
+        names + GAP + 4.0
+    }
+}
+
+/// The middle of a row on an axis that counts rows from the bottom.
+fn place(index: usize, count: usize) -> f64 {
+    count as f64 - index as f64 - 0.5
+}
+
+fn shortened(name: &str) -> String {
+    let name = name.replace('$', "");
+    if name.chars().count() <= MOST_LETTERS {
+        return name;
+    }
+    let mut short: String = name.chars().take(MOST_LETTERS - 1).collect();
+    short.push('…');
+    short
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(values: &[(Option<f64>, Option<f64>)]) -> DotRows {
+        DotRows {
+            x: Axis::log("error (%)"),
+            rows: values
+                .iter()
+                .enumerate()
+                .map(|(index, (value, extreme))| DotRow {
+                    name: format!("method <{index}>"),
+                    value: *value,
+                    extreme: *extreme,
+                })
+                .collect(),
+            value_label: "first seed".into(),
+            extreme_label: "worst seed".into(),
+            level: Some(("tolerance".into(), 0.1)),
+        }
+    }
+
+    #[test]
+    fn every_row_is_named_and_marked() {
+        let drawing =
+            rows(&[(Some(1e-9), Some(1e-7)), (Some(0.3), Some(0.3)), (None, None)]).draw("").unwrap();
+        for svg in [&drawing.wide, &drawing.narrow] {
+            for index in 0..3 {
+                assert!(svg.contains(&format!("method &lt;{index}&gt;")));
+            }
+            assert_eq!(svg.matches("<circle").count(), 4);
+            assert!(svg.contains(">10⁻"));
+        }
+        assert_eq!(drawing.legend.len(), 3);
+        assert_eq!(drawing.left_out, 0);
+    }
+
+    #[test]
+    fn values_without_a_place_are_counted_and_break_nothing() {
+        let drawing =
+            rows(&[(Some(1e-9), Some(f64::NAN)), (Some(0.0), Some(f64::INFINITY))]).draw("").unwrap();
+        assert_eq!(drawing.left_out, 3);
+        assert!(!drawing.wide.contains("NaN") && !drawing.wide.contains("inf"));
+        assert!(rows(&[(Some(0.0), None)]).draw("").is_none());
+        assert!(rows(&[]).draw("").is_none());
+    }
+
+    #[test]
+    fn long_names_are_cut_and_never_mathematics() {
+        let mut plot = rows(&[(Some(1e-9), None)]);
+        plot.rows[0].name = format!("$x$ {}", "y".repeat(100));
+        let drawing = plot.draw("").unwrap();
+        assert!(drawing.wide.contains("x yyy") && drawing.wide.contains("y…<"));
+        assert!(!drawing.wide.contains(&"y".repeat(44)));
+    }
+
+    #[test]
+    fn drawings_of_equal_rows_are_equal() {
+        let plot = rows(&[(Some(1e-9), Some(1e-7))]);
+        assert_eq!(plot.draw("x"), plot.draw("x"));
+    }
+}

@@ -1,0 +1,148 @@
+//! The record of an experiment on its way to an envelope and the oracle's answer.
+
+use crate::error::TrainerError;
+use envelope::Extraction;
+use experiment::{Experiment, Pipeline};
+use oracle::DecayFit;
+use record::{Clock, ClockChoice, Record, Source, read_file};
+use runs::result::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
+use std::path::Path;
+
+/// The record, its clock and its envelope, with the oracle's answer.
+pub(crate) struct Input {
+    pub(crate) record: Record,
+    pub(crate) source: Source,
+    pub(crate) clock: Clock,
+    /// The clock that the stamps and the values speak for.
+    pub(crate) believed: Clock,
+    pub(crate) extraction: Extraction,
+    pub(crate) oracle: DecayFit,
+}
+
+impl Input {
+    pub(crate) fn read(experiment: &Experiment) -> Result<Self, TrainerError> {
+        let data = &experiment.data;
+        let (record, source) = read_file(Path::new(&data.path), &data.read_options())?;
+        let clock_of = |choice| Clock::new(&record, choice).map_err(|fault| fault.in_file(&source.path));
+        let believed = clock_of(ClockChoice::Auto)?;
+        let clock = clock_of(data.clock)?;
+        let extraction = experiment
+            .envelope
+            .extract(experiment.envelope.pipeline, &record, &clock)
+            .map_err(|error| TrainerError::Envelope { file: data.path.clone(), source: error })?;
+        let oracle = oracle::decay_rate(&extraction.envelope)
+            .map_err(|error| TrainerError::Oracle { file: data.path.clone(), source: error })?;
+        Ok(Self { record, source, clock, believed, extraction, oracle })
+    }
+
+    pub(crate) fn data_summary(&self, experiment: &Experiment) -> DataSummary {
+        let statements = experiment.data.statements().or(&self.source.statements);
+        let mut findings = self.source.findings.clone();
+        findings.extend(statements.contradictions(self.record.len(), &self.clock));
+        DataSummary {
+            path: self.source.path.clone(),
+            digest: self.source.digest.clone(),
+            origin: statements.origin.unwrap_or_default().name().to_owned(),
+            samples: self.record.len(),
+            clock: self.clock.kind.name().to_owned(),
+            clock_reason: self.clock.reason.clone(),
+            believed_clock: self.believed.kind.name().to_owned(),
+            believed_clock_reason: self.believed.reason.clone(),
+            sample_period_s: 1.0 / self.clock.sample_rate_hz,
+            sample_rate_hz: self.clock.sample_rate_hz,
+            sample_rate_std_error_hz: self.clock.sample_rate_std_error_hz,
+            resolution: self.record.lattice().map(|lattice| lattice.step),
+            unit: self.record.unit().to_owned(),
+            findings,
+        }
+    }
+
+    /// The same record through each pipeline and each clock that makes a difference.
+    pub(crate) fn pipelines(&self, experiment: &Experiment) -> Vec<PipelineRow> {
+        let settings = &experiment.envelope;
+        let mut rows: Vec<PipelineRow> = Vec::new();
+        for (pipeline, choice) in [
+            (settings.pipeline, experiment.data.clock),
+            (Pipeline::Paper, ClockChoice::Host),
+            (Pipeline::Paper, ClockChoice::Auto),
+            (Pipeline::Recommended, ClockChoice::Auto),
+        ] {
+            let Ok(clock) = Clock::new(&self.record, choice) else { continue };
+            let (name, clock_name) = (pipeline.name(), clock.kind.name());
+            if rows.iter().any(|row| row.pipeline == name && row.clock == clock_name) {
+                continue;
+            }
+            let outcome = settings
+                .extract(pipeline, &self.record, &clock)
+                .map_err(|error| error.to_string())
+                .and_then(|extraction| {
+                    let fit = oracle::decay_rate(&extraction.envelope);
+                    Ok((extraction, fit.map_err(|error| error.to_string())?))
+                });
+            rows.push(PipelineRow {
+                pipeline: name.to_owned(),
+                clock: clock_name.to_owned(),
+                in_force: rows.is_empty(),
+                outcome: match outcome {
+                    Ok((extraction, fit)) => PipelineOutcome::Fit {
+                        peaks: extraction.envelope.len(),
+                        omega_rad_s: extraction.envelope.omega_rad_s(),
+                        decay_rate: fit.decay_rate,
+                        zeta: fit.zeta,
+                        zeta_std_error: fit.zeta_std_error,
+                        r_squared: fit.r_squared,
+                    },
+                    Err(reason) => PipelineOutcome::Failed { reason },
+                },
+            });
+        }
+        rows
+    }
+
+    pub(crate) fn envelope_summary(&self, experiment: &Experiment) -> EnvelopeSummary {
+        let envelope = &self.extraction.envelope;
+        EnvelopeSummary {
+            pipeline: experiment.envelope.pipeline.name().to_owned(),
+            peaks: envelope.len(),
+            samples: self.extraction.samples,
+            period_s: self.extraction.period_s,
+            omega_rad_s: envelope.omega_rad_s(),
+            offset: self.extraction.offset,
+            first_peak_s: self.extraction.first_peak_s,
+        }
+    }
+
+    pub(crate) fn oracle_summary(&self) -> OracleSummary {
+        let envelope = &self.extraction.envelope;
+        OracleSummary {
+            decay_rate: self.oracle.decay_rate,
+            log_amplitude: self.oracle.log_amplitude,
+            r_squared: self.oracle.r_squared,
+            zeta: self.oracle.zeta,
+            std_error: self.oracle.std_error,
+            interval_95: self.oracle.interval_95,
+            zeta_std_error: self.oracle.zeta_std_error,
+            zeta_interval_95: self.oracle.interval_95.map(|bound| envelope.damping_ratio(bound)),
+            condition: self.oracle.condition,
+            promised_digits: self.oracle.promised_digits,
+            residual_autocorrelation: self.oracle.residual_autocorrelation,
+        }
+    }
+
+    /// The rows of `envelope.csv`, `fitted` being an estimator's function at the peaks.
+    pub(crate) fn envelope_rows(&self, fitted: &[f64]) -> Vec<EnvelopeRow> {
+        let envelope = &self.extraction.envelope;
+        envelope
+            .times_s()
+            .iter()
+            .zip(envelope.log_amplitudes())
+            .zip(fitted)
+            .map(|((&time_s, &log_amplitude), &estimate)| EnvelopeRow {
+                time_s,
+                log_amplitude,
+                oracle: self.oracle.log_amplitude_at(time_s),
+                estimate,
+            })
+            .collect()
+    }
+}

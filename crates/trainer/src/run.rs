@@ -1,0 +1,95 @@
+//! Running the experiment of a configuration: what every task shares.
+
+use crate::Outcome;
+use crate::cli::{ExperimentArguments, Output};
+use crate::compare::compare;
+use crate::console;
+use crate::environment::Environment;
+use crate::error::TrainerError;
+use crate::estimate::estimate;
+use crate::input::Input;
+use crate::interrupt;
+use estimator::Cancel;
+use experiment::{Experiment, Task, resolve};
+use oracle::classical::CLASSICAL;
+use rayon::ThreadPool;
+use registry::ESTIMATORS;
+use runs::{RunFolder, default_root};
+use serde::Serialize;
+use serde_json::json;
+use settings::Document;
+
+/// An experiment that is ready to be fitted.
+pub(crate) struct Run<'a> {
+    pub(crate) experiment: &'a Experiment,
+    pub(crate) input: Input,
+    pub(crate) folder: RunFolder,
+    pub(crate) pool: ThreadPool,
+    pub(crate) cancel: &'static Cancel,
+    pub(crate) output: Output,
+}
+
+/// Reads, fits, compares, writes and prints.
+pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
+    let cancel = interrupt::watch()?;
+    let experiment = read_config(arguments)?;
+    let input = Input::read(&experiment)?;
+    let folder = match &arguments.out {
+        Some(path) => RunFolder::create_at(path)?,
+        None => RunFolder::create(&default_root(), &experiment.name)?,
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    folder.write("config.toml", experiment.resolved.to_toml().as_bytes())?;
+    let environment = Environment::new(pool.current_num_threads(), &input.source.digest);
+    folder.write_json("environment.json", &environment)?;
+    folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
+    let run = Run { experiment: &experiment, input, folder, pool, cancel, output: arguments.output };
+    match &experiment.task {
+        Task::Estimate(single) => estimate(&run, single),
+        Task::Compare(comparison) => compare(&run, comparison),
+    }
+}
+
+impl Run<'_> {
+    /// Whether progress is to be kept off the terminal.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.output.quiet || self.output.json
+    }
+
+    /// Prints a result as asked for: as JSON, as the given text, or not at all.
+    pub(crate) fn print(
+        &self,
+        result: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), TrainerError> {
+        if self.output.json {
+            let json = serde_json::to_string_pretty(result)
+                .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
+            console::result(&json);
+        } else if !self.output.quiet {
+            console::result(&text());
+        }
+        Ok(())
+    }
+}
+
+fn read_config(arguments: &ExperimentArguments) -> Result<Experiment, TrainerError> {
+    let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
+        file: file.clone(),
+        problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
+    })?;
+    let mut document = Document::parse(&file, &text)?;
+    for argument in &arguments.overrides {
+        document.apply_override(argument)?;
+    }
+    if let Some(seed) = arguments.seed {
+        document.apply_override(&format!("seed={seed}"))?;
+    }
+    let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
+    Ok(resolve(&document, ESTIMATORS, &classical)?)
+}

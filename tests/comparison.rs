@@ -1,0 +1,103 @@
+//! `task = "compare"`: the paper's methods side by side.
+
+use crate::support::{measured, number, result, trainer};
+use serde_json::Value;
+
+fn rows(result: &Value) -> &Vec<Value> {
+    result["results"].as_array().unwrap()
+}
+
+fn estimate<'a>(result: &'a Value, id: &str) -> &'a Value {
+    let row = rows(result).iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("no {id}"));
+    row.pointer("/outcome/estimate").unwrap_or_else(|| panic!("{row}"))
+}
+
+#[test]
+fn every_method_agrees_on_the_shipped_record() {
+    let (code, result, folder) = result(&["configs/compare.toml"]);
+    assert_eq!(code, 0, "{result}");
+    assert_eq!(result["task"], "compare");
+    assert_eq!(result["data"]["origin"], "simulated");
+    let numbers: Vec<u64> = rows(&result).iter().map(|row| row["number"].as_u64().unwrap()).collect();
+    assert!(numbers.is_sorted(), "{numbers:?}");
+    for file in ["report.html", "tables.md", "config.toml", "envelope.csv", "environment.json"] {
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.to_lowercase().contains("simulated record"));
+    let again = trainer(&["report", folder.path().to_str().unwrap()]);
+    assert_eq!(again.status.code(), Some(0));
+    assert_eq!(std::fs::read_to_string(folder.path().join("report.html")).unwrap(), page);
+}
+
+#[test]
+fn the_papers_tables_come_out_on_its_record() {
+    if measured("horizontal-pendulum/80P.txt").is_none() {
+        return;
+    }
+    let (code, result, _) = result(&["configs/paper.toml", "fit.seeds=2"]);
+    assert_eq!(code, 0, "{result}");
+    // Table 3 and section 5, to the digits printed there.
+    let printed = |path: &str, expected: &str, digits: usize| {
+        assert_eq!(format!("{:.*}", digits, number(&result, path)), expected, "{path}");
+    };
+    printed("/derived/period_s", "0.288", 3);
+    printed("/derived/frequency_hz", "3.47", 2);
+    printed("/envelope/omega_rad_s", "21.82", 2);
+    printed("/oracle/decay_rate", "0.191", 3);
+    printed("/oracle/zeta", "0.00875", 5);
+    printed("/derived/stiffness_n_m_per_rad", "0.238", 3);
+    printed("/derived/damping_n_m_s_per_rad", "0.000191", 6);
+    printed("/derived/critical_damping_n_m_s_per_rad", "0.0218", 4);
+    printed("/derived/quality_factor", "57", 0);
+    printed("/derived/half_life_s", "3.6", 1);
+    printed("/derived/time_constant_s", "5.2", 1);
+    // Tables 4 and 5: every ζ is 0.00875301, and the paper's largest error, 0.046 %, is beaten ten times.
+    for row in rows(&result) {
+        let found = row.pointer("/outcome/estimate").unwrap_or_else(|| panic!("{row}"));
+        assert_eq!(format!("{:.8}", number(found, "/zeta")), "0.00875301", "{row}");
+        assert!(number(found, "/worst_error_percent") < 0.0046, "{row}");
+    }
+    let cautions = result["cautions"].to_string();
+    for words in ["Q/π = 18.2 cycles", "69 cycles", "7625 samples", "confirms viscous damping"] {
+        assert!(cautions.contains(words), "no `{words}` in {cautions}");
+    }
+}
+
+#[test]
+fn methods_can_be_chosen_by_name() {
+    let (code, result, _) =
+        result(&["configs/compare.toml", "compare.methods=pinn,qr,baseline", "fit.seeds=2"]);
+    let ids: Vec<&str> = rows(&result).iter().map(|row| row["id"].as_str().unwrap()).collect();
+    assert_eq!(ids, ["qr", "pinn", "baseline"]);
+    assert_eq!(number(estimate(&result, "qr"), "/seeds"), 1.0, "it draws nothing");
+    assert_eq!(number(estimate(&result, "pinn"), "/seeds"), 2.0);
+    // The null estimator misses, and the exit code says so.
+    assert_eq!(code, 1);
+    assert_eq!(estimate(&result, "baseline")["pass"], false);
+}
+
+#[test]
+fn an_unknown_method_is_refused_with_the_nearest_name() {
+    let output = trainer(&["configs/compare.toml", "compare.methods=pin"]);
+    assert_eq!(output.status.code(), Some(2));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("unknown method \"pin\"; did you mean `pinn`?"), "{message}");
+    let output = trainer(&["configs/compare.toml", "estimator.name=pinn"]);
+    assert_eq!(output.status.code(), Some(2));
+}
+
+#[test]
+fn threads_do_not_change_a_bit() {
+    let run = |threads| {
+        let (_, mut result, _) = result(&["configs/compare.toml", "fit.seeds=2", "--threads", threads]);
+        result["seconds"] = Value::Null;
+        for row in result["results"].as_array_mut().unwrap() {
+            if let Some(found) = row.pointer_mut("/outcome/estimate") {
+                found["seconds"] = Value::Null;
+            }
+        }
+        result
+    };
+    assert_eq!(run("1"), run("2"));
+}
