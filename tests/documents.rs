@@ -1,6 +1,6 @@
 //! What the documents say holds.
 
-use crate::support::{root, trainer};
+use crate::support::{measured, result, root, trainer};
 use std::path::PathBuf;
 
 fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
@@ -35,6 +35,21 @@ fn the_help_shows_the_exit_codes_and_examples() {
     let text = String::from_utf8(output.stdout).unwrap();
     for words in ["configs/pinn.toml", "Exit codes", "130 interrupted"] {
         assert!(text.contains(words), "{text}");
+    }
+}
+
+/// Each one as a user would run it. The null estimator's misses its bar by design.
+#[test]
+fn every_shipped_configuration_runs() {
+    for path in files("configs", "toml") {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../shared/data/"));
+        if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {
+            continue;
+        }
+        let (code, result, _) = result(&[path.to_str().unwrap()]);
+        let expected = i32::from(path.ends_with("baseline.toml"));
+        assert_eq!(code, expected, "{}: {result}", path.display());
     }
 }
 
