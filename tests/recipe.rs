@@ -66,10 +66,11 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
         "estimator_baseline::ENTRY, estimator_endpoints::ENTRY,",
     );
 
-    // In the workspace's own target folder, where the libraries are built already.
+    // In the workspace's own target folder, and for the whole workspace: cargo joins the features of all
+    // that it is asked to build, so that only then the libraries built already serve.
     let battery = |filter: &str| {
         Command::new(env!("CARGO"))
-            .args(["test", "--offline", "--package", "registry", "--test", "battery", "--", filter])
+            .args(["test", "--offline", "--workspace", "--test", "battery", "--", filter])
             .env("CARGO_TARGET_DIR", root().join("target"))
             .current_dir(home)
             .output()
