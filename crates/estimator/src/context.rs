@@ -62,6 +62,7 @@ pub struct FitContext<'a> {
     max_steps: Option<u64>,
     observer: &'a dyn Observer,
     cancel: &'a Cancel,
+    query_times: &'a [f64],
 }
 
 impl<'a> FitContext<'a> {
@@ -71,7 +72,21 @@ impl<'a> FitContext<'a> {
     /// for the untrained estimate.
     #[must_use]
     pub fn new(seed: Seed, max_steps: Option<u64>, observer: &'a dyn Observer, cancel: &'a Cancel) -> Self {
-        Self { seed, max_steps, observer, cancel }
+        Self { seed, max_steps, observer, cancel, query_times: &[] }
+    }
+
+    /// The same context, asking for the fitted function at `times` as well: seconds after the envelope's
+    /// first peak, finite, in any order, within the envelope or beyond it.
+    #[must_use]
+    pub fn predicting_at(self, times: &'a [f64]) -> Self {
+        Self { query_times: times, ..self }
+    }
+
+    /// Times at which [`Estimate::predictions`](crate::Estimate::predictions) are asked for, in seconds
+    /// after the envelope's first peak.
+    #[must_use]
+    pub fn query_times(&self) -> &'a [f64] {
+        self.query_times
     }
 
     /// The seed of a named part of the estimator, such as `initial weights`.

@@ -16,6 +16,9 @@ pub enum Tag {
     Seeded,
     /// States an uncertainty.
     Interval,
+    /// Learns its skill from envelopes of its own making, before it sees the one it is asked about: its
+    /// answer is as good as its training, not least squares to the last digits.
+    Amortized,
     /// The floor row of tables: not meant to be right.
     Null,
 }
@@ -31,6 +34,17 @@ pub trait Estimator: Send + Sync {
     /// [`FitError`] where there is no estimate to give. A fit that ran out of budget, was interrupted or
     /// diverged is no error: it gives the best estimate it has, and says so.
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError>;
+
+    /// Does the part of the work that no envelope enters: an amortized estimator trains here, and what
+    /// comes back only reads. Its fits equal this one's to the bit, given a context of the same seed and
+    /// cap on the steps. `None` where there is no such part, as by default.
+    ///
+    /// # Errors
+    /// As [`Estimator::fit`].
+    fn pretrain(&self, context: &FitContext<'_>) -> Result<Option<Box<dyn Estimator>>, FitError> {
+        let _ = context;
+        Ok(None)
+    }
 }
 
 /// A line of the registry: everything that is known of an estimator without building it.

@@ -61,6 +61,16 @@ impl Uncertainty {
     }
 }
 
+/// What a fitted estimator says of a peak it may not have seen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Prediction {
+    /// ln A at the time asked about, the amplitude in the record's unit: finite.
+    pub log_amplitude: f64,
+    /// Standard deviation of a **measured** ln A about it, scatter and the fit's own uncertainty
+    /// together, where the method states one.
+    pub std_error: Option<f64>,
+}
+
 /// A trained model as a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ModelFile {
@@ -87,6 +97,11 @@ pub struct Estimate {
     pub parameters: usize,
     /// The fitted function ln A at the envelope's times.
     pub fitted_log_amplitudes: Vec<f64>,
+    /// The fitted function at [`FitContext::query_times`](crate::FitContext::query_times), one for each
+    /// time asked about.
+    pub predictions: Vec<Prediction>,
+    /// The law that the method discovered, in the record's units, where it discovers laws.
+    pub equation: Option<String>,
     /// The trained model, where there is something to keep.
     pub model: Option<ModelFile>,
 }

@@ -11,8 +11,10 @@ mod context;
 mod entry;
 mod error;
 mod estimate;
+mod scaling;
 
 pub use context::{Cancel, FitContext, Observer, Silent, Step};
 pub use entry::{Entry, Estimator, Tag};
 pub use error::FitError;
-pub use estimate::{Estimate, ModelFile, Reached, Stop, Uncertainty};
+pub use estimate::{Estimate, ModelFile, Prediction, Reached, Stop, Uncertainty};
+pub use scaling::Scaling;

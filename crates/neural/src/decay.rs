@@ -182,6 +182,8 @@ impl Reconstruction {
             steps: minimum.steps,
             parameters: minimum.parameters.len(),
             fitted_log_amplitudes: peaks.times.iter().map(|&s| fitted(s)).collect(),
+            predictions: Vec::new(),
+            equation: None,
             model: Some(ModelFile {
                 name: "weights.safetensors".to_owned(),
                 bytes: to_safetensors(&named_parameters(&trained)?)?,

@@ -34,6 +34,8 @@ impl Estimator for Baseline {
             steps: 0,
             parameters: 1,
             fitted_log_amplitudes: vec![mean; logs.len()],
+            predictions: Vec::new(),
+            equation: None,
             model: None,
         })
     }

@@ -220,6 +220,8 @@ impl Fit<'_> {
             steps: found.steps,
             parameters: 3,
             fitted_log_amplitudes: fitted,
+            predictions: Vec::new(),
+            equation: None,
             model: Some(ModelFile { name: "posterior.toml".to_owned(), bytes: text.into_bytes() }),
         })
     }

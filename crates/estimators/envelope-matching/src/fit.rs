@@ -43,6 +43,8 @@ impl Estimator for EnvelopeMatchingConfig {
             steps: found.steps,
             parameters: 2,
             fitted_log_amplitudes: found.at.fitted.iter().map(|&z| matching.log_amplitude(z)).collect(),
+            predictions: Vec::new(),
+            equation: None,
             model: None,
         })
     }

@@ -246,6 +246,8 @@ fn describe(
         steps: trained.steps,
         parameters: trained.best.parameters.len(),
         fitted_log_amplitudes: fitted,
+        predictions: Vec::new(),
+        equation: None,
         model: Some(ModelFile { name: "process.toml".to_owned(), bytes: text.into_bytes() }),
     })
 }

@@ -127,6 +127,8 @@ fn describe(scaling: &Scaling, objective: &Objective<'_>, minimum: &Minimum) -> 
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,
+        predictions: Vec::new(),
+        equation: None,
         model: Some(ModelFile { name: "weights.safetensors".to_owned(), bytes: to_safetensors(&tensors)? }),
     })
 }

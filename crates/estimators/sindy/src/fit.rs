@@ -91,6 +91,8 @@ impl SindyConfig {
                 bytes: model_text(scaled, law, path, criteria, "").into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
+            predictions: Vec::new(),
+            equation: None,
         }
     }
 }

@@ -113,6 +113,8 @@ fn describe(expression: &Expression, data: &Data, stop: Stop, workspace: &mut Wo
         steps: 0,
         parameters: expression.constants().count(),
         fitted_log_amplitudes: fitted,
+        predictions: Vec::new(),
+        equation: None,
         model: None,
     }
 }

@@ -216,6 +216,8 @@ impl WeakSindyConfig {
                 bytes: model_text(scaled, law, path, criteria, &method).into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
+            predictions: Vec::new(),
+            equation: None,
         }
     }
 }
