@@ -225,3 +225,9 @@ fn with_config(text: &str) -> String {
     assert!(Path::new(&root()).exists());
     refusal(&[file.to_str().unwrap()])
 }
+
+#[test]
+fn a_classical_method_takes_no_cap_on_its_steps() {
+    let message = refusal(&["configs/ols.toml", "fit.max_steps=3"]);
+    assert!(message.contains("`fit.max_steps` is 3; expected to be left out"), "{message}");
+}

@@ -16,6 +16,7 @@ mod architecture;
 mod bad_input;
 mod comparison;
 mod documents;
+mod honesty;
 mod measured_records;
 mod nist;
 mod recipe;

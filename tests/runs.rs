@@ -154,7 +154,20 @@ fn estimators_are_listed() {
     let value: Value = serde_json::from_slice(&output.stdout).unwrap();
     let ids: Vec<&str> =
         value["estimators"].as_array().unwrap().iter().map(|row| row["id"].as_str().unwrap()).collect();
-    assert!(ids.contains(&"baseline") && ids.contains(&"pinn"), "{ids:?}");
+    assert!(["baseline", "pinn", "ols"].iter().all(|id| ids.contains(id)), "{ids:?}");
+}
+
+/// What a comparison says of a classical method, its own configuration says too.
+#[test]
+fn a_classical_method_runs_from_its_own_configuration() {
+    let (code, single, folder) = result(&["configs/differential-evolution.toml", "fit.seeds=2"]);
+    assert_eq!((code, single["seeds"].as_array().unwrap().len()), (0, 2));
+    assert!(folder.path().join("report.html").is_file());
+    let (_, compared, _) =
+        result(&["configs/compare.toml", "compare.methods=differential-evolution", "fit.seeds=2"]);
+    let row = &compared["results"][0]["outcome"]["estimate"];
+    assert_eq!(row["decay_rate"], single["estimate"]["decay_rate"]);
+    assert_eq!(row["worst_error_percent"], single["worst_error_percent"]);
 }
 
 /// Both half-cycles, believed clock: the recommended pipeline finds the simulated oscillator's own

@@ -13,6 +13,8 @@ pub enum Reached {
     Diverged,
     /// Somebody asked to stop; the best state so far is reported.
     Interrupted,
+    /// No step improves the fit, and the method's own condition does not hold either.
+    Stalled,
 }
 
 impl Reached {
@@ -24,6 +26,7 @@ impl Reached {
             Self::BudgetSpent => "budget_spent",
             Self::Diverged => "diverged",
             Self::Interrupted => "interrupted",
+            Self::Stalled => "stalled",
         }
     }
 }

@@ -8,6 +8,7 @@ use record::{
 };
 use serde::Deserialize;
 use settings::{Document, Field, Resolved, Section, SettingsError};
+use std::sync::Arc;
 use toml::Value;
 
 /// An experiment with every key checked.
@@ -36,12 +37,17 @@ pub enum Task {
     Compare(Comparison),
 }
 
-/// One estimator.
-pub struct Single {
-    /// The registry's line of the estimator.
-    pub entry: Entry,
-    /// The estimator, built from its settings.
-    pub estimator: Box<dyn Estimator>,
+/// One method.
+pub enum Single {
+    /// An estimator of the registry.
+    Learned {
+        /// Its line there.
+        entry: Entry,
+        /// The estimator, built from its settings.
+        estimator: Arc<dyn Estimator>,
+    },
+    /// A classical method, by its name. It has no settings.
+    Classical(String),
 }
 
 /// The section `compare`.
@@ -185,23 +191,30 @@ pub fn resolve(
     classical: &[&str],
 ) -> Result<Experiment, SettingsError> {
     let compares = document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("compare"));
-    // An estimator's keys can only be checked once it is known which estimator it is.
-    let entry = if compares { None } else { Some(find_estimator(document, registry)?) };
-    let fields: Vec<Field> = std::iter::once(estimator_name_field())
-        .chain(entry.iter().flat_map(|entry| entry.fields.iter().copied()))
-        .collect();
+    // A method's keys can only be checked once it is known which method it is.
+    let method = if compares { None } else { Some(find_method(document, registry, classical)?) };
+    let own_fields = match &method {
+        Some(Named::Learned(entry)) => entry.fields,
+        _ => &[],
+    };
+    let fields: Vec<Field> =
+        std::iter::once(estimator_name_field()).chain(own_fields.iter().copied()).collect();
     let own = if compares { COMPARE } else { Section { name: "estimator", fields: &fields } };
     let sections: Vec<Section<'_>> = SECTIONS.iter().copied().chain([own]).collect();
     let resolved = Resolved::new(document, &sections)?;
 
     let top: Top = resolved.section("")?;
     let pipeline: PipelineName = resolved.section("envelope")?;
-    let task = match entry {
-        Some(entry) => Task::Estimate(Single { entry, estimator: (entry.build)(&resolved)? }),
+    let task = match method {
+        Some(Named::Learned(entry)) => {
+            Task::Estimate(Single::Learned { entry, estimator: (entry.build)(&resolved)?.into() })
+        }
+        Some(Named::Classical(id)) => Task::Estimate(Single::Classical(id)),
         None => Task::Compare(comparison(document, &resolved, registry, classical)?),
     };
     let default_name = match &task {
-        Task::Estimate(single) => single.entry.id.to_owned(),
+        Task::Estimate(Single::Learned { entry, .. }) => entry.id.to_owned(),
+        Task::Estimate(Single::Classical(id)) => id.clone(),
         Task::Compare(_) => top.task,
     };
     Ok(Experiment {
@@ -236,9 +249,18 @@ fn comparison(
     }
 }
 
-/// The registry's line that `estimator.name` names.
-fn find_estimator(document: &Document, registry: &[Entry]) -> Result<Entry, SettingsError> {
-    let ids = || registry.iter().map(|entry| entry.id.to_owned()).collect::<Vec<_>>();
+/// A method that a configuration names.
+enum Named {
+    Learned(Entry),
+    Classical(String),
+}
+
+/// The method that `estimator.name` names.
+fn find_method(document: &Document, registry: &[Entry], classical: &[&str]) -> Result<Named, SettingsError> {
+    let ids = || {
+        let learned = registry.iter().map(|entry| entry.id);
+        learned.chain(classical.iter().copied()).map(str::to_owned).collect::<Vec<_>>()
+    };
     let Some(leaf) = document.get("estimator.name") else {
         return Err(SettingsError::Missing {
             file: document.file().to_owned(),
@@ -251,9 +273,20 @@ fn find_estimator(document: &Document, registry: &[Entry]) -> Result<Entry, Sett
         Value::String(name) => name.clone(),
         other => other.to_string(),
     };
-    registry
-        .iter()
-        .copied()
-        .find(|entry| entry.id == found)
-        .ok_or_else(|| SettingsError::unknown_name(leaf.origin.clone(), "estimator", &found, ids()))
+    if let Some(entry) = registry.iter().find(|entry| entry.id == found) {
+        return Ok(Named::Learned(*entry));
+    }
+    if classical.contains(&found.as_str()) {
+        return match document.get("fit.max_steps") {
+            Some(cap) => Err(SettingsError::BadValue {
+                origin: cap.origin.clone(),
+                key: "fit.max_steps".to_owned(),
+                found: cap.value.to_string(),
+                expected: format!("to be left out, since {found} is a classical method and takes no cap"),
+                unit: String::new(),
+            }),
+            None => Ok(Named::Classical(found)),
+        };
+    }
+    Err(SettingsError::unknown_name(leaf.origin.clone(), "estimator", &found, ids()))
 }

@@ -4,38 +4,20 @@ use crate::Outcome;
 use crate::cautions::cautions;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
+use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
 use crate::run::Run;
 use crate::summary;
-use estimator::{Entry, Estimator, Tag};
 use experiment::Comparison;
-use oracle::classical::{CLASSICAL, ClassicalRoute};
 use rayon::prelude::*;
-use registry::ESTIMATORS;
 use report::comparison_markdown;
 use runs::result::{
     ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, RESULT_SCHEMA, SeedRow,
 };
 use runs::to_csv;
-use seed::Seed;
 use serde_json::json;
-use settings::{Document, Resolved, Section};
 use std::time::Instant;
-
-/// A method of the comparison.
-enum Method {
-    Classical(&'static ClassicalRoute),
-    Learned(&'static Entry, Box<dyn Estimator>),
-}
-
-/// One fit of one method.
-struct Fitted {
-    row: SeedRow,
-    because: String,
-    std_error: Option<f64>,
-    parameters: usize,
-}
 
 /// Fits every method on every seed, keeps going where one fails, and puts the table together.
 pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {
@@ -56,79 +38,16 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
 
 /// The methods named, or all that the paper has; in the paper's order.
 fn choose(comparison: &Comparison) -> Result<Vec<Method>, TrainerError> {
-    let wanted = |id: &str, number: Option<u8>| match &comparison.methods {
-        Some(names) => names.iter().any(|name| name == id),
-        None => number.is_some(),
-    };
-    let mut methods = Vec::new();
-    for route in CLASSICAL.iter().filter(|route| wanted(route.id, Some(route.paper_number))) {
-        methods.push(Method::Classical(route));
-    }
-    for entry in ESTIMATORS.iter().filter(|entry| wanted(entry.id, entry.paper_number)) {
-        let section = [Section { name: "estimator", fields: entry.fields }];
-        let defaults = Resolved::new(&Document::default(), &section)?;
-        methods.push(Method::Learned(entry, (entry.build)(&defaults)?));
-    }
-    methods.sort_by_key(|method| method.number().unwrap_or(u8::MAX));
+    let mut methods = Method::all()?;
+    methods.retain(|method| match &comparison.methods {
+        Some(names) => names.iter().any(|name| name == method.id()),
+        None => method.number().is_some(),
+    });
     Ok(methods)
 }
 
-impl Method {
-    fn number(&self) -> Option<u8> {
-        match self {
-            Self::Classical(route) => Some(route.paper_number),
-            Self::Learned(entry, _) => entry.paper_number,
-        }
-    }
-
-    fn draws(&self) -> bool {
-        match self {
-            Self::Classical(route) => route.draws,
-            Self::Learned(entry, _) => entry.has(Tag::Seeded),
-        }
-    }
-
-    fn fit(&self, run: &Run<'_>, setting: &FitSetting<'_>, seed: u64) -> Result<Fitted, String> {
-        match self {
-            Self::Classical(route) => fit_classical(run, route, seed),
-            Self::Learned(entry, estimator) => setting
-                .fit(entry, estimator.as_ref(), seed)
-                .map(|SeedFit { estimate, row, .. }| Fitted {
-                    row,
-                    because: estimate.stop.because,
-                    std_error: estimate.uncertainty.map(|known| known.std_error),
-                    parameters: estimate.parameters,
-                })
-                .map_err(|error| error.to_string()),
-        }
-    }
-}
-
-fn fit_classical(run: &Run<'_>, route: &ClassicalRoute, seed: u64) -> Result<Fitted, String> {
-    let envelope = &run.input.extraction.envelope;
-    let start = Instant::now();
-    let fit = (route.fit)(envelope, &Seed::new(seed).child(route.id)).map_err(|error| error.to_string())?;
-    let seconds = start.elapsed().as_secs_f64();
-    let error_percent = scoring::error_percent(fit.decay_rate, run.input.oracle.decay_rate);
-    Ok(Fitted {
-        row: SeedRow {
-            seed,
-            decay_rate: fit.decay_rate,
-            zeta: envelope.damping_ratio(fit.decay_rate),
-            error_percent,
-            reached: fit.reached.name().to_owned(),
-            steps: fit.steps,
-            seconds,
-        },
-        because: fit.because,
-        std_error: fit.std_error,
-        // Intercept and slope.
-        parameters: 2,
-    })
-}
-
 /// The fits of every method, in the methods' order and the seeds' order.
-fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<Fitted, String>>>, TrainerError> {
+fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, String>>>, TrainerError> {
     let seeds = seeds(run.experiment.seed, run.experiment.fit.seeds)?;
     let jobs: Vec<(usize, u64)> = methods
         .iter()
@@ -140,20 +59,21 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<Fitted, S
         .collect();
     let progress = Progress::over_fits(jobs.len() as u64, run.is_silent());
     let setting = FitSetting {
-        input: &run.input,
+        envelope: &run.input.extraction.envelope,
+        query_times: &[],
         max_steps: run.experiment.fit.max_steps,
         progress: &progress,
         cancel: run.cancel,
     };
-    let fitted: Vec<(usize, Result<Fitted, String>)> = run.pool.install(|| {
+    let fitted: Vec<(usize, Result<SeedFit, String>)> = run.pool.install(|| {
         jobs.into_par_iter()
             .filter_map(|(at, seed)| {
                 let method = methods.get(at)?;
                 if run.cancel.is_requested() {
                     return Some((at, Err("interrupted before it began".to_owned())));
                 }
-                let fit = method.fit(run, &setting, seed);
-                progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| &fit.row));
+                let fit = setting.fit(method, seed).map_err(|error| error.to_string());
+                progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
                 Some((at, fit))
             })
             .collect()
@@ -168,56 +88,45 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<Fitted, S
     Ok(by_method)
 }
 
-impl Method {
-    fn id(&self) -> &'static str {
-        match self {
-            Self::Classical(route) => route.id,
-            Self::Learned(entry, _) => entry.id,
-        }
-    }
-
-    fn row(&self, outcome: MethodOutcome) -> MethodRow {
-        let (title, family) = match self {
-            Self::Classical(route) => (route.title, "classical"),
-            Self::Learned(entry, _) => (entry.title, "learned"),
-        };
-        MethodRow {
-            number: self.number(),
-            id: self.id().to_owned(),
-            title: title.to_owned(),
-            family: family.to_owned(),
-            outcome,
-        }
+fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
+    MethodRow {
+        number: method.number(),
+        id: method.id().to_owned(),
+        title: method.title().to_owned(),
+        family: method.family().to_owned(),
+        outcome,
     }
 }
 
 /// One method's seeds as one outcome. A single seed that failed fails the method: leaving it out would
 /// flatter.
-fn outcome(run: &Run<'_>, fits: Vec<Result<Fitted, String>>) -> MethodOutcome {
-    let fits: Vec<Fitted> = match fits.into_iter().collect() {
+fn outcome(run: &Run<'_>, fits: Vec<Result<SeedFit, String>>) -> MethodOutcome {
+    let fits: Vec<SeedFit> = match fits.into_iter().collect() {
         Ok(fits) => fits,
         Err(reason) => return MethodOutcome::Failed { reason },
     };
-    let Some(first) = fits.first() else {
+    let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
+    let (Some(first), Some(row)) = (fits.first(), rows.first()) else {
         return MethodOutcome::Failed { reason: "no seed was fitted".to_owned() };
     };
-    let errors = || fits.iter().map(|fit| fit.row.error_percent);
+    let errors = || rows.iter().map(|row| row.error_percent);
     let worst = scoring::worst(errors());
     let envelope = &run.input.extraction.envelope;
+    let std_error = first.estimate.uncertainty.map(|known| known.std_error);
     MethodOutcome::Estimate(MethodEstimate {
-        decay_rate: first.row.decay_rate,
-        zeta: first.row.zeta,
-        zeta_std_error: first.std_error.map(|error| envelope.damping_ratio(error)),
-        error_percent: first.row.error_percent,
+        decay_rate: row.decay_rate,
+        zeta: row.zeta,
+        zeta_std_error: std_error.map(|error| envelope.damping_ratio(error)),
+        error_percent: row.error_percent,
         median_error_percent: scoring::median(errors()),
         worst_error_percent: worst,
         digits_of_agreement: scoring::digits_of_agreement(worst),
         seeds: fits.len() as u64,
-        steps: first.row.steps,
-        parameters: first.parameters,
-        seconds: scoring::median(fits.iter().map(|fit| fit.row.seconds)),
-        reached: first.row.reached.clone(),
-        stopped_because: first.because.clone(),
+        steps: row.steps,
+        parameters: first.estimate.parameters,
+        seconds: scoring::median(rows.iter().map(|row| row.seconds)),
+        reached: row.reached.clone(),
+        stopped_because: first.estimate.stop.because.clone(),
         pass: scoring::passes(worst, run.experiment.fit.tolerance_percent),
     })
 }
@@ -226,12 +135,12 @@ fn result(
     run: &Run<'_>,
     comparison: &Comparison,
     methods: &[Method],
-    fits: Vec<Vec<Result<Fitted, String>>>,
+    fits: Vec<Vec<Result<SeedFit, String>>>,
     seconds: f64,
 ) -> ComparisonResult {
     let (experiment, input) = (run.experiment, &run.input);
     let results: Vec<MethodRow> =
-        methods.iter().zip(fits).map(|(method, fits)| method.row(outcome(run, fits))).collect();
+        methods.iter().zip(fits).map(|(method, fits)| row(method, outcome(run, fits))).collect();
     let estimates = || {
         results.iter().filter_map(|row| match &row.outcome {
             MethodOutcome::Estimate(estimate) => Some(estimate),

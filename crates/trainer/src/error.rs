@@ -28,6 +28,8 @@ pub(crate) enum TrainerError {
     Oracle { file: String, source: OracleError },
     #[error("{estimator}, seed {seed}: {source}")]
     Fit { estimator: &'static str, seed: u64, source: FitError },
+    #[error("{method}, seed {seed}: {source}")]
+    Classical { method: &'static str, seed: u64, source: OracleError },
     #[error(
         "{estimator}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps"
     )]
@@ -53,6 +55,7 @@ impl TrainerError {
             | Self::Record(_)
             | Self::Envelope { .. }
             | Self::Oracle { .. }
+            | Self::Classical { .. }
             | Self::TooManySeeds { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,

@@ -1,26 +1,26 @@
-//! `task = "estimate"`: one estimator, one or more seeds.
+//! `task = "estimate"`: one method, one or more seeds.
 
 use crate::Outcome;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
+use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
 use crate::run::Run;
 use crate::summary;
 use estimator::Reached;
-use experiment::Single;
 use rayon::prelude::*;
-use runs::result::{EstimateSummary, EstimationResult, RESULT_SCHEMA};
+use runs::result::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
 use runs::to_csv;
 use serde_json::json;
 
 /// Fits every seed, keeps the first one's fit, reports the worst.
-pub(crate) fn estimate(run: &Run<'_>, single: &Single) -> Result<Outcome, TrainerError> {
-    let fits = fit_all(run, single)?;
+pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, TrainerError> {
+    let fits = fit_all(run, method)?;
     let Some((first, _)) = fits.split_first() else {
         return Err(TrainerError::TooManySeeds { seed: run.experiment.seed });
     };
-    let result = result(run, single, first, &fits);
+    let result = result(run, method, first, &fits);
     keep(run, first, &result)?;
     run.print(&result, || summary::summary(&result, run.folder.path()))?;
     Ok(if fits.iter().any(|fit| fit.estimate.stop.reached == Reached::Interrupted) {
@@ -34,10 +34,11 @@ pub(crate) fn estimate(run: &Run<'_>, single: &Single) -> Result<Outcome, Traine
 
 /// Fits every seed, in parallel; the order of the result is that of the seeds. A request to stop leaves
 /// out the seeds that were not begun, apart from the first, which the result is about.
-fn fit_all(run: &Run<'_>, single: &Single) -> Result<Vec<SeedFit>, TrainerError> {
+fn fit_all(run: &Run<'_>, method: &Method) -> Result<Vec<SeedFit>, TrainerError> {
     let progress = Progress::over_seeds(run.experiment.fit.seeds, run.is_silent());
     let setting = FitSetting {
-        input: &run.input,
+        envelope: &run.input.extraction.envelope,
+        query_times: &[],
         max_steps: run.experiment.fit.max_steps,
         progress: &progress,
         cancel: run.cancel,
@@ -45,8 +46,8 @@ fn fit_all(run: &Run<'_>, single: &Single) -> Result<Vec<SeedFit>, TrainerError>
     let first = run.experiment.seed;
     let seeds = seeds(first, run.experiment.fit.seeds)?;
     let fit_one = |seed: u64| {
-        let fit = setting.fit(&single.entry, single.estimator.as_ref(), seed);
-        progress.fit_done(single.entry.id, seed, fit.as_ref().map(|fit| &fit.row));
+        let fit = setting.fit(method, seed);
+        progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
         fit
     };
     let fits = run.pool.install(|| {
@@ -60,19 +61,20 @@ fn fit_all(run: &Run<'_>, single: &Single) -> Result<Vec<SeedFit>, TrainerError>
     fits
 }
 
-fn result(run: &Run<'_>, single: &Single, first: &SeedFit, fits: &[SeedFit]) -> EstimationResult {
+fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> EstimationResult {
     let (experiment, input) = (run.experiment, &run.input);
     let envelope = &input.extraction.envelope;
     let estimate = &first.estimate;
     let uncertainty = estimate.uncertainty;
     let tolerance = experiment.fit.tolerance_percent;
-    let worst = scoring::worst(fits.iter().map(|fit| fit.row.error_percent));
+    let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
+    let worst = scoring::worst(rows.iter().map(|row| row.error_percent));
     EstimationResult {
         schema: RESULT_SCHEMA.to_owned(),
         task: "estimate".to_owned(),
-        estimator: single.entry.id.to_owned(),
-        estimator_title: single.entry.title.to_owned(),
-        seed: first.row.seed,
+        estimator: method.id().to_owned(),
+        estimator_title: method.title().to_owned(),
+        seed: first.seed,
         data: input.data_summary(experiment),
         envelope: input.envelope_summary(experiment),
         oracle: input.oracle_summary(),
@@ -88,13 +90,13 @@ fn result(run: &Run<'_>, single: &Single, first: &SeedFit, fits: &[SeedFit]) -> 
             reached: estimate.stop.reached.name().to_owned(),
             stopped_because: estimate.stop.because.clone(),
         },
-        error_percent: first.row.error_percent,
+        error_percent: run.row(first).error_percent,
         tolerance_percent: tolerance,
         pass: scoring::passes(worst, tolerance),
-        seconds: first.row.seconds,
+        seconds: first.seconds,
         steps: estimate.steps,
         parameters: estimate.parameters,
-        seeds: fits.iter().map(|fit| fit.row.clone()).collect(),
+        seeds: rows,
         worst_error_percent: worst,
         pipelines: input.pipelines(experiment),
     }

@@ -1,61 +1,55 @@
-//! One estimator on one seed.
+//! One method on one seed. Nothing here knows what the oracle found.
 
 use crate::error::TrainerError;
-use crate::input::Input;
+use crate::method::Method;
 use crate::progress::{Progress, Watcher};
-use estimator::{Cancel, Entry, Estimate, Estimator, FitContext};
+use envelope::Envelope;
+use estimator::{Cancel, Estimate};
 use runs::result::{SeedRow, TraceRow};
-use seed::Seed;
 use std::time::Instant;
 
 /// One seed's fit.
 pub(crate) struct SeedFit {
+    pub(crate) seed: u64,
     pub(crate) estimate: Estimate,
     pub(crate) trace: Vec<TraceRow>,
-    pub(crate) row: SeedRow,
+    pub(crate) seconds: f64,
 }
 
-/// What a fit needs besides the estimator and the seed.
+/// What a fit needs besides the method and the seed.
 pub(crate) struct FitSetting<'a> {
-    pub(crate) input: &'a Input,
+    pub(crate) envelope: &'a Envelope,
+    /// Times at which the fitted function is asked for, in seconds after the first peak.
+    pub(crate) query_times: &'a [f64],
     pub(crate) max_steps: Option<u64>,
     pub(crate) progress: &'a Progress,
     pub(crate) cancel: &'a Cancel,
 }
 
 impl FitSetting<'_> {
-    /// Fits, times, and compares with the oracle.
-    pub(crate) fn fit(
-        &self,
-        entry: &Entry,
-        estimator: &dyn Estimator,
-        seed: u64,
-    ) -> Result<SeedFit, TrainerError> {
-        let envelope = &self.input.extraction.envelope;
+    /// Fits and times.
+    pub(crate) fn fit(&self, method: &Method, seed: u64) -> Result<SeedFit, TrainerError> {
         let watcher = Watcher::new(self.progress);
-        let branch = Seed::new(seed).child(entry.id);
-        let context = FitContext::new(branch, self.max_steps, &watcher, self.cancel);
         let start = Instant::now();
-        let estimate = estimator.fit(envelope, &context).map_err(|source| TrainerError::Fit {
-            estimator: entry.id,
-            seed,
-            source,
-        })?;
+        let estimate = method.fit(self.envelope, seed, self, &watcher)?;
         let seconds = start.elapsed().as_secs_f64();
-        if !(estimate.decay_rate.is_finite() && estimate.log_amplitude.is_finite()) {
-            return Err(TrainerError::NotFinite { estimator: entry.id, seed });
+        Ok(SeedFit { seed, estimate, trace: watcher.into_trace(), seconds })
+    }
+}
+
+impl SeedFit {
+    /// The fit as a row, beside the oracle's decay rate.
+    pub(crate) fn row(&self, envelope: &Envelope, oracle: f64) -> SeedRow {
+        let rate = self.estimate.decay_rate;
+        SeedRow {
+            seed: self.seed,
+            decay_rate: rate,
+            zeta: envelope.damping_ratio(rate),
+            error_percent: scoring::error_percent(rate, oracle),
+            reached: self.estimate.stop.reached.name().to_owned(),
+            steps: self.estimate.steps,
+            seconds: self.seconds,
         }
-        let oracle = self.input.oracle.decay_rate;
-        let row = SeedRow {
-            seed,
-            decay_rate: estimate.decay_rate,
-            zeta: envelope.damping_ratio(estimate.decay_rate),
-            error_percent: scoring::error_percent(estimate.decay_rate, oracle),
-            reached: estimate.stop.reached.name().to_owned(),
-            steps: estimate.steps,
-            seconds,
-        };
-        Ok(SeedFit { estimate, trace: watcher.into_trace(), row })
     }
 }
 

@@ -4,38 +4,48 @@ use crate::Outcome;
 use crate::cli::{Listing, Output};
 use crate::console;
 use crate::error::TrainerError;
+use crate::method::Method;
 use crate::summary::table;
-use registry::ESTIMATORS;
 use serde_json::json;
 
 pub(crate) fn list(what: Listing, output: Output) -> Result<Outcome, TrainerError> {
     match what {
-        Listing::Estimators => estimators(output),
+        Listing::Estimators => estimators(output)?,
     }
     Ok(Outcome::Done)
 }
 
-fn estimators(output: Output) {
+fn estimators(output: Output) -> Result<(), TrainerError> {
+    let methods = Method::all()?;
     if output.json {
-        let rows: Vec<_> = ESTIMATORS
+        let rows: Vec<_> = methods
             .iter()
-            .map(|entry| {
+            .map(|method| {
                 json!({
-                    "id": entry.id,
-                    "paper_number": entry.paper_number,
-                    "title": entry.title,
-                    "summary": entry.summary,
-                    "citations": entry.citations,
+                    "id": method.id(),
+                    "paper_number": method.number(),
+                    "family": method.family(),
+                    "title": method.title(),
+                    "summary": method.summary(),
+                    "citations": method.citations(),
                 })
             })
             .collect();
         console::result(&json!({ "estimators": rows }).to_string());
-        return;
+        return Ok(());
     }
     let number = |number: Option<u8>| number.map_or_else(|| "-".to_owned(), |n| n.to_string());
-    let rows = ESTIMATORS
+    let rows = methods
         .iter()
-        .map(|entry| vec![entry.id.to_owned(), number(entry.paper_number), entry.summary.to_owned()])
+        .map(|method| {
+            vec![
+                method.id().to_owned(),
+                number(method.number()),
+                method.family().to_owned(),
+                method.summary().to_owned(),
+            ]
+        })
         .collect();
-    console::result(&table(&["name", "no. in the paper", "what it does"], rows));
+    console::result(&table(&["name", "no. in the paper", "family", "what it does"], rows));
+    Ok(())
 }

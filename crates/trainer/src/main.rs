@@ -13,6 +13,7 @@ mod fit;
 mod input;
 mod interrupt;
 mod list;
+mod method;
 mod progress;
 mod rerender;
 mod run;

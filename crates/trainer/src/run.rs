@@ -7,13 +7,16 @@ use crate::console;
 use crate::environment::Environment;
 use crate::error::TrainerError;
 use crate::estimate::estimate;
+use crate::fit::SeedFit;
 use crate::input::Input;
 use crate::interrupt;
+use crate::method::Method;
 use estimator::Cancel;
 use experiment::{Experiment, Task, resolve};
 use oracle::classical::CLASSICAL;
 use rayon::ThreadPool;
 use registry::ESTIMATORS;
+use runs::result::SeedRow;
 use runs::{RunFolder, default_root};
 use serde::Serialize;
 use serde_json::json;
@@ -47,13 +50,18 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     folder.write_json("environment.json", &environment)?;
     folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
     let run = Run { experiment: &experiment, input, folder, pool, cancel, output: arguments.output };
-    match &experiment.task {
-        Task::Estimate(single) => estimate(&run, single),
+    match &run.experiment.task {
+        Task::Estimate(single) => estimate(&run, &Method::of(single)?),
         Task::Compare(comparison) => compare(&run, comparison),
     }
 }
 
 impl Run<'_> {
+    /// A fit as a row, beside the oracle's decay rate.
+    pub(crate) fn row(&self, fit: &SeedFit) -> SeedRow {
+        fit.row(&self.input.extraction.envelope, self.input.oracle.decay_rate)
+    }
+
     /// Whether progress is to be kept off the terminal.
     pub(crate) fn is_silent(&self) -> bool {
         self.output.quiet || self.output.json
