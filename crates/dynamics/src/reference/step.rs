@@ -63,10 +63,11 @@ impl Step {
         mode: &Mode,
         drive: &Drive<'_>,
         scale: &Vector,
+        iterations: usize,
     ) -> Solved {
         self.guess(field, mode, drive);
         let mut last = f64::INFINITY;
-        for _ in 0..60 {
+        for _ in 0..iterations {
             for (row, stage) in gauss.matrix.iter().zip(&mut self.stages) {
                 *stage = self.begin;
                 for (weight, rate) in row.iter().zip(&self.rates) {
