@@ -64,14 +64,6 @@ fn trajectories_are_the_references_for_every_effect() {
             let response = model.run(start.into(), input.as_ref(), &times).unwrap();
             let worst = difference(&response.position, &exact.position);
             let speed = difference(&response.velocity, &exact.velocity);
-                "{} {hold:?} {worst:e} {speed:e} {:e} steps {} events {} / {} {}",
-                case.0,
-                difference(&response.acceleration, &exact.acceleration),
-                response.steps,
-                response.events,
-                exact.steps,
-                exact.events.len()
-            );
             assert!(worst < 1e-8, "{}: {worst:e}", case.0);
             assert!(speed < 1e-6, "{}: {speed:e}", case.0);
         }
