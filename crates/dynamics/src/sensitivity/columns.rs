@@ -1,6 +1,7 @@
 //! Taylor series of the derivatives of the state.
 
-use super::graph::{LENGTH, MOST_STATES, Series};
+use super::graph::MOST_STATES;
+use super::series::{LENGTH, Series};
 
 /// Columns that are computed side by side.
 pub(crate) const LANES: usize = 4;

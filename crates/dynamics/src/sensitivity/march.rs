@@ -2,9 +2,10 @@
 
 use super::columns::Coupling;
 use super::free::Place;
-use super::graph::{Graph, INPUT, LENGTH, MOST_STATES, STATE, Series, TIME, value};
+use super::graph::{Graph, INPUT, MOST_STATES, STATE, TIME};
 use super::model::Model;
 use super::response::{FullState, Response};
+use super::series::{LENGTH, Series, slope, value};
 use crate::edges::Edge;
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
@@ -103,8 +104,8 @@ impl<'a> March<'a> {
     fn prepare_response(&mut self) {
         let (samples, columns) = (self.times.len(), self.model.columns.count());
         let settings = self.model.settings;
+        // Every entry is written by the run; what is left of an earlier one needs no clearing.
         let sized = |list: &mut Vec<f64>, length: usize| {
-            list.clear();
             list.resize(length, 0.0);
         };
         let response = &mut *self.response;
@@ -488,12 +489,6 @@ fn put(list: &mut [f64], index: usize, value: f64) {
     if let Some(slot) = list.get_mut(index) {
         *slot = value;
     }
-}
-
-/// The time derivative of a series at a time.
-fn slope(series: &[f64], time: f64) -> f64 {
-    let terms = series.iter().enumerate().skip(1).rev();
-    terms.fold(0.0, |sum, (power, coefficient)| sum * time + coefficient * power as f64)
 }
 
 /// Expands the state into its series. Where the step cannot be long (`room`), a lower degree may do: it

@@ -25,13 +25,16 @@
 //! Jorba, Zou, Experimental Mathematics 14 (2005) 99 (Taylor method, choice of the step); Leine, Nijmeijer,
 //! Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004, section 7.3 (saltation matrix).
 
+mod adjoint;
 mod columns;
 mod expression;
 mod free;
 mod graph;
 mod march;
 mod model;
+mod program;
 mod response;
+mod series;
 
 pub use free::Free;
 pub use model::{Model, Settings};

@@ -2,9 +2,10 @@
 
 use super::columns::{Columns, Coupling};
 use super::free::{Free, Place, place};
-use super::graph::{EFFECTS, Graph, LENGTH, MOST_STATES, NOMINAL};
+use super::graph::{EFFECTS, Graph, MOST_STATES, NOMINAL};
 use super::march::March;
 use super::response::{FullState, Response};
+use super::series::LENGTH;
 use crate::description::Range;
 use crate::error::DynamicsError;
 use crate::field::{Field, Mode};
