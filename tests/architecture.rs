@@ -16,7 +16,7 @@ fn layer(name: &str) -> Option<u8> {
         name if name.starts_with("estimator-") => 4,
         "oracle" => 4,
         "scoring" | "experiment" | "runs" => 5,
-        "conformance" => 3,
+        "conformance" | "diagnosis" => 3,
         "registry" => 5,
         "report" => 6,
         "trainer" => 7,

@@ -1,0 +1,315 @@
+//! Levenberg–Marquardt over all segments at once, start states eliminated.
+//!
+//! The normal equations are an arrow: each segment's start state meets only its own samples, the global parameters
+//! meet all. Start states are eliminated segment by segment (Schur complement), so the cost is linear in the
+//! number of samples. Bounds hold by projection: a parameter that a step would push out of its range stays at
+//! the end of it, and the step is solved anew for the others.
+//!
+//! # Reference
+//! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
+//! diagonal); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
+
+use crate::hypothesis::Hypothesis;
+use crate::response::{Prediction, Simulator};
+use crate::segments::{Data, Segment};
+use crate::statistics::autocorrelation_time;
+use dynamics::DynamicsError;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Where a fit is: global parameters, and a start state for each segment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Point {
+    pub(crate) globals: Vec<f64>,
+    pub(crate) starts: Vec<Vec<f64>>,
+}
+
+/// A fitted hypothesis.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fit {
+    pub(crate) hypothesis: Hypothesis,
+    pub(crate) point: Point,
+    /// Residuals by segment, observed minus predicted.
+    pub(crate) residuals: Vec<DVector<f64>>,
+    pub(crate) squares: f64,
+    /// Whether the steps became small before the budget was spent.
+    pub(crate) converged: bool,
+    /// Global parameters that ended at an end of their range.
+    pub(crate) at_bound: Vec<bool>,
+    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance.
+    pub(crate) inverse: DMatrix<f64>,
+}
+
+/// Steps tried at most.
+const MOST_STEPS: usize = 40;
+
+/// Relative decrease of the squares, 20 times below what a probability would feel in 10⁵ samples.
+const SMALL: f64 = 1e-8;
+
+/// What is moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Moving {
+    /// Start states only.
+    Starts,
+    /// Start states and every global parameter.
+    All,
+}
+
+/// Start states from the segments' guesses.
+pub(crate) fn first_starts(data: &Data, hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
+    data.segments.iter().map(|segment| extended(&segment.guess, hypothesis)).collect()
+}
+
+/// A start state with as many entries as a hypothesis has: hidden bodies move along.
+pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
+    start.iter().copied().take(2).cycle().take(hypothesis.start_length()).collect()
+}
+
+impl Fit {
+    pub(crate) fn samples(&self) -> usize {
+        self.residuals.iter().map(DVector::len).sum()
+    }
+
+    /// Residual squares by segment.
+    pub(crate) fn segment_squares(&self) -> Vec<f64> {
+        self.residuals.iter().map(DVector::norm_squared).collect()
+    }
+
+    /// Number of parameters that are fitted to all segments.
+    pub(crate) fn globals(&self) -> usize {
+        self.point.globals.len()
+    }
+
+    /// Degrees of freedom of the residual.
+    pub(crate) fn freedom(&self) -> f64 {
+        let starts: usize = self.point.starts.iter().map(Vec::len).sum();
+        (self.samples() as f64 - starts as f64 - self.globals() as f64).max(1.0)
+    }
+
+    pub(crate) fn autocorrelation_time(&self) -> f64 {
+        let pieces: Vec<&[f64]> = self.residuals.iter().map(DVector::as_slice).collect();
+        autocorrelation_time(&pieces)
+    }
+}
+
+/// Blocks of the normal equations of one segment.
+struct Block {
+    own: DMatrix<f64>,
+    shared: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+struct Equations {
+    blocks: Vec<Block>,
+    globals: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+struct Evaluation {
+    predictions: Vec<Prediction>,
+    squares: f64,
+}
+
+fn evaluate(simulator: &mut Simulator<'_>, segments: &[Segment], point: &Point) -> Result<Evaluation, DynamicsError> {
+    simulator.set(&point.globals)?;
+    let mut predictions = Vec::with_capacity(segments.len());
+    let mut squares = 0.0;
+    for (segment, start) in segments.iter().zip(&point.starts) {
+        let prediction = simulator.predict(segment, start)?;
+        squares += prediction.residual.norm_squared();
+        predictions.push(prediction);
+    }
+    Ok(Evaluation { predictions, squares })
+}
+
+fn equations(predictions: &[Prediction], starts: usize, globals: usize) -> Equations {
+    let mut total = DMatrix::zeros(globals, globals);
+    let mut right = DVector::zeros(globals);
+    let mut blocks = Vec::with_capacity(predictions.len());
+    for prediction in predictions {
+        let own = prediction.jacobian.columns(0, starts);
+        let shared = prediction.jacobian.columns(starts, globals);
+        total += shared.tr_mul(&shared);
+        right += shared.tr_mul(&prediction.residual);
+        blocks.push(Block {
+            own: own.tr_mul(&own),
+            shared: own.tr_mul(&shared),
+            right: own.tr_mul(&prediction.residual),
+        });
+    }
+    Equations { blocks, globals: total, right }
+}
+
+/// A matrix with its diagonal raised by a factor.
+fn raised(matrix: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
+    let mut raised = matrix.clone();
+    let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
+    for i in 0..matrix.nrows() {
+        // A column without any effect still gets a pivot.
+        raised[(i, i)] += damping * matrix[(i, i)] + 1e-14 * largest;
+    }
+    raised
+}
+
+/// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> = matrix
+        .diagonal()
+        .iter()
+        .map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
+        .collect();
+    let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        matrix[(i, j)] * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
+    });
+    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] * at(i));
+    let solution = scaled.cholesky()?.solve(&scaled_right);
+    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solution[(i, j)] * at(i)))
+}
+
+impl Equations {
+    /// The reduced system of the global parameters that are free.
+    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let mut matrix = raised(&self.globals, damping);
+        let mut right = self.right.clone();
+        for block in &self.blocks {
+            let eliminated = raised(&block.own, damping).cholesky()?;
+            let solved = eliminated.solve(&block.shared);
+            matrix -= block.shared.tr_mul(&solved);
+            right -= solved.tr_mul(&block.right);
+        }
+        Some((matrix, right))
+    }
+
+    /// The step of everything, with some global parameters held.
+    fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
+        let (matrix, right) = self.reduced(damping)?;
+        let free: Vec<usize> =
+            held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
+        let part = matrix.select_rows(&free).select_columns(&free);
+        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| right[i]));
+        let mut step = DVector::zeros(right.len());
+        if !free.is_empty() {
+            let solution = solve(&part, &part_right)?;
+            for (at, &index) in free.iter().enumerate() {
+                step[index] = solution[(at, 0)];
+            }
+        }
+        let mut starts = Vec::with_capacity(self.blocks.len());
+        for block in &self.blocks {
+            let right = &block.right - &block.shared * &step;
+            starts.push(raised(&block.own, damping).cholesky()?.solve(&right));
+        }
+        Some((step, starts))
+    }
+}
+
+/// Fits a hypothesis from a point.
+///
+/// # Errors
+/// What the dynamics refuse at that point.
+pub(crate) fn fit(
+    data: &Data,
+    hypothesis: &Hypothesis,
+    from: Point,
+    moving: Moving,
+) -> Result<Fit, DynamicsError> {
+    let parameters = hypothesis.parameters(&data.facts);
+    let starts = hypothesis.start_length();
+    let globals = parameters.len();
+    let mut point = from;
+    for (value, parameter) in point.globals.iter_mut().zip(&parameters) {
+        *value = value.clamp(parameter.lower, parameter.upper);
+    }
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
+    let mut at = evaluate(&mut simulator, &data.segments, &point)?;
+    let mut damping = 1e-4;
+    let mut converged = false;
+    let mut small = 0;
+    let mut steps = 0;
+    let mut system = equations(&at.predictions, starts, globals);
+    while steps < MOST_STEPS {
+        steps += 1;
+        let mut held = vec![moving == Moving::Starts; globals];
+        let mut trial = None;
+        // Each round holds at least one parameter more.
+        for _ in 0..=globals {
+            let Some((step, own)) = system.step(damping, &held) else { break };
+            let mut next = point.clone();
+            let mut fresh = false;
+            let moves = next.globals.iter_mut().zip(step.iter()).zip(&parameters).zip(&mut held);
+            for (((value, step), parameter), held) in moves {
+                let wanted = *value + step;
+                let outside = wanted < parameter.lower || wanted > parameter.upper;
+                if outside && !parameter.circular && !*held {
+                    let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
+                    // At the end already: hold it and solve again. Otherwise go there.
+                    if *value == end {
+                        (*held, fresh) = (true, true);
+                    }
+                    *value = end;
+                } else {
+                    *value = wanted;
+                }
+                if parameter.circular {
+                    *value -= TAU * (*value / TAU).round();
+                }
+            }
+            for (start, step) in next.starts.iter_mut().zip(own) {
+                for (value, step) in start.iter_mut().zip(step.iter()) {
+                    *value += step;
+                }
+            }
+            if !fresh {
+                trial = Some(next);
+                break;
+            }
+        }
+        let outcome = trial.and_then(|next| {
+            let evaluation = evaluate(&mut simulator, &data.segments, &next).ok()?;
+            Some((next, evaluation))
+        });
+        match outcome {
+            Some((next, evaluation)) if evaluation.squares <= at.squares => {
+                let decrease = at.squares - evaluation.squares;
+                small = if decrease <= SMALL * at.squares { small + 1 } else { 0 };
+                point = next;
+                at = evaluation;
+                damping = (damping * 0.1).max(1e-12);
+                if small >= 1 {
+                    converged = true;
+                    break;
+                }
+                system = equations(&at.predictions, starts, globals);
+            }
+            _ => {
+                damping = (damping * 8.0).max(1e-9);
+                if damping > 1e7 {
+                    // No step of any length decreases the squares: to rounding, this is the minimum.
+                    converged = true;
+                    break;
+                }
+            }
+        }
+    }
+    let system = equations(&at.predictions, starts, globals);
+    let inverse = system
+        .reduced(0.0)
+        .and_then(|(matrix, _)| solve(&matrix, &DMatrix::identity(globals, globals)))
+        .unwrap_or_else(|| DMatrix::from_element(globals, globals, f64::INFINITY));
+    let at_bound = point
+        .globals
+        .iter()
+        .zip(&parameters)
+        .map(|(value, p)| !p.circular && (*value <= p.lower || *value >= p.upper))
+        .collect();
+    Ok(Fit {
+        hypothesis: hypothesis.clone(),
+        residuals: at.predictions.into_iter().map(|prediction| prediction.residual).collect(),
+        squares: at.squares,
+        point,
+        converged,
+        at_bound,
+        inverse,
+    })
+}

@@ -1,0 +1,290 @@
+//! The search for the set of effects that the data ask for.
+//!
+//! One cause at a time is not enough: a second cause may help by 1 % alone and by 30 % once the first is in. So the
+//! first round proposes single candidates and pairs, jointly linearized; every later round linearizes anew at the
+//! best sets found so far and proposes what to add there, what to put in another's place, and what each member
+//! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
+
+use crate::candidate::Candidate;
+use crate::dictionary::{Dictionary, Gain};
+use crate::fit::{Fit, Moving, Point, extended, fit};
+use crate::hypothesis::Hypothesis;
+use crate::segments::Data;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Every set that was fitted, best fit of each.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pool {
+    pub(crate) fits: Vec<Fit>,
+    /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
+    pub(crate) rejected: Vec<Vec<Candidate>>,
+}
+
+/// How wide to search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Breadth {
+    /// Most effects in a set.
+    pub(crate) most_effects: usize,
+    /// Single candidates fitted in the first round.
+    pub(crate) singles: usize,
+    /// Pairs fitted in the first round.
+    pub(crate) pairs: usize,
+    /// Sets that later rounds go on from.
+    pub(crate) beam: usize,
+    /// Candidates fitted at each of them.
+    pub(crate) additions: usize,
+}
+
+/// A set to fit and where to begin.
+#[derive(Debug, Clone)]
+struct Proposal {
+    hypothesis: Hypothesis,
+    point: Point,
+}
+
+impl Pool {
+    pub(crate) fn find(&self, candidates: &[Candidate]) -> Option<&Fit> {
+        self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
+    }
+
+    fn take(&mut self, fit: Fit) {
+        match self.fits.iter_mut().find(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
+            Some(known) if fit.squares < known.squares => *known = fit,
+            Some(_) => {}
+            None => self.fits.push(fit),
+        }
+    }
+
+    /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
+    pub(crate) fn autocorrelation_time(&self) -> f64 {
+        let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
+        best.map_or(1.0, Fit::autocorrelation_time)
+    }
+
+    /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
+    pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
+        let mut ranked: Vec<&Fit> = self.fits.iter().collect();
+        ranked.sort_by(|a, b| {
+            crate::score::score(b, time).total_cmp(&crate::score::score(a, time))
+        });
+        ranked
+    }
+}
+
+/// A strength at zero: the candidate is not there.
+pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
+    let parameters = fit.hypothesis.parameters(&data.facts);
+    let calibrated = fit.hypothesis.calibrated.len();
+    let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
+    own.into_iter().any(|(parameter, value)| parameter.strength && *value <= parameter.lower)
+}
+
+/// A set and a start for it: what a fit has found, with one candidate left out and others added.
+fn proposal(data: &Data, base: &Fit, without: Option<Candidate>, added: &[(Candidate, Vec<f64>)]) -> Proposal {
+    let facts = &data.facts;
+    let parts = base.hypothesis.parts(facts, &base.point.globals);
+    let mut members: Vec<(Candidate, Vec<f64>)> = base
+        .hypothesis
+        .candidates
+        .iter()
+        .copied()
+        .zip(parts.into_iter().map(<[f64]>::to_vec))
+        .filter(|(candidate, _)| Some(*candidate) != without)
+        .chain(added.iter().cloned())
+        .collect();
+    members.sort_by_key(|(candidate, _)| candidate.rank());
+    let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = base.hypothesis.with(&candidates);
+    let calibrated = base.point.globals.iter().copied().take(base.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = base.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    Proposal { hypothesis, point: Point { globals, starts } }
+}
+
+fn additions(dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
+    let mut coefficients = gain.coefficients.as_slice();
+    gain.entries
+        .iter()
+        .filter_map(|&index| {
+            let entry = dictionary.entries.get(index)?;
+            let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
+            coefficients = rest;
+            Some((entry.candidate, dictionary.parameters(index, own)))
+        })
+        .collect()
+}
+
+/// Gains of single entries, the best shape of each candidate, best first.
+pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<(Candidate, Gain)> = Vec::new();
+    for (index, entry) in dictionary.entries.iter().enumerate() {
+        let Some(gain) = dictionary.gain(&[index]) else { continue };
+        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
+            Some((_, known)) if gain.squares > known.squares => *known = gain,
+            Some(_) => {}
+            None => best.push((entry.candidate, gain)),
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Joint gains of two candidates, the best shapes of each pair, best first.
+fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
+    for (first, one) in dictionary.entries.iter().enumerate() {
+        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
+            if one.candidate == other.candidate {
+                continue;
+            }
+            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
+            let pair = (one.candidate, other.candidate);
+            match best.iter_mut().find(|(known, _)| *known == pair) {
+                Some((_, known)) if gain.squares > known.squares => *known = gain,
+                Some(_) => {}
+                None => best.push((pair, gain)),
+            }
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
+fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
+    let fits: Vec<Option<Fit>> = proposals
+        .par_iter()
+        .map(|proposal| fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All).ok())
+        .collect();
+    fits.into_iter().flatten().collect()
+}
+
+/// Proposals at a fit: what to add, and what a confusion or a swap would put in a member's place.
+fn around(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> Vec<Proposal> {
+    let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
+    let mut proposals = Vec::new();
+    let size = base.hypothesis.candidates.len();
+    let ranked = singles(&dictionary);
+    if size < breadth.most_effects {
+        for gain in ranked.iter().take(breadth.additions) {
+            proposals.push(proposal(data, base, None, &additions(&dictionary, gain)));
+        }
+        for (candidate, parameters, gain) in &dictionary.further {
+            let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
+            if *gain > weakest {
+                proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
+            }
+        }
+    }
+    proposals
+}
+
+/// Puts each member's confusions in its place, linearized where the member is taken out.
+fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> Vec<Proposal> {
+    let mut proposals = Vec::new();
+    for &member in &base.hypothesis.candidates {
+        let reduced = proposal(data, base, Some(member), &[]);
+        let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All) else { continue };
+        let Ok(dictionary) = Dictionary::at(data, &bare, candidates) else { continue };
+        let confused = member.confused_with();
+        let ranked = singles(&dictionary);
+        let is_confused = |gain: &Gain| {
+            let entry = gain.entries.first().and_then(|index| dictionary.entries.get(*index));
+            entry.is_some_and(|entry| confused.contains(&entry.candidate))
+        };
+        let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < breadth.additions || is_confused(gain));
+        for (_, gain) in chosen {
+            proposals.push(proposal(data, &bare, None, &additions(&dictionary, gain)));
+        }
+    }
+    proposals
+}
+
+fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
+    let fresh: Vec<Proposal> = proposals
+        .into_iter()
+        .filter(|proposal| {
+            let set: Vec<usize> = proposal.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+            tried.insert(set)
+        })
+        .collect();
+    for fit in fit_all(data, &fresh) {
+        if vanished(data, &fit) {
+            pool.rejected.push(fit.hypothesis.candidates.clone());
+        } else {
+            pool.take(fit);
+        }
+    }
+}
+
+/// Searches sets of candidates, beginning at the calibrated nominal simulator.
+///
+/// `threshold` is the increase of the score that a further effect has to bring for the search to go on.
+pub(crate) fn search(
+    data: &Data,
+    calibrated: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Pool {
+    let mut pool = Pool { fits: vec![calibrated.clone()], rejected: Vec::new() };
+    let mut tried = BTreeSet::new();
+    tried.insert(Vec::new());
+    let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return pool };
+    let mut proposals: Vec<Proposal> = Vec::new();
+    let ranked = singles(&dictionary);
+    for gain in ranked.iter().take(breadth.singles) {
+        proposals.push(proposal(data, calibrated, None, &additions(&dictionary, gain)));
+    }
+    for (candidate, parameters, _) in &dictionary.further {
+        proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
+    }
+    for gain in pairs(&dictionary).iter().take(breadth.pairs) {
+        proposals.push(proposal(data, calibrated, None, &additions(&dictionary, gain)));
+    }
+    settle(data, &mut pool, &mut tried, proposals);
+    let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
+    for _ in 0..2 * breadth.most_effects {
+        let time = pool.autocorrelation_time();
+        let before = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| crate::score::score(fit, time));
+        let bases: Vec<Fit> = pool
+            .ranked(time)
+            .into_iter()
+            .filter(|fit| !fit.hypothesis.candidates.is_empty())
+            .take(breadth.beam)
+            .filter(|fit| {
+                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+                expanded.insert(set)
+            })
+            .cloned()
+            .collect();
+        if bases.is_empty() {
+            break;
+        }
+        let proposals: Vec<Vec<Proposal>> = bases
+            .par_iter()
+            .enumerate()
+            .map(|(place, base)| {
+                let mut own = around(data, base, candidates, breadth);
+                if place == 0 {
+                    own.extend(swaps(data, base, candidates, breadth));
+                }
+                own
+            })
+            .collect();
+        settle(data, &mut pool, &mut tried, proposals.into_iter().flatten().collect());
+        let time = pool.autocorrelation_time();
+        let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
+        let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
+        if now - before < threshold && pool.ranked(time).first().is_some_and(|fit| {
+            let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+            expanded.contains(&set)
+        }) {
+            break;
+        }
+    }
+    pool
+}
