@@ -1,7 +1,7 @@
 //! The nominal simulator against the data: as it is, and recalibrated.
 
 use crate::error::DiagnosisError;
-use crate::fit::{Fit, Moving, Point, first_starts, fit};
+use crate::fit::{Effort, Fit, Moving, Point, first_starts, fit};
 use crate::hypothesis::{Calibrated, Hypothesis};
 use crate::segments::Data;
 use dynamics::{Hold, Nominal};
@@ -34,9 +34,10 @@ pub(crate) fn baseline(data: &Data, nominal: &Nominal) -> Result<Baseline, Diagn
     let hypothesis =
         Hypothesis { nominal: *nominal, calibrated: movable(nominal, data.driven()), candidates: Vec::new() };
     let point = Point { globals: hypothesis.nominal_point(), starts: first_starts(data, &hypothesis) };
-    let nominal = fit(data, &hypothesis, point, Moving::Starts)?;
+    let nominal = fit(data, &hypothesis, point, Moving::Starts, Effort::FINAL)?;
     // A stiffness far off lets the starts of the nominal fit wander: begin from both, keep the better.
-    let from_guess = Point { globals: nominal.point.globals.clone(), starts: first_starts(data, &hypothesis) };
+    let from_guess =
+        Point { globals: nominal.point.globals.clone(), starts: first_starts(data, &hypothesis) };
     let mut guessed = from_guess.clone();
     if let (Some(period), Some(at)) =
         (data.period_s, hypothesis.calibrated.iter().position(|own| *own == Calibrated::Stiffness))
@@ -48,7 +49,7 @@ pub(crate) fn baseline(data: &Data, nominal: &Nominal) -> Result<Baseline, Diagn
     }
     let mut best: Option<Fit> = None;
     for point in [nominal.point.clone(), guessed] {
-        let found = fit(data, &hypothesis, point, Moving::All)?;
+        let found = fit(data, &hypothesis, point, Moving::All, Effort::FINAL)?;
         if best.as_ref().is_none_or(|best| found.squares < best.squares) {
             best = Some(found);
         }

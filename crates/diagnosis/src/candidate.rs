@@ -108,7 +108,9 @@ impl Candidate {
     /// Whether it can act on these records at all.
     pub(crate) fn applies(self, facts: &Facts, position: bool, spring: bool) -> bool {
         match self {
-            Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => facts.input_torque > 0.0,
+            Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => {
+                facts.input_torque > 0.0
+            }
             Self::System(
                 SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
             ) => spring,
@@ -157,7 +159,9 @@ impl Candidate {
                 SystemEffect::CubicStiffness | SystemEffect::AsymmetricStiffness => vec![any("coefficient")],
                 SystemEffect::Gravity => vec![positive("torque"), angle("angle")],
                 SystemEffect::ConstantTorque => vec![any("torque")],
-                SystemEffect::Backlash => vec![Parameter { strength: true, ..between("half_width", 0.0, 0.9 * a) }],
+                SystemEffect::Backlash => {
+                    vec![Parameter { strength: true, ..between("half_width", 0.0, 0.9 * a) }]
+                }
                 SystemEffect::Hysteresis => {
                     vec![positive("torque"), between("displacement", 1e-3 * a, 2.0 * a)]
                 }

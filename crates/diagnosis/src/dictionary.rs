@@ -94,7 +94,13 @@ fn shapes(candidate: Candidate, facts: &Facts) -> Vec<Vec<f64>> {
 }
 
 /// The columns of a candidate at a shape, on one path.
-fn columns(candidate: Candidate, shape: &[f64], path: &Path, data: &Data, nominal: &Coefficients<f64>) -> Vec<Vec<f64>> {
+fn columns(
+    candidate: Candidate,
+    shape: &[f64],
+    path: &Path,
+    data: &Data,
+    nominal: &Coefficients<f64>,
+) -> Vec<Vec<f64>> {
     let (x, rate, _) = path.observed(data.quantity);
     let torque = |values: &[f64]| law(candidate, values, path, nominal);
     let respond = |torques: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
@@ -280,7 +286,11 @@ impl Dictionary {
                 return None;
             }
         }
-        (squares.is_finite() && squares > 0.0).then(|| Gain { entries: entries.to_vec(), squares, coefficients })
+        (squares.is_finite() && squares > 0.0).then(|| Gain {
+            entries: entries.to_vec(),
+            squares,
+            coefficients,
+        })
     }
 
     /// The parameters that an entry's coefficients stand for.

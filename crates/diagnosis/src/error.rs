@@ -10,7 +10,9 @@ pub enum DiagnosisError {
     #[error("there is no record; give at least one")]
     NoRecord,
     /// Too few samples.
-    #[error("record {record} has {found} samples; a diagnosis needs at least {needed}. Record longer, or faster")]
+    #[error(
+        "record {record} has {found} samples; a diagnosis needs at least {needed}. Record longer, or faster"
+    )]
     TooFewSamples {
         /// Which record, from 1.
         record: usize,
@@ -88,7 +90,9 @@ pub enum DiagnosisError {
         turns: f64,
     },
     /// Records of one system that observe different quantities.
-    #[error("record {record} observes another quantity, or in another unit, than record 1; diagnose them apart")]
+    #[error(
+        "record {record} observes another quantity, or in another unit, than record 1; diagnose them apart"
+    )]
     MixedQuantities {
         /// Which record, from 1.
         record: usize,

@@ -40,11 +40,23 @@ pub(crate) struct Fit {
     pub(crate) inverse: DMatrix<f64>,
 }
 
-/// Steps tried at most.
-const MOST_STEPS: usize = 40;
+/// How long to go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Effort {
+    /// Steps tried at most.
+    steps: usize,
+    /// Relative decrease of the squares at which to stop.
+    small: f64,
+}
 
-/// Relative decrease of the squares, 20 times below what a probability would feel in 10⁵ samples.
-const SMALL: f64 = 1e-8;
+impl Effort {
+    /// To rank proposals.
+    pub(crate) const SEARCH: Self = Self { steps: 14, small: 1e-4 };
+    /// For parts held out: begun at the fit to all, there is not far to go.
+    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6 };
+    /// For what is reported: half of 1e-8·N is far below what a probability would feel.
+    pub(crate) const FINAL: Self = Self { steps: 30, small: 1e-8 };
+}
 
 /// What is moved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +122,11 @@ struct Evaluation {
     squares: f64,
 }
 
-fn evaluate(simulator: &mut Simulator<'_>, segments: &[Segment], point: &Point) -> Result<Evaluation, DynamicsError> {
+fn evaluate(
+    simulator: &mut Simulator<'_>,
+    segments: &[Segment],
+    point: &Point,
+) -> Result<Evaluation, DynamicsError> {
     simulator.set(&point.globals)?;
     let mut predictions = Vec::with_capacity(segments.len());
     let mut squares = 0.0;
@@ -153,11 +169,8 @@ fn raised(matrix: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
 
 /// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
-    let scale: Vec<f64> = matrix
-        .diagonal()
-        .iter()
-        .map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 })
-        .collect();
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
     let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
         matrix[(i, j)] * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
@@ -213,6 +226,7 @@ pub(crate) fn fit(
     hypothesis: &Hypothesis,
     from: Point,
     moving: Moving,
+    effort: Effort,
 ) -> Result<Fit, DynamicsError> {
     let parameters = hypothesis.parameters(&data.facts);
     let starts = hypothesis.start_length();
@@ -228,7 +242,7 @@ pub(crate) fn fit(
     let mut small = 0;
     let mut steps = 0;
     let mut system = equations(&at.predictions, starts, globals);
-    while steps < MOST_STEPS {
+    while steps < effort.steps {
         steps += 1;
         let mut held = vec![moving == Moving::Starts; globals];
         let mut trial = None;
@@ -272,7 +286,7 @@ pub(crate) fn fit(
         match outcome {
             Some((next, evaluation)) if evaluation.squares <= at.squares => {
                 let decrease = at.squares - evaluation.squares;
-                small = if decrease <= SMALL * at.squares { small + 1 } else { 0 };
+                small = if decrease <= effort.small * at.squares { small + 1 } else { 0 };
                 point = next;
                 at = evaluation;
                 damping = (damping * 0.1).max(1e-12);

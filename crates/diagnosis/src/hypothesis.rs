@@ -183,7 +183,8 @@ impl Hypothesis {
         self.candidates
             .iter()
             .map(|candidate| {
-                let (own, after) = rest.split_at_checked(candidate.parameters(facts).len()).unwrap_or((rest, &[]));
+                let (own, after) =
+                    rest.split_at_checked(candidate.parameters(facts).len()).unwrap_or((rest, &[]));
                 rest = after;
                 own
             })
@@ -204,14 +205,15 @@ impl Hypothesis {
             if let Candidate::System(effect) = candidate {
                 let values = candidate.values(own);
                 let parameters = effect.description().parameters;
-                let inside: Vec<f64> = values
-                    .iter()
-                    .zip(parameters)
-                    // Open ranges exclude their ends, which a fit at its bound reaches.
-                    .map(|(&value, parameter)| {
-                        if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
-                    })
-                    .collect();
+                let inside: Vec<f64> =
+                    values
+                        .iter()
+                        .zip(parameters)
+                        // Open ranges exclude their ends, which a fit at its bound reaches.
+                        .map(|(&value, parameter)| {
+                            if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
+                        })
+                        .collect();
                 effects.push(Active::new(candidate.id(), &inside)?);
             }
         }
@@ -268,10 +270,13 @@ mod tests {
             full.observe(x - h, rate, curvature, time).value,
         );
         assert!((by_x - at.by_motion[0]).abs() < 1e-8);
-        let lag = |d: f64| Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time).value;
+        let lag =
+            |d: f64| Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time).value;
         assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
         let phase = |d: f64| {
-            Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }.observe(x, rate, curvature, time).value
+            Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }
+                .observe(x, rate, curvature, time)
+                .value
         };
         assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
         let stamp = full.true_time(time);

@@ -54,7 +54,10 @@ mod tests {
         let values: Vec<f64> = times
             .iter()
             .enumerate()
-            .map(|(i, t)| 0.02 + 0.7 * (-0.13 * t).exp() * (22.0 * t).cos() + 1e-3 * ((i * 7919 % 13) as f64 - 6.0) / 6.0)
+            .map(|(i, t)| {
+                0.02 + 0.7 * (-0.13 * t).exp() * (22.0 * t).cos()
+                    + 1e-3 * ((i * 7919 % 13) as f64 - 6.0) / 6.0
+            })
             .collect();
         let found = swing(&times, &values).unwrap();
         assert!((found.period_s / (std::f64::consts::TAU / 22.0) - 1.0).abs() < 2e-3, "{found:?}");

@@ -183,7 +183,9 @@ impl<'a> Simulator<'a> {
         let (x, rate, curvature) = match self.data.quantity {
             Quantity::Position => (&response.position, &response.velocity, &response.acceleration),
             Quantity::Velocity => (&response.velocity, &response.acceleration, &response.acceleration),
-            Quantity::Acceleration => (&response.acceleration, &response.acceleration, &response.acceleration),
+            Quantity::Acceleration => {
+                (&response.acceleration, &response.acceleration, &response.acceleration)
+            }
         };
         let (by_x, by_rate, by_curvature) = match self.data.quantity {
             Quantity::Position => (
@@ -251,6 +253,15 @@ impl<'a> Simulator<'a> {
                 torque += excess;
             }
         }
+    }
+
+    /// The start state of a segment that begins where this one ends: position, velocity, fitted hidden states.
+    pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        self.run(segment, start)?;
+        let end = self.response.end;
+        let all = end.hidden.unwrap_or_default();
+        let own = hidden(self.hypothesis).filter_map(|index| all.get(index).copied());
+        Ok([end.position, end.velocity].into_iter().chain(own).collect())
     }
 
     /// The motion along a segment from a start state. Only for a simulator without derivatives.

@@ -7,7 +7,7 @@
 
 use crate::candidate::Candidate;
 use crate::dictionary::{Dictionary, Gain};
-use crate::fit::{Fit, Moving, Point, extended, fit};
+use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
 use crate::segments::Data;
 use rayon::prelude::*;
@@ -65,9 +65,7 @@ impl Pool {
     /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
     pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
         let mut ranked: Vec<&Fit> = self.fits.iter().collect();
-        ranked.sort_by(|a, b| {
-            crate::score::score(b, time).total_cmp(&crate::score::score(a, time))
-        });
+        ranked.sort_by(|a, b| crate::score::score(b, time).total_cmp(&crate::score::score(a, time)));
         ranked
     }
 }
@@ -81,7 +79,12 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
 }
 
 /// A set and a start for it: what a fit has found, with one candidate left out and others added.
-fn proposal(data: &Data, base: &Fit, without: Option<Candidate>, added: &[(Candidate, Vec<f64>)]) -> Proposal {
+fn proposal(
+    data: &Data,
+    base: &Fit,
+    without: Option<Candidate>,
+    added: &[(Candidate, Vec<f64>)],
+) -> Proposal {
     let facts = &data.facts;
     let parts = base.hypothesis.parts(facts, &base.point.globals);
     let mut members: Vec<(Candidate, Vec<f64>)> = base
@@ -157,7 +160,9 @@ fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
 fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
     let fits: Vec<Option<Fit>> = proposals
         .par_iter()
-        .map(|proposal| fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All).ok())
+        .map(|proposal| {
+            fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, Effort::SEARCH).ok()
+        })
         .collect();
     fits.into_iter().flatten().collect()
 }
@@ -187,7 +192,9 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
     let mut proposals = Vec::new();
     for &member in &base.hypothesis.candidates {
         let reduced = proposal(data, base, Some(member), &[]);
-        let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All) else { continue };
+        let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH) else {
+            continue;
+        };
         let Ok(dictionary) = Dictionary::at(data, &bare, candidates) else { continue };
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
@@ -195,7 +202,8 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
             let entry = gain.entries.first().and_then(|index| dictionary.entries.get(*index));
             entry.is_some_and(|entry| confused.contains(&entry.candidate))
         };
-        let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < breadth.additions || is_confused(gain));
+        let chosen =
+            ranked.iter().enumerate().filter(|(place, gain)| *place < breadth.additions || is_confused(gain));
         for (_, gain) in chosen {
             proposals.push(proposal(data, &bare, None, &additions(&dictionary, gain)));
         }
@@ -249,7 +257,8 @@ pub(crate) fn search(
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
     for _ in 0..2 * breadth.most_effects {
         let time = pool.autocorrelation_time();
-        let before = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| crate::score::score(fit, time));
+        let before =
+            pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| crate::score::score(fit, time));
         let bases: Vec<Fit> = pool
             .ranked(time)
             .into_iter()
@@ -279,10 +288,12 @@ pub(crate) fn search(
         let time = pool.autocorrelation_time();
         let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
         let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
-        if now - before < threshold && pool.ranked(time).first().is_some_and(|fit| {
-            let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
-            expanded.contains(&set)
-        }) {
+        if now - before < threshold
+            && pool.ranked(time).first().is_some_and(|fit| {
+                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+                expanded.contains(&set)
+            })
+        {
             break;
         }
     }

@@ -56,9 +56,8 @@ pub(crate) fn lines(data: &Data, residuals: &[&[f64]], coherent: bool, most: usi
     if coherent {
         for record in 0..records {
             let own = data.segments.iter().zip(residuals).filter(|(segment, _)| segment.record == record);
-            let points: Vec<(f64, f64)> = own
-                .flat_map(|(segment, e)| segment.times.iter().copied().zip(e.iter().copied()))
-                .collect();
+            let points: Vec<(f64, f64)> =
+                own.flat_map(|(segment, e)| segment.times.iter().copied().zip(e.iter().copied())).collect();
             add(&points, lowest, step, &mut gains);
         }
     } else {

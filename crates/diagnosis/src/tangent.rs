@@ -59,8 +59,11 @@ impl Path {
             let motion = simulator.motion(segment, start)?;
             let input = data.inputs.get(segment.record).and_then(Option::as_ref);
             let gain = system.nominal().input_gain();
-            let torque =
-                segment.times.iter().map(|time| input.map_or(0.0, |input| gain * held(input, *time))).collect();
+            let torque = segment
+                .times
+                .iter()
+                .map(|time| input.map_or(0.0, |input| gain * held(input, *time)))
+                .collect();
             let (x, rate, curvature) = observed(data.quantity, &motion);
             let slopes = x
                 .iter()
@@ -166,9 +169,7 @@ impl Path {
             let value = match quantity {
                 Quantity::Position => state[0],
                 Quantity::Velocity => state[1],
-                Quantity::Acceleration => {
-                    (torque - stiffness * state[0] - damping * state[1]) / self.inertia
-                }
+                Quantity::Acceleration => (torque - stiffness * state[0] - damping * state[1]) / self.inertia,
             };
             column.push(value * gain);
             if let (Some(step), Some(&after)) = (steps.next(), next.next()) {

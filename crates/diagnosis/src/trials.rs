@@ -1,80 +1,231 @@
 //! Trials on simulated and on measured records.
 
-use crate::calibrate::better_hold;
-use crate::candidate::Candidate;
-use crate::noise::floor;
-use crate::observations::Observations;
-use crate::score::score;
-use crate::search::{Breadth, search};
-use crate::segments::{MOST_SEARCHED, cut};
-use dynamics::Nominal;
-use record::{Clock, ClockChoice, CsvColumns, Format, ReadOptions, read_file};
-use std::path::Path;
+use crate::{Diagnosis, Observations, Settings, Status, diagnose};
+use dynamics::reference::{Tolerance, simulate};
+use dynamics::{Active, Nominal, Start, System};
+use rand_distr::{Distribution, StandardNormal};
+use record::{Clock, ClockChoice, CsvColumns, Format, Quantity, ReadOptions, Record, read_file};
+use seed::Seed;
+use std::path::{Path, PathBuf};
 
-fn shared(name: &str) -> std::path::PathBuf {
+fn report(answer: &Diagnosis) {
+    let gap = &answer.gap;
+    println!(
+        "{:?} {:?} {:.3} eq {:?}",
+        answer.verdict.status, answer.verdict.effects, answer.verdict.confidence, answer.verdict.equivalent
+    );
+    println!(
+        "  R0 {:.3e} Rc {:.3e} Rm {:.3e} ceiling {:.3e} floor {:.3e} closure {:.4} {:?} ratio {:.2} third {:?}",
+        gap.nominal,
+        gap.recalibrated,
+        gap.repaired,
+        gap.ceiling,
+        gap.noise_floor.value,
+        gap.closure.value,
+        gap.closure.interval_95,
+        gap.ratio_to_floor.value,
+        gap.last_third
+    );
+    println!("  {:?}", answer.place.budget);
+    for effect in answer.effects.iter().take(6) {
+        let values: Vec<String> =
+            effect.parameters.iter().map(|p| format!("{} {:.4e}", p.name, p.estimate.value)).collect();
+        println!(
+            "  {} {:.3} {:?} {}",
+            effect.id,
+            effect.probability,
+            effect.gap_share.map(|s| s.value),
+            values.join(" ")
+        );
+    }
+    for set in answer.sets.iter().take(5) {
+        println!(
+            "    {:?} p {:.3} rms {:.3e} evidence {:.1}",
+            set.effects, set.probability, set.rms, set.evidence
+        );
+    }
+    println!(
+        "  rivals {:?}",
+        answer
+            .rivals
+            .iter()
+            .take(3)
+            .map(|r| format!("{}~{} {:.1}", r.effect, r.rival, r.distance))
+            .collect::<Vec<_>>()
+    );
+    println!("  next {:?}", answer.next_experiment.as_ref().map(|e| (&e.text, &e.separates, &e.considered)));
+    println!(
+        "  d {:?} {:?}",
+        answer.detectability,
+        answer.measuring_chain.findings.iter().map(|f| f.effect).collect::<Vec<_>>()
+    );
+    println!(
+        "  {:?}",
+        answer.stages.iter().map(|s| format!("{} {:.2}", s.name, s.seconds)).collect::<Vec<_>>()
+    );
+}
+
+fn answer(observations: &[Observations], nominal: &Nominal) -> Diagnosis {
+    let clock = std::time::Instant::now();
+    diagnose(observations, nominal, &Settings::default(), &|| clock.elapsed().as_secs_f64()).unwrap()
+}
+
+fn shared(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name)
 }
 
-fn nominal(name: &str) -> Nominal {
-    toml::from_str(&std::fs::read_to_string(shared(name)).unwrap()).unwrap()
-}
-
-fn explore(observations: &[Observations], nominal: &Nominal) {
-    let clock = std::time::Instant::now();
-    let kept: Vec<Vec<bool>> = observations.iter().map(|o| vec![true; o.len()]).collect();
-    let data = cut(observations, &kept, nominal).unwrap().thinned(MOST_SEARCHED);
-    println!("{} segments {} samples {:?} period {:?}", data.segments.len(), data.samples(), data.facts, data.period_s);
-    let (data, base) = better_hold(&data, nominal).unwrap();
-    let rms = |squares: f64, freedom: f64| (squares / freedom).sqrt();
-    let deg = if data.quantity == record::Quantity::Position { 180.0 / std::f64::consts::PI } else { 1.0 };
-    println!("nominal {:.5} calibrated {:.5} {:?} [{:.2} s]", rms(base.nominal.squares, base.nominal.freedom()) * deg, rms(base.calibrated.squares, base.calibrated.freedom()) * deg, base.calibrated.point.globals, clock.elapsed().as_secs_f64());
-    let candidates: Vec<Candidate> = Candidate::ALL.iter().copied().filter(|c| c.applies(&data.facts, true, nominal.stiffness() > 0.0)).collect();
-    let breadth = Breadth { most_effects: 3, singles: 8, pairs: 8, beam: 3, additions: 4 };
-    let pool = search(&data, &base.calibrated, &candidates, &breadth, 5.0);
-    let time = pool.autocorrelation_time();
-    println!("tau {time:.2} fits {} rejected {:?} [{:.2} s]", pool.fits.len(), pool.rejected.iter().map(|r| r.iter().map(|c| c.id()).collect::<Vec<_>>()).collect::<Vec<_>>(), clock.elapsed().as_secs_f64());
-    for fit in pool.ranked(time).into_iter().take(14) {
-        let floor = floor(&data, &fit.residuals);
-        println!("{:10.2} rms {:.5} floor {:.5} tau {:.1} {:?} {:?}{}", score(fit, time), rms(fit.squares, fit.freedom()) * deg, floor.value * deg, fit.autocorrelation_time(), fit.hypothesis.ids(), fit.point.globals, if fit.converged { "" } else { " NOT" });
+/// A measured record with its nominal simulator; `None`, with a word, where the data are not there.
+fn measured(record: &str, nominal: &str, options: &ReadOptions) -> Option<(Observations, Nominal)> {
+    if !shared(record).exists() {
+        println!("skipped: {record} is not here");
+        return None;
     }
-}
-
-fn read(name: &str, options: &ReadOptions) -> Observations {
-    let (record, _) = read_file(&shared(name), options).unwrap();
+    let (record, _) = read_file(&shared(record), options).unwrap();
     let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
-    Observations::new(&record, &clock)
+    let nominal = toml::from_str(&std::fs::read_to_string(shared(nominal)).unwrap()).unwrap();
+    Some((Observations::new(&record, &clock), nominal))
 }
 
-fn columns(time: &str, value: &str, input: Option<&str>) -> ReadOptions {
-    let mut columns = CsvColumns::default();
-    columns.time = (!time.is_empty()).then(|| time.to_owned());
-    columns.angle = Some(value.to_owned());
-    columns.input = input.map(str::to_owned);
+fn columns(angle: &str, input: Option<&str>) -> ReadOptions {
+    let columns = CsvColumns {
+        angle: Some(angle.to_owned()),
+        input: input.map(str::to_owned),
+        ..CsvColumns::default()
+    };
     ReadOptions { columns, ..ReadOptions::default() }
 }
 
+fn try_measured(record: &str, nominal: &str, options: &ReadOptions) {
+    if let Some((observations, nominal)) = measured(record, nominal, options) {
+        report(&answer(&[observations], &nominal));
+    }
+}
+
+/// `cargo test --release -p diagnosis trials::rig -- --ignored --nocapture`
 #[test]
-#[ignore]
+#[ignore = "seconds in a release build, a minute without"]
 fn rig() {
     let options = ReadOptions { format: Format::HostLog, ..ReadOptions::default() };
-    explore(&[read("horizontal-pendulum/80P.txt", &options)], &nominal("horizontal-pendulum/nominal.toml"));
+    try_measured("horizontal-pendulum/80P.txt", "horizontal-pendulum/nominal.toml", &options);
 }
 
+/// As [`rig`].
 #[test]
-#[ignore]
+#[ignore = "seconds in a release build, a minute without"]
 fn encoder() {
-    explore(&[read("encoder-pendulum/record-a.csv", &columns("time", "angle", None))], &nominal("encoder-pendulum/nominal.toml"));
+    try_measured("encoder-pendulum/record-a.csv", "encoder-pendulum/nominal.toml", &columns("angle", None));
 }
 
+/// As [`rig`].
 #[test]
-#[ignore]
+#[ignore = "seconds in a release build, a minute without"]
 fn servo() {
-    explore(&[read("servo-pendulum/swing-a.csv", &columns("time_s", "angle_rad", None))], &nominal("servo-pendulum/nominal-a.toml"));
-    explore(&[read("servo-pendulum/swing-b.csv", &columns("time_s", "angle_rad", None))], &nominal("servo-pendulum/nominal-b.toml"));
+    for arm in ["a", "b"] {
+        try_measured(
+            &format!("servo-pendulum/swing-{arm}.csv"),
+            &format!("servo-pendulum/nominal-{arm}.toml"),
+            &columns("angle_rad", None),
+        );
+    }
 }
 
+/// As [`rig`].
 #[test]
-#[ignore]
+#[ignore = "seconds in a release build, a minute without"]
 fn drive() {
-    explore(&[read("positioning-drive/record.csv", &columns("t", "qm_m", Some("vir_V")))], &nominal("positioning-drive/nominal.toml"));
+    let options = columns("qm_m", Some("vir_V"));
+    try_measured("positioning-drive/record.csv", "positioning-drive/nominal.toml", &options);
+}
+
+const OMEGA: f64 = 7.0 * std::f64::consts::PI;
+
+fn nominal() -> Nominal {
+    Nominal::new(1.0, 2.0 * 0.006 * OMEGA, OMEGA * OMEGA, 0.0).unwrap()
+}
+
+/// A record of a system: white noise, then a quantizer, then the sensor's own map where there is one.
+fn record(
+    system: &System,
+    seconds: f64,
+    noise: f64,
+    step: f64,
+    seed: u64,
+    sensor: &dyn Fn(f64, f64) -> f64,
+) -> Observations {
+    let times: Vec<f64> = (0..(seconds * 260.0) as usize).map(|i| i as f64 / 260.0).collect();
+    let motion = simulate(system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
+    let mut generator = Seed::new(seed).child("sensor").generator();
+    let values: Vec<f64> = motion
+        .position
+        .iter()
+        .zip(&times)
+        .map(|(x, t)| {
+            let white: f64 = StandardNormal.sample(&mut generator);
+            let value = sensor(*x, *t) + noise * white;
+            if step > 0.0 { (value / step).round() * step } else { value }
+        })
+        .collect();
+    let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+    let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+    Observations::new(&record, &clock)
+}
+
+fn plain(x: f64, _: f64) -> f64 {
+    x
+}
+
+fn system(effects: &[(&str, &[f64])]) -> System {
+    let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+    System::new(nominal(), active).unwrap()
+}
+
+/// Strengths that move the record by several times the noise of 1 mrad.
+const CASES: &[(&str, &[f64])] = &[
+    ("coulomb_friction", &[0.4]),
+    ("stribeck_friction", &[0.3, 1.2, 1.5]),
+    ("quadratic_drag", &[0.02]),
+    ("cubic_stiffness", &[-20.0]),
+    ("asymmetric_stiffness", &[10.0]),
+    ("backlash", &[0.004]),
+    ("hysteresis", &[1.0, 0.05]),
+    ("end_stop", &[0.55, 400.0, 0.0]),
+    ("stiffness_drift", &[0.001]),
+    ("damping_drift", &[0.03]),
+    ("periodic_forcing", &[1.0, 31.0, 0.3]),
+    ("gravity", &[150.0, 1.2]),
+    ("flexible_coupling", &[0.05, 180.0, 0.2]),
+];
+
+/// `cargo test --release -p diagnosis trials::every_effect_is_found -- --ignored --nocapture`
+#[test]
+#[ignore = "a minute in a release build"]
+fn every_effect_is_found() {
+    let mut missed = Vec::new();
+    for (number, case) in CASES.iter().enumerate() {
+        let observations = record(&system(&[*case]), 25.0, 1e-3, 0.0, number as u64, &plain);
+        let answer = answer(&[observations], &nominal());
+        println!("== {}", case.0);
+        report(&answer);
+        if answer.verdict.effects.first() != Some(&case.0) {
+            missed.push(case.0);
+        }
+    }
+    assert!(missed.is_empty(), "{missed:?}");
+}
+
+/// As [`every_effect_is_found`].
+#[test]
+#[ignore = "a minute in a release build"]
+fn clean_records_lack_nothing() {
+    let off = nominal();
+    let other = Nominal::new(1.0, 1.2 * off.damping(), 0.8 * off.stiffness(), 0.0).unwrap();
+    for seed in 0..10 {
+        let observations = record(&system(&[]), 25.0, 1e-3, 0.0, 100 + seed, &plain);
+        let clean = answer(std::slice::from_ref(&observations), &off);
+        println!("{:?} {:?}", clean.verdict, clean.stages.iter().map(|s| s.seconds).sum::<f64>());
+        assert_eq!(clean.verdict.status, Status::None);
+        let shifted = answer(&[observations], &other);
+        println!("{:?}", shifted.verdict);
+        assert_eq!(shifted.verdict.status, Status::Calibration);
+    }
 }

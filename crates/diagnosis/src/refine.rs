@@ -1,0 +1,55 @@
+//! The best sets once more, on every sample and to convergence.
+
+use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::score::score;
+use crate::search::{Pool, vanished};
+use crate::segments::Data;
+use rayon::prelude::*;
+
+/// Refits the best `most` sets of a pool on other data with the same segments. The calibrated simulator, fitted there
+/// already, comes first.
+pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize) -> Pool {
+    let time = pool.autocorrelation_time();
+    let chosen: Vec<&Fit> = pool
+        .ranked(time)
+        .into_iter()
+        .filter(|fit| !fit.hypothesis.candidates.is_empty())
+        .take(most)
+        .collect();
+    let refined: Vec<Option<Fit>> = chosen
+        .par_iter()
+        .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
+        .collect();
+    let (gone, fits): (Vec<Fit>, Vec<Fit>) =
+        refined.into_iter().flatten().partition(|fit| vanished(data, fit));
+    let mut rejected = pool.rejected.clone();
+    rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+    let mut all = vec![calibrated.clone()];
+    all.extend(fits);
+    Pool { fits: all, rejected }
+}
+
+/// The fit of a set with one member left out, and what that costs: begun where the set was.
+pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> Option<Fit> {
+    let parts = full.hypothesis.parts(&data.facts, &full.point.globals);
+    let members: Vec<_> = full
+        .hypothesis
+        .candidates
+        .iter()
+        .zip(parts)
+        .enumerate()
+        .filter(|(index, _)| keep(*index))
+        .map(|(_, (candidate, part))| (*candidate, part.to_vec()))
+        .collect();
+    let candidates: Vec<_> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = full.hypothesis.with(&candidates);
+    let calibrated = full.point.globals.iter().copied().take(full.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    fit(data, &hypothesis, Point { globals, starts }, Moving::All, Effort::FINAL).ok()
+}
+
+/// The best of two fits of the same set.
+pub(crate) fn better<'a>(one: &'a Fit, other: &'a Fit, time: f64) -> &'a Fit {
+    if score(one, time) >= score(other, time) { one } else { other }
+}
