@@ -9,7 +9,7 @@ use std::process::Command;
 /// the test: somebody has to say where it belongs.
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
-        "record" | "seed" | "settings" => 0,
+        "record" | "seed" | "settings" | "dynamics" => 0,
         "envelope" => 1,
         "estimator" => 2,
         "neural" | "sparse" => 3,

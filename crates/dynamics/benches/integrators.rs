@@ -1,0 +1,3 @@
+//! Time of the integrators.
+
+fn main() {}

@@ -1,0 +1,357 @@
+//! The march from piece to piece.
+
+use super::Tolerance;
+use super::gauss::Gauss;
+use super::motion::{Event, Happening, Motion};
+use super::recorder::Recorder;
+use super::step::{LENGTH, Solved, Step, Vector, state};
+use crate::edges::Edge;
+use crate::error::DynamicsError;
+use crate::field::{Field, Mode};
+use crate::input::Input;
+use crate::system::{Drive, Start, System};
+
+/// How steps are chosen.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Stepping {
+    /// By the error of each.
+    Adaptive(Tolerance),
+    /// All of one size in seconds, but cut at events: for tests of the order.
+    #[cfg_attr(not(test), allow(dead_code, reason = "tests of the order of convergence use it"))]
+    Fixed(f64),
+}
+
+/// Events in a row without any time passing, beyond which the march is stuck.
+const MOST_EVENTS_AT_ONCE: usize = 64;
+
+/// Position beyond which a motion counts as running away, in the coordinate's unit.
+const BOUND: f64 = 1e12;
+
+/// A simulation under way.
+pub(crate) struct Run<'a> {
+    field: Field<f64>,
+    directed: bool,
+    gauss: Gauss,
+    stepping: Stepping,
+    drive: Drive<'a>,
+    time: f64,
+    vector: Vector,
+    mode: Mode,
+    /// Largest size so far of each state variable.
+    scale: Vector,
+    /// Size of the next step, in seconds.
+    size: f64,
+    recorder: Recorder,
+}
+
+impl<'a> Run<'a> {
+    pub(crate) fn new(
+        system: &System,
+        start: Start,
+        input: Option<&'a Input>,
+        times: &[f64],
+        stepping: Stepping,
+        stages: usize,
+    ) -> Result<Self, DynamicsError> {
+        start.check()?;
+        crate::times::check(times)?;
+        let field = system.field();
+        let time = times.first().copied().unwrap_or(0.0);
+        let duration = times.last().copied().unwrap_or(0.0) - time;
+        let drive = Drive::new(input, field.nominal.input_gain, system.input_delay(), time);
+        let mut vector = [0.0; LENGTH];
+        let hidden = field.relaxed(start.position, start.velocity);
+        for (slot, value) in vector.iter_mut().zip([start.position, start.velocity].into_iter().chain(hidden))
+        {
+            *slot = value;
+        }
+        let mode = field.mode(&state(time, &vector, drive.torque(time)));
+        let frequency = system.nominal().angular_frequency();
+        let size = match stepping {
+            Stepping::Fixed(size) => size,
+            Stepping::Adaptive(_) if frequency > 0.0 => 0.1 / frequency,
+            Stepping::Adaptive(_) => 1e-3 * duration,
+        };
+        let recorder = Recorder::new(&field, times.len());
+        Ok(Self {
+            directed: field.directed(),
+            field,
+            gauss: Gauss::new(stages),
+            stepping,
+            drive,
+            time,
+            vector,
+            mode,
+            scale: vector.map(f64::abs),
+            size,
+            recorder,
+        })
+    }
+
+    /// Integrates until every time is recorded.
+    pub(crate) fn motion(mut self, times: &[f64]) -> Result<Motion, DynamicsError> {
+        let Some(&end) = times.last() else { return Ok(self.recorder.motion) };
+        let mut step = Step::new(self.gauss.stages(), self.variables());
+        let mut at_once = 0;
+        while !self.recorder.complete(times) {
+            self.cross_knots();
+            let before = self.time;
+            self.advance(&mut step, end, times)?;
+            at_once = if self.time > before { 0 } else { at_once + 1 };
+            if at_once > MOST_EVENTS_AT_ONCE {
+                return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: 0.0 });
+            }
+            self.recorder.motion.steps += 1;
+            if let Stepping::Adaptive(tolerance) = self.stepping
+                && self.recorder.motion.steps > tolerance.most_steps
+            {
+                let steps = self.recorder.motion.steps;
+                return Err(DynamicsError::TooManySteps { steps, time_s: self.time });
+            }
+        }
+        Ok(self.recorder.motion)
+    }
+
+    fn variables(&self) -> usize {
+        let hidden = self.field.terms.iter().map(|term| term.effect.description().hidden_states);
+        2 + hidden.sum::<usize>()
+    }
+
+    /// Passes the input's knots that lie at the present time, and looks what piece the state is on then.
+    fn cross_knots(&mut self) {
+        let mut crossed = false;
+        while self.drive.until() <= self.time {
+            self.drive.advance();
+            crossed = true;
+        }
+        if crossed {
+            self.mode = self.field.mode(&state(self.time, &self.vector, self.drive.torque(self.time)));
+        }
+    }
+
+    /// One step, to its full size or to the first edge.
+    fn advance(&mut self, step: &mut Step, end: f64, times: &[f64]) -> Result<(), DynamicsError> {
+        // A state on the far side of where its mode belongs: rounding at a balance of forces.
+        if self.directed && self.vector_velocity() * self.mode.direction < 0.0 {
+            self.mode = self.field.mode(&state(self.time, &self.vector, self.drive.torque(self.time)));
+        }
+        let room = (self.drive.until().min(end) - self.time).max(0.0);
+        let mut size = self.size.min(room);
+        loop {
+            step.from = self.time;
+            step.size = size;
+            step.begin = self.vector;
+            let solved =
+                step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &self.scale_with(size));
+            let factor = match (solved, self.stepping) {
+                (Solved::TooLarge, _) => 0.25,
+                (Solved::Converged, Stepping::Fixed(_)) => 1.0,
+                (Solved::Converged, Stepping::Adaptive(tolerance)) => self.factor(step, tolerance.relative),
+            };
+            if factor >= 1.0 {
+                // A step cut short by the end of a piece says little about the next.
+                if matches!(self.stepping, Stepping::Adaptive(_)) {
+                    self.size = self.size.max(size * factor.min(if size < self.size { 1.0 } else { 4.0 }));
+                }
+                break;
+            }
+            size *= factor;
+            self.size = size;
+            if size <= f64::EPSILON * self.time.abs().max(end.abs()) {
+                if !self.vector.iter().all(|value| value.is_finite() && value.abs() < BOUND) {
+                    return Err(DynamicsError::Diverged { time_s: self.time, position: self.position() });
+                }
+                return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: size });
+            }
+        }
+        let edge = self.first_edge(step).map(|(edge, tau)| {
+            let landed = if tau > 0.0 { self.land(step, edge, tau) } else { false };
+            (edge, landed)
+        });
+        match edge {
+            None => self.accept(step, None, times),
+            Some((edge, true)) => self.accept(step, Some(edge), times),
+            Some((edge, false)) => {
+                self.cross(edge);
+                Ok(())
+            }
+        }
+    }
+
+    fn position(&self) -> f64 {
+        let [position, ..] = self.vector;
+        position
+    }
+
+    fn vector_velocity(&self) -> f64 {
+        let [_, velocity, ..] = self.vector;
+        velocity
+    }
+
+    /// The sizes that errors are measured by; a variable that has not moved yet counts by how far it would.
+    fn scale_with(&self, size: f64) -> Vector {
+        let rates = super::step::rates(&self.field, &self.mode, &self.drive, self.time, &self.vector);
+        let mut scale = self.scale;
+        for (scale, rate) in scale.iter_mut().zip(rates) {
+            *scale = scale.max(rate.abs() * size);
+        }
+        scale
+    }
+
+    /// By how much the step may change for the next to meet the tolerance; below 1 it has to be repeated.
+    fn factor(&self, step: &Step, relative: f64) -> f64 {
+        let mut scale = self.scale;
+        for stage in &step.stages {
+            for (scale, value) in scale.iter_mut().zip(stage) {
+                *scale = scale.max(value.abs());
+            }
+        }
+        let mut error = step.error(&scale) / relative;
+        if self.mode.sticks() {
+            error = error.max(self.torque_tail(step) / relative);
+        }
+        let order = self.gauss.stages() as f64;
+        let factor = 0.9 * error.max(1e-300).powf(-1.0 / order);
+        if error > 1.0 { factor.clamp(0.1, 0.9) } else { factor.clamp(1.0, 4.0) }
+    }
+
+    /// While stuck nothing moves but the torque: the step has to resolve it, or a break-away is missed.
+    fn torque_tail(&self, step: &Step) -> f64 {
+        let holding = self.field.holding_torque().unwrap_or(f64::INFINITY).max(f64::MIN_POSITIVE);
+        let (mut last, mut before) = (0.0, 0.0);
+        let [.., lower, upper] = self.gauss.analysis.as_slice() else { return 0.0 };
+        for (((node, stage), upper), lower) in self.gauss.nodes.iter().zip(&step.stages).zip(upper).zip(lower)
+        {
+            let time = step.from + node * step.size;
+            let torque = self.field.torque(&state(time, stage, self.drive.torque(time)), &self.mode);
+            last += upper * torque;
+            before += lower * torque;
+        }
+        f64::max(last.abs(), 0.1 * before.abs()) / holding
+    }
+
+    /// The edge that the step meets first, and the part of the step at which its polynomial meets it.
+    fn first_edge(&self, step: &Step) -> Option<(Edge, f64)> {
+        let mut margins: Vec<(Edge, f64)> = Vec::with_capacity(8);
+        let begin = state(step.from, &step.begin, self.drive.torque(step.from));
+        self.field.edges(self.directed, &begin, &self.mode, |edge, margin| margins.push((edge, margin)));
+        if margins.is_empty() {
+            return None;
+        }
+        let end = step.at(1.0);
+        let stages = self.gauss.nodes.iter().copied().zip(step.stages.iter().copied());
+        let mut from = 0.0;
+        for (tau, vector) in stages.chain([(1.0, end)]) {
+            let time = step.from + tau * step.size;
+            let state = state(time, &vector, self.drive.torque(time));
+            let mut first: Option<(Edge, f64)> = None;
+            let mut number = 0;
+            self.field.edges(self.directed, &state, &self.mode, |edge, margin| {
+                let Some((_, last)) = margins.get_mut(number) else { return };
+                number += 1;
+                if margin < 0.0 {
+                    // A reversal counts only once the motion has got under way.
+                    let met = match (edge, *last > 0.0) {
+                        (_, true) => Some(self.root(step, edge, from, tau)),
+                        (Edge::Reversal, false) => None,
+                        (_, false) => Some(from),
+                    };
+                    if let Some(met) = met
+                        && first.is_none_or(|(_, other)| met < other)
+                    {
+                        first = Some((edge, met));
+                    }
+                }
+                *last = margin;
+            });
+            if first.is_some() {
+                return first;
+            }
+            from = tau;
+        }
+        None
+    }
+
+    fn margin(&self, step: &Step, edge: Edge, tau: f64) -> f64 {
+        let time = step.from + tau * step.size;
+        let state = state(time, &step.at(tau), self.drive.torque(time));
+        self.field.distance(self.directed, &state, &self.mode, edge).unwrap_or(f64::INFINITY)
+    }
+
+    /// The zero of a margin on the polynomial, between a place where it is positive and one where it is
+    /// negative.
+    fn root(&self, step: &Step, edge: Edge, from: f64, to: f64) -> f64 {
+        crate::root::bracketed(from, to, |tau| self.margin(step, edge, tau))
+    }
+
+    /// Solves the step anew so that it ends on the edge. False where the edge lies at its very beginning.
+    fn land(&self, step: &mut Step, edge: Edge, tau: f64) -> bool {
+        let mut size = tau * step.size;
+        let resolution = f64::EPSILON * step.from.abs().max(size);
+        if size <= resolution {
+            return false;
+        }
+        let scale = self.scale_with(size);
+        for _ in 0..4 {
+            step.size = size;
+            let _ = step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale);
+            let (inner, outer) = (self.margin(step, edge, 0.999), self.margin(step, edge, 1.0));
+            let slope = (outer - inner) / (0.001 * size);
+            let correction = -outer / slope;
+            if !correction.is_finite() || correction.abs() > 0.01 * size {
+                break;
+            }
+            if correction.abs() <= resolution {
+                break;
+            }
+            size += correction;
+        }
+        true
+    }
+
+    fn accept(&mut self, step: &Step, edge: Option<Edge>, times: &[f64]) -> Result<(), DynamicsError> {
+        self.recorder.step(&self.gauss, &self.field, &self.mode, &self.drive, step, times);
+        self.vector = step.at(1.0);
+        self.time = if (step.from + step.size - self.drive.until()).abs() <= f64::EPSILON * step.from.abs() {
+            self.drive.until()
+        } else {
+            step.from + step.size
+        };
+        for (scale, value) in self.scale.iter_mut().zip(self.vector) {
+            *scale = scale.max(value.abs());
+        }
+        let position = self.position();
+        if !position.is_finite() || position.abs() > BOUND {
+            return Err(DynamicsError::Diverged { time_s: self.time, position });
+        }
+        if let Some(edge) = edge {
+            self.cross(edge);
+        }
+        Ok(())
+    }
+
+    /// Passes to the piece behind an edge.
+    fn cross(&mut self, edge: Edge) {
+        if edge == Edge::Reversal {
+            let [_, velocity, ..] = &mut self.vector;
+            *velocity = 0.0;
+        }
+        let here = state(self.time, &self.vector, self.drive.torque(self.time));
+        let next = self.field.behind(&here, &self.mode, edge);
+        let happening = match edge {
+            Edge::Reversal if next.sticks() => Happening::Stick,
+            Edge::Reversal => Happening::Reversal,
+            Edge::BreakAway { .. } => Happening::BreakAway,
+            Edge::Region { term, .. } => Happening::Region {
+                effect: self.field.terms.get(term).map_or("", |term| term.effect.description().id),
+                from: self.mode.regions.get(term).copied().unwrap_or(0),
+                to: next.regions.get(term).copied().unwrap_or(0),
+            },
+        };
+        self.mode = next;
+        let [_, _, hidden @ ..] = &mut self.vector;
+        self.field.settle(&next, hidden);
+        let event = Event { time: self.time, position: here.position, velocity: here.velocity, happening };
+        self.recorder.motion.events.push(event);
+    }
+}
