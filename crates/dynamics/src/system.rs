@@ -125,6 +125,9 @@ impl System {
 fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
     match active.effect() {
         Effect::System(effect) => Ok(effect),
+        Effect::MeasuringChain(effect) => {
+            Err(DynamicsError::NotInTheSystem { effect: effect.description().id })
+        }
     }
 }
 
