@@ -25,6 +25,7 @@ pub mod reference;
 pub mod registry;
 mod root;
 pub mod scalar;
+pub mod sensitivity;
 mod system;
 #[cfg(test)]
 mod tests;

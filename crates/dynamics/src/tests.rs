@@ -173,7 +173,8 @@ fn the_signs_are_those_of_the_equations() {
     let depth = 0.2;
     let expected = [
         (CoulombFriction, 0, -0.7),
-        (StribeckFriction, 0, -(0.4 + 0.5 * (-(0.8 / 1.1_f64).powi(2)).exp())),
+        (StribeckFriction, 0, -0.4),
+        (StribeckFriction, 1, -(0.4 + 0.5 * (-(0.8 / 1.1_f64).powi(2)).exp())),
         (QuadraticDrag, 0, -0.7 * 0.8 * 0.8),
         (CubicStiffness, 0, -0.7 * 0.4_f64.powi(3)),
         (AsymmetricStiffness, 0, -0.7 * 0.4_f64.powi(2)),

@@ -2,7 +2,7 @@
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
-use crate::law::{Law, Moment, Values};
+use crate::law::{Law, Margins, Moment, Values};
 use crate::nominal::Nominal;
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -45,21 +45,51 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Dry friction that falls off with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇).
+/// Dry friction that falls off with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇), holding at rest against up
+/// to τ_s.
+///
+/// Regions: 1 below [`FAST`]·v_s, 0 above, where the excess is below rounding and left out. So narrow a peak at
+/// slow speed cannot slip between the steps of an integrator.
 #[derive(Debug, Clone, Copy)]
 pub struct StribeckFriction;
+
+/// Speed in units of v_s above which exp(−(θ̇/v_s)²) is below 2^−52.
+const FAST: f64 = 6.01;
 
 impl Law for StribeckFriction {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
     const DIRECTED: bool = true;
 
     fn torque<S: Scalar>(&[torque, static_torque, velocity, _]: &Values<S>, moment: &Moment<S>) -> S {
-        let speed = moment.velocity / velocity;
-        -(torque + (static_torque - torque) * (-(speed * speed)).exp()) * moment.direction
+        match moment.region {
+            0 => -torque * moment.direction,
+            _ => {
+                let speed = moment.velocity / velocity;
+                let excess = (static_torque - torque) * (-(speed * speed)).exp();
+                -(torque + excess) * moment.direction
+            }
+        }
     }
 
     fn holding_torque<S: Scalar>(&[_, static_torque, ..]: &Values<S>) -> Option<S> {
         Some(static_torque)
+    }
+
+    fn region(&[_, _, velocity, _]: &Values<f64>, moment: &Moment<f64>) -> i8 {
+        i8::from(moment.velocity.abs() <= FAST * velocity)
+    }
+
+    fn margins<S: Scalar>(&[_, _, velocity, _]: &Values<S>, moment: &Moment<S>) -> Margins<S> {
+        let above = moment.velocity * moment.direction - velocity * FAST;
+        match moment.region {
+            _ if moment.direction == 0.0 => [None, None],
+            0 => [Some(above), None],
+            _ => [Some(-above), None],
+        }
+    }
+
+    fn beyond(region: i8, _: usize) -> i8 {
+        1 - region
     }
 
     fn check(&[torque, static_torque, ..]: &Values<f64>, _: &Nominal) -> Result<(), DynamicsError> {

@@ -27,6 +27,19 @@ const MOST_EVENTS_AT_ONCE: usize = 64;
 /// Position beyond which a motion counts as running away, in the coordinate's unit.
 const BOUND: f64 = 1e12;
 
+/// Iterations of the stage equations beyond which a step counts as too large.
+const MOST_ITERATIONS: usize = 30;
+
+/// How a step towards an edge ended.
+enum Landing {
+    /// On the edge.
+    OnTheEdge,
+    /// The edge lies where the step begins.
+    AtOnce,
+    /// The stage equations were not solved.
+    Failed,
+}
+
 /// A simulation under way.
 pub(crate) struct Run<'a> {
     field: Field<f64>,
@@ -141,8 +154,9 @@ impl<'a> Run<'a> {
             step.from = self.time;
             step.size = size;
             step.begin = self.vector;
+            let scale = self.scale_with(size);
             let solved =
-                step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &self.scale_with(size));
+                step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale, MOST_ITERATIONS);
             let factor = match (solved, self.stepping) {
                 (Solved::TooLarge, _) => 0.25,
                 (Solved::Converged, Stepping::Fixed(_)) => 1.0,
@@ -164,15 +178,15 @@ impl<'a> Run<'a> {
                 return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: size });
             }
         }
-        let edge = self.first_edge(step).map(|(edge, tau)| {
-            let landed = if tau > 0.0 { self.land(step, edge, tau) } else { false };
-            (edge, landed)
-        });
-        match edge {
-            None => self.accept(step, None, times),
-            Some((edge, true)) => self.accept(step, Some(edge), times),
-            Some((edge, false)) => {
+        let Some((edge, tau)) = self.first_edge(step) else { return self.accept(step, None, times) };
+        match self.land(step, edge, tau) {
+            Landing::OnTheEdge => self.accept(step, Some(edge), times),
+            Landing::AtOnce => {
                 self.cross(edge);
+                Ok(())
+            }
+            Landing::Failed => {
+                self.size = 0.5 * step.size;
                 Ok(())
             }
         }
@@ -190,10 +204,17 @@ impl<'a> Run<'a> {
 
     /// The sizes that errors are measured by; a variable that has not moved yet counts by how far it would.
     fn scale_with(&self, size: f64) -> Vector {
-        let rates = super::step::rates(&self.field, &self.mode, &self.drive, self.time, &self.vector);
+        let rates =
+            |time, vector: &Vector| super::step::rates(&self.field, &self.mode, &self.drive, time, vector);
+        let now = rates(self.time, &self.vector);
+        let mut later = self.vector;
+        for (value, rate) in later.iter_mut().zip(now) {
+            *value += rate * size;
+        }
+        let later = rates(self.time + size, &later);
         let mut scale = self.scale;
-        for (scale, rate) in scale.iter_mut().zip(rates) {
-            *scale = scale.max(rate.abs() * size);
+        for (scale, (now, later)) in scale.iter_mut().zip(now.into_iter().zip(later)) {
+            *scale = scale.max(now.abs() * size).max(later.abs() * size);
         }
         scale
     }
@@ -284,29 +305,31 @@ impl<'a> Run<'a> {
         crate::root::bracketed(from, to, |tau| self.margin(step, edge, tau))
     }
 
-    /// Solves the step anew so that it ends on the edge. False where the edge lies at its very beginning.
-    fn land(&self, step: &mut Step, edge: Edge, tau: f64) -> bool {
+    /// Solves the step anew so that it ends on the edge.
+    fn land(&self, step: &mut Step, edge: Edge, tau: f64) -> Landing {
         let mut size = tau * step.size;
         let resolution = f64::EPSILON * step.from.abs().max(size);
         if size <= resolution {
-            return false;
+            return Landing::AtOnce;
         }
         let scale = self.scale_with(size);
         for _ in 0..4 {
             step.size = size;
-            let _ = step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale);
+            // Twice the iterations: what a slightly longer step took must be enough here.
+            let iterations = 2 * MOST_ITERATIONS;
+            let solved = step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale, iterations);
+            if matches!(solved, Solved::TooLarge) {
+                return Landing::Failed;
+            }
             let (inner, outer) = (self.margin(step, edge, 0.999), self.margin(step, edge, 1.0));
             let slope = (outer - inner) / (0.001 * size);
             let correction = -outer / slope;
-            if !correction.is_finite() || correction.abs() > 0.01 * size {
-                break;
-            }
-            if correction.abs() <= resolution {
+            if !correction.is_finite() || correction.abs() > 0.01 * size || correction.abs() <= resolution {
                 break;
             }
             size += correction;
         }
-        true
+        Landing::OnTheEdge
     }
 
     fn accept(&mut self, step: &Step, edge: Option<Edge>, times: &[f64]) -> Result<(), DynamicsError> {
