@@ -69,11 +69,7 @@ impl Plan {
     /// As [`Plan::draw`] and [`generate`].
     pub fn record(&self, system: usize, record: usize) -> Result<(Record, Sealed<Truth>), GenerationError> {
         let drawn = self.draw(system)?;
-        let truth = drawn.truths.get(record).ok_or(GenerationError::Sampling {
-            what: "record number",
-            value: record as f64,
-            expected: "a number below simulate.records",
-        })?;
+        let truth = drawn.truths.get(record).ok_or(GenerationError::NoSuchRecord { record })?;
         Ok((generate(truth)?, Sealed::seal(truth)?))
     }
 

@@ -24,6 +24,12 @@ pub enum GenerationError {
         /// What is admitted.
         expected: &'static str,
     },
+    /// A record beyond those of a system.
+    #[error("a system has no record {record}; numbers run from 0 to one below simulate.records")]
+    NoSuchRecord {
+        /// The number asked for.
+        record: usize,
+    },
     /// The truth could not be sealed.
     #[error(transparent)]
     Seal(#[from] SealError),

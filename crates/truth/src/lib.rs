@@ -10,5 +10,5 @@
 mod sealed;
 mod truth;
 
-pub use sealed::{SealError, Sealed};
+pub use sealed::{SealError, Sealed, digest};
 pub use truth::{Draws, Excitation, Sampling, TRUTH_SCHEMA, Truth, Waveform};

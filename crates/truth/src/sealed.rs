@@ -91,7 +91,9 @@ impl<T: Serialize + DeserializeOwned> Sealed<T> {
     }
 }
 
-fn digest(text: &str) -> String {
+/// SHA-256 of a text as seals and manifests write it: `sha256:` and 64 hexadecimal digits.
+#[must_use]
+pub fn digest(text: &str) -> String {
     let hex: String = Sha256::digest(text.as_bytes()).iter().map(|byte| format!("{byte:02x}")).collect();
     format!("sha256:{hex}")
 }
