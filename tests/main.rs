@@ -21,4 +21,5 @@ mod measured_records;
 mod nist;
 mod recipe;
 mod runs;
+mod simulation;
 mod support;
