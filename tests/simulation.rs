@@ -111,6 +111,14 @@ fn the_shipped_record_resembles_the_papers() {
     assert!((number(&found, "/oracle/decay_rate") / 0.191 - 1.0).abs() < 0.03, "{}", found["oracle"]);
     assert!((number(&found, "/oracle/r_squared") - 0.964).abs() < 0.02, "{}", found["oracle"]);
     assert!(number(&found, "/oracle/residual_autocorrelation") > 0.5);
+    let document = std::fs::read_to_string(root().join("experiments/default-record/README.md")).unwrap();
+    let stated = format!(
+        "it gives {} peaks, λ = {:.4} 1/s and\nR² = {:.3}",
+        number(&found, "/envelope/peaks"),
+        number(&found, "/oracle/decay_rate"),
+        number(&found, "/oracle/r_squared")
+    );
+    assert!(document.contains(&stated), "{stated}");
     let (samples, resolution) = (number(&found, "/data/samples"), number(&found, "/data/resolution"));
     assert_eq!(samples, 7_606.0);
     assert!((resolution / (std::f64::consts::TAU / 4096.0) - 1.0).abs() < 1e-3);

@@ -1,5 +1,7 @@
 //! Time of a simulated record: 25 s at 260 Hz with friction, drag and gravity, through an encoder's chain.
 
+#![allow(missing_docs, clippy::expect_used, reason = "a benchmark")]
+
 use settings::Document;
 use simulator::{Plan, csv_text};
 

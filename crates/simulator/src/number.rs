@@ -136,6 +136,18 @@ fn read_prior(
         }
         (None, None, Some(mean), Some(deviation)) if given.scale.is_none() => {
             inside("mean", mean)?;
+            let width = key.range.maximum - key.range.minimum;
+            if deviation > width {
+                let name = dotted(&name, "deviation");
+                let expected = format!("at most {width}, the width of the range");
+                return Err(bad_value(
+                    origin(document, &name),
+                    &name,
+                    deviation.to_string(),
+                    expected,
+                    key.unit,
+                ));
+            }
             Ok(Prior::Normal { mean, deviation })
         }
         _ => {

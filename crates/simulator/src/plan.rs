@@ -137,13 +137,13 @@ const EFFECT_ID: Field = Field {
     ..PLAIN
 };
 
-fn nominal_keys(units: Units) -> [NumberKey; 5] {
+fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
     use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
     let key = |key, range, default, quantity: dynamics::Quantity, meaning| NumberKey {
         key,
         range,
         default,
-        unit: quantity.unit(units),
+        unit: units.of(quantity),
         meaning,
     };
     [
@@ -167,12 +167,12 @@ fn nominal_keys(units: Units) -> [NumberKey; 5] {
     ]
 }
 
-fn start_keys(units: Units) -> [NumberKey; 2] {
+fn start_keys(units: ConfiguredUnits) -> [NumberKey; 2] {
     let key = |key, default, quantity: dynamics::Quantity, meaning| NumberKey {
         key,
         range: Range::ANY,
         default,
-        unit: quantity.unit(units),
+        unit: units.of(quantity),
         meaning,
     };
     [
@@ -181,22 +181,22 @@ fn start_keys(units: Units) -> [NumberKey; 2] {
     ]
 }
 
-fn noise_key(units: Units) -> NumberKey {
+fn noise_key(units: ConfiguredUnits) -> NumberKey {
     NumberKey {
         key: "noise",
         range: Range::NON_NEGATIVE,
         default: Default::Float(0.0),
-        unit: dynamics::Quantity::Observed.unit(units),
-        meaning: "Standard deviation of the sensor's white noise, in the observed quantity's unit.",
+        unit: units.of(dynamics::Quantity::Observed),
+        meaning: "Standard deviation of the sensor's white noise.",
     }
 }
 
-fn parameter_keys(description: &Description, units: Units) -> Vec<NumberKey> {
+fn parameter_keys(description: &Description, units: ConfiguredUnits) -> Vec<NumberKey> {
     let key = |parameter: &dynamics::Parameter| NumberKey {
         key: parameter.name,
         range: parameter.range,
         default: Default::Required,
-        unit: parameter.quantity.unit(units),
+        unit: units.of(parameter.quantity),
         meaning: parameter.meaning,
     };
     description.parameters.iter().map(key).collect()
@@ -211,7 +211,7 @@ impl Plan {
     /// [`SettingsError`], with file, line and column or the override that caused it.
     pub fn resolve(document: &Document) -> Result<Self, SettingsError> {
         let nominal_table = if document.get("inertia").is_some() { "" } else { "nominal" };
-        let units = units(document, nominal_table);
+        let units = ConfiguredUnits::of_document(document, nominal_table);
         let effects = named_effects(document)?;
         let parameters: Vec<Vec<NumberKey>> =
             effects.iter().map(|(_, effect)| parameter_keys(effect.description(), units)).collect();
@@ -293,15 +293,54 @@ impl Plan {
 }
 
 /// The units that numbers are in, for messages and comments: per inertia where that is given as exactly 1.
-fn units(document: &Document, nominal_table: &str) -> Units {
-    let text = |key: &str| document.get(&dotted(nominal_table, key)).map(|leaf| leaf.value.to_string());
-    let coordinate = match text("coordinate").as_deref() {
-        Some("\"displacement\"") => Coordinate::Displacement,
-        _ => Coordinate::Angle,
-    };
-    match text("inertia").and_then(|number| number.parse::<f64>().ok()) {
-        Some(1.0) => Units::PerInertia(coordinate),
-        _ => Units::Si(coordinate),
+#[derive(Debug, Clone, Copy)]
+struct ConfiguredUnits {
+    units: Units,
+    observed: Observed,
+}
+
+impl ConfiguredUnits {
+    fn of_document(document: &Document, nominal_table: &str) -> Self {
+        let value = |key: &str| document.get(key).map(|leaf| &leaf.value);
+        let coordinate = match value(&dotted(nominal_table, "coordinate")).and_then(|value| value.as_str()) {
+            Some("displacement") => Coordinate::Displacement,
+            _ => Coordinate::Angle,
+        };
+        let inertia = value(&dotted(nominal_table, "inertia")).map(ToString::to_string);
+        let units = match inertia.and_then(|number| number.parse::<f64>().ok()) {
+            Some(1.0) => Units::PerInertia(coordinate),
+            _ => Units::Si(coordinate),
+        };
+        let observed = match value("sensor.observes").and_then(|value| value.as_str()) {
+            Some("velocity") => Observed::Velocity,
+            Some("acceleration") => Observed::Acceleration,
+            _ => Observed::Position,
+        };
+        Self { units, observed }
+    }
+
+    fn of(self, quantity: dynamics::Quantity) -> &'static str {
+        let derivatives = match self.observed {
+            Observed::Position => 0,
+            Observed::Velocity => 1,
+            Observed::Acceleration => 2,
+        };
+        let order = match quantity {
+            dynamics::Quantity::Observed => derivatives,
+            dynamics::Quantity::ObservedPerTime => derivatives + 1,
+            _ => return quantity.unit(self.units),
+        };
+        let (Units::Si(coordinate) | Units::PerInertia(coordinate)) = self.units;
+        match (coordinate, order) {
+            (Coordinate::Angle, 0) => "rad",
+            (Coordinate::Angle, 1) => "rad/s",
+            (Coordinate::Angle, 2) => "rad/s^2",
+            (Coordinate::Angle, _) => "rad/s^3",
+            (Coordinate::Displacement, 0) => "m",
+            (Coordinate::Displacement, 1) => "m/s",
+            (Coordinate::Displacement, 2) => "m/s^2",
+            (Coordinate::Displacement, _) => "m/s^3",
+        }
     }
 }
 

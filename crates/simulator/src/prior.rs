@@ -34,8 +34,9 @@ pub enum Prior {
     },
 }
 
-/// Most draws of a normal prior until one falls into the range. At worst half of it does where the mean lies
-/// inside (as the configuration is held to), so that so many fail once in 10³⁰ times.
+/// Most draws of a normal prior until one falls into the range. A configuration is held to a mean inside and a
+/// deviation up to the range's width, so that at worst 0.34 of the draws fall into it and so many fail once in
+/// 10¹⁸ times.
 const MOST_DRAWS: usize = 100;
 
 impl Prior {

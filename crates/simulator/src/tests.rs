@@ -304,11 +304,28 @@ fn mistakes_are_pointed_at() {
             "`simulate.effects_per_system` is 3; expected at most 2",
         ),
         ("position = { from = 0.3, to = 0.7 }", "", "`start.position` is missing"),
+        (
+            "mean = 1.9e-4, deviation = 1e-5",
+            "mean = -1.9e-4, deviation = 1e-5",
+            "`nominal.damping.mean` is -0.00019; expected a finite number of 0 or above",
+        ),
+        (
+            "probability = 0\nparameters.rate = 1e-3",
+            "probability = 0\nparameters.rat = 1e-3",
+            "did you mean `effects.3.parameters.rate`?",
+        ),
         ("seconds = 0.2", "second = 0.2", "unknown key `record.second`; did you mean `record.seconds`?"),
     ] {
         let found = message(old, new);
         assert!(found.contains(expected), "{found}");
     }
+    let text = format!(
+        "{RIG}[[effects]]\nid = 'clock_drift'\nparameters.change = 0\nparameters.rate = {{ mean = 0, deviation = 9 }}\n"
+    );
+    let wide = plan_of(&text, &[]).unwrap_err();
+    assert!(wide.contains("`effects.4.parameters.rate.deviation` is 9; expected at most 1.5"), "{wide}");
+    let gyroscope = plan_of(RIG, &["sensor.observes=velocity", "sensor.noise=-1"]).unwrap_err();
+    assert!(gyroscope.contains("from 0 up (rad/s)"), "{gyroscope}");
     let impossible = |overrides: &[&str]| plan(RIG, overrides).record(0, 0).unwrap_err().to_string();
     assert!(impossible(&["effects.3.parameters.interval=1e-3"]).contains("holds zero samples"));
     assert!(impossible(&["record.rate_hz=1e9", "record.seconds=1e6"]).contains("samples is"));
