@@ -139,9 +139,8 @@ mod tests {
 
     #[test]
     fn an_error_of_what_is_not_finite_is_none() {
-        let error = |log_amplitude: f64, std_error: f64| {
-            Prediction::new(log_amplitude, Some(std_error)).std_error
-        };
+        let error =
+            |log_amplitude: f64, std_error: f64| Prediction::new(log_amplitude, Some(std_error)).std_error;
         assert_eq!(error(-1.0, 0.1), Some(0.1));
         assert_eq!([error(-1.0, f64::INFINITY), error(-1.0, f64::NAN)], [None; 2]);
         assert_eq!([error(f64::NEG_INFINITY, 0.1), error(f64::NAN, 0.1)], [None; 2]);
