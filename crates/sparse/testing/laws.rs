@@ -386,23 +386,36 @@ fn predictive_intervals_hold_fresh_peaks() {
     }
 }
 
-/// The stated error of a prediction is the scatter of predictions over envelopes of one law.
+/// The stated variance of the function is σ²·Σ(∂f/∂yᵢ)², the derivatives by every measured ln A taken from fits
+/// with that one moved, where the law's terms are known.
 #[test]
-fn the_error_of_a_prediction_is_its_scatter_over_envelopes() {
-    let times = [0.0, 11.0, 19.9];
-    let (trials, scatter) = (200, 0.03);
-    let all: Vec<Vec<Prediction>> = (0..trials)
-        .map(|seed| fit_at(&damped(69, 20.0, [0.05, 0.005, 0.0], scatter, seed), &times).predictions)
-        .collect();
-    for at in 0..times.len() {
-        let logs: Vec<f64> = all.iter().map(|found| found[at].log_amplitude).collect();
-        let mean = logs.iter().sum::<f64>() / trials as f64;
-        let found = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (trials as f64 - 1.0);
-        // Of the function alone: less a fresh peak's own scatter.
-        let stated = all.iter().map(|found| found[at].std_error.unwrap().powi(2)).sum::<f64>();
-        let stated = stated / trials as f64 - scatter * scatter;
-        // A variance over 200 draws is known to 10 %; the scatter taken off to 1 % of itself.
-        let slack = 4.0 * (0.1 * stated).hypot(0.01 * scatter * scatter);
-        assert!((found - stated).abs() < slack, "{at}: {found:e} {stated:e}");
+fn the_error_of_a_prediction_is_what_the_scatter_of_the_peaks_makes_of_it() {
+    let times = [-2.0, 0.0, 11.0, 19.9, 22.0];
+    let envelope = damped(69, 20.0, [0.05, 0.005, 0.0], 0.03, 4);
+    let fit = |envelope: &Envelope| {
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(&times);
+        estimator(&[r#"estimator.library=["1","1/A"]"#]).fit(envelope, &context).unwrap()
+    };
+    let moved = |peak: usize, by: f64| {
+        let mut logs = envelope.log_amplitudes().to_vec();
+        logs[peak] += by;
+        fit(&Envelope::new(envelope.times_s().to_vec(), logs, 21.8).unwrap()).predictions
+    };
+    let estimate = fit(&envelope);
+    assert_eq!(estimate.parameters, 3, "{:?}", estimate.equation);
+    let fitted = estimate.fitted_log_amplitudes.iter().zip(envelope.log_amplitudes());
+    let variance = fitted.map(|(fitted, log)| (fitted - log).powi(2)).sum::<f64>() / 66.0;
+    let step = 1e-4;
+    let mut sums = [0.0; 5];
+    for peak in 0..69 {
+        for (sum, (up, down)) in sums.iter_mut().zip(moved(peak, step).iter().zip(moved(peak, -step))) {
+            *sum += ((up.log_amplitude - down.log_amplitude) / (2.0 * step)).powi(2);
+        }
+    }
+    for (prediction, sum) in estimate.predictions.iter().zip(sums) {
+        let stated = prediction.std_error.unwrap().powi(2) / variance - 1.0;
+        // That the terms along the trajectory move with it, against the residuals, is left out.
+        assert!((stated / sum - 1.0).abs() < 0.02, "{stated} {sum}");
     }
 }
