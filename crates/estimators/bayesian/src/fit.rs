@@ -3,9 +3,11 @@
 use crate::config::{BayesianConfig, Method};
 use crate::model::{Conjugate, Model, Prior, Statistics};
 use crate::sampler::{LARGEST_R_HAT, Sample, loss_at_start};
-use crate::scaling::Scaling;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop,
+    Uncertainty,
+};
 use nalgebra::Vector3;
 
 /// Fewest peaks to sample from: with fewer, the posterior has no fourth moment, and the Monte-Carlo error
@@ -19,7 +21,7 @@ const AT_ODDS: f64 = 5.0;
 impl Estimator for BayesianConfig {
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         let scaling = Scaling::of(envelope)?;
-        let times = scaling.scaled_times(envelope);
+        let times = scaling.unit_times(envelope);
         let prior = Prior {
             width: self.prior_width,
             noise_shape: self.prior_noise_shape,
@@ -60,8 +62,8 @@ impl Fit<'_> {
         let posterior = self.model.conjugate();
         let Conjugate { start, rate, rate_scale, degrees_of_freedom, scatter } = posterior;
         let uncertainty = Uncertainty::students_t(
-            self.scaling.rate(rate),
-            self.scaling.rate(rate_scale),
+            self.scaling.rate_per_unit_time(rate),
+            self.scaling.rate_per_unit_time(rate_scale),
             degrees_of_freedom,
         );
         let remarks = format!(
@@ -124,7 +126,7 @@ impl Fit<'_> {
                 planned,
                 phase: phase.to_owned(),
                 loss,
-                decay_rate: self.scaling.rate(rate),
+                decay_rate: self.scaling.rate_per_unit_time(rate),
             });
         });
         let [start, rate, log_sigma] =
@@ -133,11 +135,11 @@ impl Fit<'_> {
         let uncertainty = (!sample.is_empty() && sample.steps > config.warm_up + 1).then(|| {
             let (deviation, [low, high]) = sample.spread(&Vector3::y());
             Uncertainty {
-                std_error: self.scaling.rate(deviation),
-                interval_95: [self.scaling.rate(low), self.scaling.rate(high)],
+                std_error: self.scaling.rate_per_unit_time(deviation),
+                interval_95: [self.scaling.rate_per_unit_time(low), self.scaling.rate_per_unit_time(high)],
             }
         });
-        let error = self.scaling.rate(rate.error);
+        let error = self.scaling.rate_per_unit_time(rate.error);
         let stop = match (sample.interrupted, converged) {
             (true, _) => Stop {
                 reached: Reached::Interrupted,
@@ -184,7 +186,7 @@ impl Fit<'_> {
     }
 
     fn describe(&self, found: Found) -> Result<Estimate, FitError> {
-        let decay_rate = self.scaling.rate(found.rate);
+        let decay_rate = self.scaling.rate_per_unit_time(found.rate);
         let fitted: Vec<f64> = self
             .times
             .iter()
@@ -199,7 +201,7 @@ impl Fit<'_> {
              decay_rate_per_s = {decay_rate:?}\nlog_amplitude = {log_amplitude:?}\n\
              scatter_of_log_amplitude = {:?}\n\
              damping_ratio = {:?}\n",
-            self.scaling.scatter(found.scatter),
+            self.scaling.deviation(found.scatter),
             self.envelope.damping_ratio(decay_rate)
         );
         if let Some(Uncertainty { std_error, interval_95: [low, high] }) = found.uncertainty {

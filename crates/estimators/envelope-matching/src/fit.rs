@@ -34,15 +34,20 @@ impl Estimator for EnvelopeMatchingConfig {
         }
         let matching = Matching::new(envelope, self.steps_per_period, self.most_periods)?;
         let found = self.minimize(&matching, self.start(context), context)?;
-        let decay_rate = matching.rate(found.parameters.y);
+        let decay_rate = matching.scaling.rate_per_unit_time(found.parameters.y);
         Ok(Estimate {
             decay_rate,
-            log_amplitude: matching.log_amplitude(found.parameters.x),
+            log_amplitude: matching.scaling.log_amplitude(found.parameters.x),
             uncertainty: uncertainty(&matching, &found),
             stop: found.stop,
             steps: found.steps,
             parameters: 2,
-            fitted_log_amplitudes: found.at.fitted.iter().map(|&z| matching.log_amplitude(z)).collect(),
+            fitted_log_amplitudes: found
+                .at
+                .fitted
+                .iter()
+                .map(|&z| matching.scaling.log_amplitude(z))
+                .collect(),
             predictions: Vec::new(),
             equation: None,
             model: None,
@@ -83,7 +88,7 @@ impl EnvelopeMatchingConfig {
                 planned: max_steps,
                 phase: "matching".to_owned(),
                 loss: at.loss / matching.len() as f64,
-                decay_rate: matching.rate(parameters.y),
+                decay_rate: matching.scaling.rate_per_unit_time(parameters.y),
             });
             if context.is_cancelled() {
                 break (Reached::Interrupted, format!("interrupted after {steps} steps"));
@@ -147,6 +152,6 @@ fn gain(at: &Linearized, next: &Linearized, step: &Vector2<f64>, damping: f64) -
 fn uncertainty(matching: &Matching, found: &Found) -> Option<Uncertainty> {
     let degrees = matching.len() as f64 - 2.0;
     let variance = found.at.loss / degrees * found.at.normal.try_inverse()?.m22;
-    let std_error = matching.rate(variance.sqrt());
-    Uncertainty::students_t(matching.rate(found.parameters.y), std_error, degrees)
+    let std_error = matching.scaling.rate_per_unit_time(variance.sqrt());
+    Uncertainty::students_t(matching.scaling.rate_per_unit_time(found.parameters.y), std_error, degrees)
 }

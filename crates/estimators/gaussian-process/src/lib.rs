@@ -29,7 +29,6 @@ mod config;
 mod fit;
 mod kernel;
 mod likelihood;
-mod scaling;
 #[cfg(test)]
 mod tests;
 
