@@ -51,6 +51,8 @@ struct Found {
     rate: f64,
     scatter: f64,
     uncertainty: Option<Uncertainty>,
+    /// Times asked about, τ, and the predictive standard deviation at each.
+    asked: Vec<(f64, Option<f64>)>,
     stop: Stop,
     steps: u64,
     /// Further lines of the posterior's file.
@@ -60,7 +62,7 @@ struct Found {
 impl Fit<'_> {
     fn in_closed_form(&self, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         let posterior = self.model.conjugate();
-        let Conjugate { start, rate, rate_scale, degrees_of_freedom, scatter } = posterior;
+        let Conjugate { start, rate, rate_scale, degrees_of_freedom, scatter, .. } = posterior;
         let uncertainty = Uncertainty::students_t(
             self.scaling.rate_per_unit_time(rate),
             self.scaling.rate_per_unit_time(rate_scale),
@@ -71,7 +73,8 @@ impl Fit<'_> {
              degrees_of_freedom = {degrees_of_freedom:?}\n"
         );
         let stop = Stop { reached: Reached::Converged, because: self.check(&posterior, context) };
-        self.describe(Found { start, rate, scatter, uncertainty, stop, steps: 0, remarks })
+        let asked = self.asked(context, |time| posterior.predictive_deviation(time));
+        self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps: 0, remarks })
     }
 
     /// What the sampler says of the closed form, in a sentence.
@@ -163,7 +166,20 @@ impl Fit<'_> {
             sample.diagnostics.tail,
         );
         let (start, rate, scatter) = (start.value, rate.value, log_sigma.value.exp());
-        self.describe(Found { start, rate, scatter, uncertainty, stop, steps: sample.steps, remarks })
+        let known = uncertainty.is_some();
+        let asked = self.asked(context, |time| known.then(|| sample.predictive_deviation(time)));
+        let steps = sample.steps;
+        self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps, remarks })
+    }
+
+    /// The times asked about, τ, with what is known of a new value there.
+    fn asked(
+        &self,
+        context: &FitContext<'_>,
+        deviation: impl Fn(f64) -> Option<f64>,
+    ) -> Vec<(f64, Option<f64>)> {
+        let times = context.query_times().iter().map(|&time| self.scaling.unit_time(time));
+        times.map(|time| (time, deviation(time))).collect()
     }
 
     /// Why a sample is not enough, and what to do.
@@ -187,11 +203,8 @@ impl Fit<'_> {
 
     fn describe(&self, found: Found) -> Result<Estimate, FitError> {
         let decay_rate = self.scaling.rate_per_unit_time(found.rate);
-        let fitted: Vec<f64> = self
-            .times
-            .iter()
-            .map(|time| self.scaling.log_amplitude(found.start - found.rate * time))
-            .collect();
+        let at = |time: f64| self.scaling.log_amplitude(found.start - found.rate * time);
+        let fitted: Vec<f64> = self.times.iter().map(|&time| at(time)).collect();
         if !(decay_rate.is_finite() && fitted.iter().all(|log| log.is_finite())) {
             return Err(FitError::NotFinite { loss: found.rate });
         }
@@ -222,7 +235,14 @@ impl Fit<'_> {
             steps: found.steps,
             parameters: 3,
             fitted_log_amplitudes: fitted,
-            predictions: Vec::new(),
+            predictions: found
+                .asked
+                .iter()
+                .map(|&(time, deviation)| {
+                    let deviation = deviation.map(|scaled| self.scaling.deviation(scaled));
+                    Prediction::new(at(time), deviation)
+                })
+                .collect(),
             equation: None,
             model: Some(ModelFile { name: "posterior.toml".to_owned(), bytes: text.into_bytes() }),
         })

@@ -42,7 +42,7 @@ impl Estimator for GaussianProcessConfig {
         let rate =
             |at: &Evaluation| -scaling.rate_per_unit_time(projection.slope(process.fitted(at).as_slice()));
         let trained = self.train(&process, context, rate)?;
-        describe(&scaling, &process, &projection, &trained)
+        describe(&scaling, &process, &projection, &trained, context.query_times())
     }
 }
 
@@ -217,6 +217,7 @@ fn describe(
     process: &Process,
     projection: &Projection,
     trained: &Trained,
+    query_times: &[f64],
 ) -> Result<Estimate, FitError> {
     let function = process.fitted(&trained.best);
     let decay_rate = -scaling.rate_per_unit_time(projection.slope(function.as_slice()));
@@ -228,9 +229,8 @@ fn describe(
     let noise = log_noise.exp();
     let degrees = trained.degrees_of_freedom;
     let std_error = scaling.rate_per_unit_time(noise / projection.squares.sqrt());
-    let uncertainty = (degrees >= 1.0 && trained.stop.reached == Reached::Converged)
-        .then(|| Uncertainty::students_t(decay_rate, std_error, degrees))
-        .flatten();
+    let known = degrees >= 1.0 && trained.stop.reached == Reached::Converged;
+    let uncertainty = known.then(|| Uncertainty::students_t(decay_rate, std_error, degrees)).flatten();
     let text = format!(
         "# Gaussian process: ln A = line + signal of the given length scale + noise.\n\
          decay_rate_of_the_mean_per_s = {:?}\nsignal_of_log_amplitude = {:?}\nlength_s = {:?}\n\
@@ -249,7 +249,14 @@ fn describe(
         steps: trained.steps,
         parameters: trained.best.parameters.len(),
         fitted_log_amplitudes: fitted,
-        predictions: Vec::new(),
+        predictions: query_times
+            .iter()
+            .map(|&time| {
+                let (mean, variance) = process.predict(&trained.best, scaling.unit_time(time));
+                let std_error = known.then(|| scaling.deviation(variance.sqrt()));
+                Prediction::new(scaling.log_amplitude(mean), std_error)
+            })
+            .collect(),
         equation: None,
         model: Some(ModelFile { name: "process.toml".to_owned(), bytes: text.into_bytes() }),
     })
