@@ -84,12 +84,7 @@ impl Matching {
 
     /// Simulates and compares. `None` where the simulation is not finite.
     pub(crate) fn linearize(&self, parameters: &Vector2<f64>) -> Option<Linearized> {
-        let rate = Dual::variable(parameters.y * self.scaling.spread());
-        let oscillator = Oscillator {
-            stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
-            damping: Viscous { rate },
-        };
-        let peaks = oscillator.peaks(1.0, TAU / self.omega / self.steps_per_period)?;
+        let peaks = self.simulate(Dual::variable(parameters.y * self.scaling.spread()), 1.0)?;
         let mut normal = Matrix2::zeros();
         let mut gradient = Vector2::zeros();
         let mut loss = 0.0;
@@ -106,6 +101,44 @@ impl Matching {
         }
         let finite = loss.is_finite() && normal.iter().chain(&gradient).all(|entry| entry.is_finite());
         (finite && fitted.len() == self.len()).then_some(Linearized { loss, normal, gradient, fitted })
+    }
+}
+
+/// The scaled envelope at a time, and its derivatives by the parameters.
+pub(crate) type Reading = (f64, Vector2<f64>);
+
+impl Matching {
+    /// The peaks of the oscillator, let go at time 0, for as many records' lengths.
+    fn simulate(&self, rate: Dual, duration: f64) -> Option<Vec<Peak>> {
+        let oscillator = Oscillator {
+            stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
+            damping: Viscous { rate },
+        };
+        oscillator.peaks(duration, TAU / self.omega / self.steps_per_period)
+    }
+
+    /// The simulated envelope at times τ in any order, within the record or beyond it: after the record the
+    /// simulation goes on, and before it the motion is followed backward in time, where damping drives.
+    /// `None` for a time that the simulation does not reach: it ends after a million periods.
+    pub(crate) fn readings(&self, parameters: &Vector2<f64>, times: &[f64]) -> Vec<Option<Reading>> {
+        let mut found = vec![None; times.len()];
+        let rate = Dual::variable(parameters.y * self.scaling.spread());
+        for (rate, way) in [(rate, 1.0), (-rate, -1.0)] {
+            let asked = times.iter().map(|time| time * way).enumerate();
+            let reachable = |time: &f64| *time >= 0.0 && time * self.omega <= TAU * LIMIT;
+            let mut asked: Vec<(usize, f64)> = asked.filter(|(_, time)| reachable(time)).collect();
+            asked.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+            let (places, asked): (Vec<usize>, Vec<f64>) = asked.into_iter().unzip();
+            let Some(last) = asked.last() else { continue };
+            let Some(peaks) = self.simulate(rate, last.max(1.0)) else { continue };
+            for (place, log_height) in places.into_iter().zip(read(&peaks, &asked)) {
+                let value = parameters.x + log_height.value / self.scaling.spread();
+                if let Some(entry) = found.get_mut(place) {
+                    *entry = Some((value, Vector2::new(1.0, log_height.slope)));
+                }
+            }
+        }
+        found
     }
 }
 
