@@ -16,7 +16,6 @@
 mod config;
 mod fit;
 mod objective;
-mod scaling;
 
 pub use config::PinnConfig;
 
