@@ -263,4 +263,66 @@ mod tests {
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
         assert!(matches!(config().fit(&flat, &context), Err(FitError::NoSpread { .. })));
     }
+
+    fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(seed).child("pinn"), None, &Silent, &cancel);
+        config().fit(envelope, &context.predicting_at(times)).unwrap()
+    }
+
+    #[test]
+    fn at_the_peaks_predictions_are_the_fitted_function() {
+        let estimate = fit_at(&envelope(), 0, envelope().times_s());
+        assert_eq!(estimate.predictions.len(), 69);
+        for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+            assert!((prediction.log_amplitude - fitted).abs() < 1e-9);
+        }
+        // Asking changes nothing else.
+        assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(0, None, &Silent));
+    }
+
+    #[test]
+    fn an_exponential_is_extrapolated_and_less_is_known_the_farther_off() {
+        let times = [-3.0, 10.0, 25.0, 40.0, 80.0];
+        let envelope = conformance::scattered(69, 0.2, 0.05, &Seed::new(1)).unwrap();
+        let estimate = fit_at(&envelope, 0, &times);
+        for (time, found) in times.iter().zip(&estimate.predictions) {
+            let off = (found.log_amplitude + 0.6 + 0.2 * time).abs();
+            assert!(off < 3.0 * found.std_error.unwrap(), "{time}: {off} {found:?}");
+        }
+        let errors: Vec<f64> = estimate.predictions.iter().map(|found| found.std_error.unwrap()).collect();
+        // Near the record a straight line's error; four lengths off the weights may do much.
+        assert!(errors[2] < 1.1 * errors[1] && errors[4] > 10.0 * errors[1], "{errors:?}");
+        let pure = fit_at(&conformance::exponential(69, -0.6, 0.2).unwrap(), 0, &times[..3]);
+        for (time, found) in times.iter().zip(&pure.predictions) {
+            let off = (found.log_amplitude + 0.6 + 0.2 * time).abs();
+            assert!(off < 1e-5, "{time}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn predictive_intervals_hold_fresh_peaks() {
+        let (mut held, replicates) = (0, 60);
+        let times = [1.0, 4.9, 8.7, 11.0];
+        for replicate in 0..replicates {
+            let seed = Seed::new(replicate).child("fresh");
+            let envelope = conformance::scattered(30, 0.2, 0.1, &seed.child("peaks")).unwrap();
+            // Scatter about no decay, to be moved to where it is asked for.
+            let fresh = conformance::scattered(4, 0.0, 0.1, &seed.child("new")).unwrap();
+            let found = fit_at(&envelope, replicate, &times).predictions;
+            held += found
+                .iter()
+                .zip(times.iter().zip(fresh.log_amplitudes()))
+                .filter(|(found, (time, fresh))| {
+                    let off = *fresh - 0.2 * *time - found.log_amplitude;
+                    // Student's t with 28 degrees of freedom.
+                    off.abs() <= 2.0484 * found.std_error.unwrap()
+                })
+                .count();
+        }
+        let count = (4 * replicates) as f64;
+        let share = held as f64 / count;
+        // Four standard deviations of such a share.
+        assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
+    }
 }
