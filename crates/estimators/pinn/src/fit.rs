@@ -302,13 +302,14 @@ mod tests {
 
     #[test]
     fn predictive_intervals_hold_fresh_peaks() {
-        let (mut held, replicates) = (0, 60);
-        let times = [1.0, 4.9, 8.7, 11.0];
+        let (mut held, replicates) = (0, 12);
+        // From the first peak to a third of the record beyond the last.
+        let times: Vec<f64> = (0..20).map(|i| 0.55 * f64::from(i)).collect();
         for replicate in 0..replicates {
             let seed = Seed::new(replicate).child("fresh");
             let envelope = conformance::scattered(30, 0.2, 0.1, &seed.child("peaks")).unwrap();
             // Scatter about no decay, to be moved to where it is asked for.
-            let fresh = conformance::scattered(4, 0.0, 0.1, &seed.child("new")).unwrap();
+            let fresh = conformance::scattered(20, 0.0, 0.1, &seed.child("new")).unwrap();
             let found = fit_at(&envelope, replicate, &times).predictions;
             held += found
                 .iter()
@@ -320,7 +321,7 @@ mod tests {
                 })
                 .count();
         }
-        let count = (4 * replicates) as f64;
+        let count = (20 * replicates) as f64;
         let share = held as f64 / count;
         // Four standard deviations of such a share.
         assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
