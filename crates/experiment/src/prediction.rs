@@ -34,8 +34,8 @@ pub struct PredictionSettings {
     problems: Option<Vec<String>>,
     /// Draws of a simulated problem.
     pub draws: usize,
-    /// Draws for methods that train by steps, at most `draws`.
-    pub draws_trained: usize,
+    /// Draws for methods that draw random numbers of their own, at most `draws`.
+    pub draws_seeded: usize,
     /// Interpolation: successive peaks in a block.
     pub block_peaks: usize,
     /// Interpolation: of so many successive blocks one is held out.
@@ -144,10 +144,10 @@ const PREDICT: &[Field] = &[
         ..PLAIN
     },
     Field {
-        key: "draws_trained",
+        key: "draws_seeded",
         kind: Kind::Integer { min: 1, max: 100_000 },
-        default: Default::Integer(20),
-        meaning: "Draws for methods that train by steps, the first ones of those; at most draws.",
+        default: Default::Integer(30),
+        meaning: "Draws for methods with random numbers of their own, the slow ones: the first ones of those.",
         source: "what a minute on two cores allows",
         ..PLAIN
     },
@@ -323,7 +323,8 @@ pub fn resolve_prediction(
     let methods: Vec<String> = classical.iter().copied().chain(learned).map(str::to_owned).collect();
     all_known(document, "predict.methods", "method", settings.methods.as_deref(), &methods)?;
     all_known(document, "predict.problems", "problem", settings.problems.as_deref(), &ids)?;
-    let wanted = |id: &str| settings.problems.as_ref().is_none_or(|names| names.iter().any(|name| name == id));
+    let wanted =
+        |id: &str| settings.problems.as_ref().is_none_or(|names| names.iter().any(|name| name == id));
     let problems = ids
         .iter()
         .zip(&names)
@@ -345,12 +346,15 @@ fn fields(document: &Document, section: &str) -> Vec<Field> {
     let kind = document.get(&format!("{section}.kind")).and_then(|leaf| leaf.value.as_str());
     let common = [KIND, TITLE];
     let own: Vec<Field> = match kind {
-        Some("record") => DATA
-            .iter()
-            // The shipped record is no default here: each problem says which record it is about.
-            .map(|field| if field.key == "path" { Field { default: Default::Required, ..*field } } else { *field })
-            .chain([PIPELINE])
-            .collect(),
+        Some("record") => {
+            DATA.iter()
+                // The shipped record is no default here: each problem says which record it is about.
+                .map(|field| {
+                    if field.key == "path" { Field { default: Default::Required, ..*field } } else { *field }
+                })
+                .chain([PIPELINE])
+                .collect()
+        }
         Some("exponential") => SIMULATED.to_vec(),
         Some("coulomb-viscous") => SIMULATED.iter().copied().chain([DEAD_ZONE]).collect(),
         Some("viscous-quadratic") => SIMULATED.iter().copied().chain([QUADRATIC_RATE]).collect(),

@@ -18,15 +18,22 @@ pub struct HeldOutPeak {
 
 impl HeldOutPeak {
     /// Whether the stated 95 % interval, predicted ± 1.96 standard deviations, holds the peak; `None` where
-    /// none is stated.
+    /// none is stated. About a prediction that is not finite there is no interval, and it holds nothing.
     #[must_use]
     pub fn is_within_95(&self) -> Option<bool> {
+        if !self.predicted.is_finite() {
+            return Some(false);
+        }
         self.std_error.map(|error| (self.observed - self.predicted).abs() <= GAUSSIAN_95 * error)
     }
 
-    /// Natural logarithm of the stated Gaussian density at the peak; `None` where none is stated.
+    /// Natural logarithm of the stated Gaussian density at the peak; `None` where none is stated, −∞ about
+    /// a prediction that is not finite.
     #[must_use]
     pub fn log_density(&self) -> Option<f64> {
+        if !self.predicted.is_finite() {
+            return Some(f64::NEG_INFINITY);
+        }
         self.std_error.map(|error| {
             let standardized = (self.observed - self.predicted) / error;
             -0.5 * (2.0 * PI).ln() - error.ln() - 0.5 * standardized * standardized
@@ -73,7 +80,7 @@ pub fn held_within_95(peaks: &[HeldOutPeak]) -> Option<(usize, usize)> {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
+#[allow(clippy::unwrap_used, clippy::indexing_slicing)]
 mod tests {
     use super::{
         HeldOutPeak, held_within_95, mean_log_density, relative_amplitude_error_percent, rms_log_error,
@@ -97,6 +104,8 @@ mod tests {
         let rest = [peak(-1.0, f64::NEG_INFINITY, None)];
         assert!(rms_log_error(&rest).is_infinite());
         assert!((relative_amplitude_error_percent(&rest) - 100.0).abs() < 1e-12);
+        assert_eq!(held_within_95(&[rest[0], peak(0.0, 0.0, Some(1.0))]), Some((1, 2)));
+        assert_eq!(mean_log_density(&rest), Some(f64::NEG_INFINITY));
         for nowhere in [f64::NAN, f64::INFINITY] {
             let none = [peak(-1.0, nowhere, None), peak(-1.0, -1.0, None)];
             assert!(rms_log_error(&none).is_infinite());

@@ -168,7 +168,10 @@ fn a_table_that_the_configuration_names_is_checked_like_any_other() {
     let fields = [Field { key: "duration", ..SECTIONS[1].fields[1] }];
     let sections = [Section { name: &name, fields: &fields }];
     let refused = Resolved::new(&document, &sections).unwrap_err().to_string();
-    assert_eq!(refused, "a.toml:2:1: `problem.mine.duration` is -1; expected a finite number from 0 to 1000 (s)");
+    assert_eq!(
+        refused,
+        "a.toml:2:1: `problem.mine.duration` is -1; expected a finite number from 0 to 1000 (s)"
+    );
     let document = Document::parse("a.toml", "[problem.mine]\nduration = 2\n").unwrap();
     let resolved = Resolved::new(&document, &sections).unwrap();
     assert!(resolved.to_toml().contains("\n[problem.mine]\nduration = 2.0"), "{}", resolved.to_toml());

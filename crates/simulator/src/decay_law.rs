@@ -176,8 +176,7 @@ mod tests {
         let (initial, period) = (0.7, 0.3);
         for number in [0, 1, 50] {
             let time = 0.5 * period * number as f64;
-            let exponential =
-                DecayLaw::Exponential { decay_rate: 0.4 }.amplitude(initial, period, number);
+            let exponential = DecayLaw::Exponential { decay_rate: 0.4 }.amplitude(initial, period, number);
             assert!((exponential - initial * (-0.4 * time).exp()).abs() < 1e-15);
             for law in [
                 DecayLaw::CoulombViscous { decay_rate: 0.4, dead_zone: 0.0 },

@@ -135,7 +135,11 @@ fn positive(name: &'static str, value: f64) -> Result<(), SimulationError> {
 
 fn not_negative(name: &'static str, value: f64) -> Result<(), SimulationError> {
     let fits = value.is_finite() && value >= 0.0;
-    if fits { Ok(()) } else { Err(SimulationError::Parameter { name, value, expected: "a number from 0 up" }) }
+    if fits {
+        Ok(())
+    } else {
+        Err(SimulationError::Parameter { name, value, expected: "a number from 0 up" })
+    }
 }
 
 #[cfg(test)]

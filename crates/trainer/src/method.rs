@@ -3,7 +3,9 @@
 use crate::error::TrainerError;
 use crate::fit::FitSetting;
 use envelope::Envelope;
-use estimator::{Entry, Estimate, Estimator, FitContext, Observer, Reached, Stop, Tag, Uncertainty};
+use estimator::{
+    Cancel, Entry, Estimate, Estimator, FitContext, Observer, Reached, Silent, Stop, Tag, Uncertainty,
+};
 use experiment::Single;
 use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
 use registry::ESTIMATORS;
@@ -94,6 +96,26 @@ impl Method {
             Self::Classical(route) => route.draws,
             Self::Learned(entry, _) => entry.has(Tag::Seeded),
         }
+    }
+
+    /// The same method with the part of its work done that no envelope enters.
+    pub(crate) fn pretrained(
+        self,
+        seed: u64,
+        max_steps: Option<u64>,
+        cancel: &Cancel,
+    ) -> Result<Self, TrainerError> {
+        let Self::Learned(entry, estimator) = &self else { return Ok(self) };
+        let context = FitContext::new(Seed::new(seed).child(entry.id), max_steps, &Silent, cancel);
+        let trained = estimator.pretrain(&context).map_err(|source| TrainerError::Fit {
+            estimator: entry.id,
+            seed,
+            source,
+        })?;
+        Ok(match trained {
+            Some(trained) => Self::Learned(*entry, trained.into()),
+            None => self,
+        })
     }
 
     /// Fits an envelope.

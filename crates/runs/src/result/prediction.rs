@@ -97,7 +97,7 @@ pub struct LawSummary {
     pub projected_slope: f64,
     /// Scatter of the peaks, in words.
     pub scatter: String,
-    /// Draws for methods that take no training steps, and for those that do.
+    /// Draws for methods without random numbers of their own, and for those with.
     pub draws: [usize; 2],
 }
 
