@@ -150,7 +150,12 @@ fn named(problem: &ProblemRow) -> String {
     format!("{} ({kind})", problem.title)
 }
 
-fn log_amplitude(anchor: &str, problem: &ProblemRow, study: &ProblemStudy, peaks: &Peaks<'_>) -> Option<Figure> {
+fn log_amplitude(
+    anchor: &str,
+    problem: &ProblemRow,
+    study: &ProblemStudy,
+    peaks: &Peaks<'_>,
+) -> Option<Figure> {
     let plot = Plot {
         x: time_axis(),
         y: Axis::linear(format!("ln(A / {})", study.unit)),
@@ -224,9 +229,10 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
     Some(Figure {
         id: format!("{anchor}-errors").into(),
         title: title.into(),
-        explanation: "A dot left of its ring predicts between other peaks better than beyond the last one; a \
+        explanation:
+            "A dot left of its ring predicts between other peaks better than beyond the last one; a \
                       ring left of the dashed line predicts beyond it better than the best exponential."
-            .to_owned(),
+                .to_owned(),
         notes,
         legend,
         wide,

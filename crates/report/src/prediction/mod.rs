@@ -11,8 +11,8 @@ mod tests;
 
 use askama::Template;
 use runs::result::{
-    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
-    SplitSummary,
+    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
+    ProblemStudy, SplitSummary,
 };
 
 use crate::figures::Figure;
@@ -110,10 +110,7 @@ fn facts(study: &ProblemStudy) -> Vec<Fact> {
             fact("Parameters", law.parameters.clone()),
             fact("Closed form", law.exactness.clone()),
             fact("Scatter", law.scatter.clone()),
-            fact(
-                "λ of the viscous part",
-                format::quantity(&format::significant(law.viscous_rate, 6), "1/s"),
-            ),
+            fact("λ of the viscous part", format::quantity(&format::significant(law.viscous_rate, 6), "1/s")),
             fact(
                 "Projected slope of the noise-free ln A",
                 format::quantity(&format::significant(law.projected_slope, 6), "1/s"),

@@ -63,12 +63,8 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let exponential = &study.exponential;
     let mut cells = held_out(Some(&exponential.interpolation), Some(&exponential.extrapolation), has_truth);
     cells.resize(columns.len() - 1, String::new());
-    let reference = ScoreView {
-        title: "Best exponential".to_owned(),
-        cells,
-        reason: String::new(),
-        is_reference: true,
-    };
+    let reference =
+        ScoreView { title: "Best exponential".to_owned(), cells, reason: String::new(), is_reference: true };
     let place = study.methods.iter().position(|row| error(row) >= exponential.extrapolation.rms_log_error);
     let mut rows: Vec<ScoreView> = study.methods.iter().map(|row| view(row, has_truth)).collect();
     rows.insert(place.unwrap_or(rows.len()), reference);
