@@ -120,7 +120,7 @@ impl Peaks<'_> {
     fn shaded(&self) -> Vec<(f64, f64)> {
         let mut held = self.rows.iter().filter(|row| row.held_out).map(|row| row.time_s);
         let first = held.next();
-        let last = held.last();
+        let last = held.next_back();
         first.zip(last).into_iter().collect()
     }
 

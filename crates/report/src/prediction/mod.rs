@@ -115,7 +115,14 @@ fn facts(study: &ProblemStudy) -> Vec<Fact> {
                 "Projected slope of the noise-free ln A",
                 format::quantity(&format::significant(law.projected_slope, 6), "1/s"),
             ),
-            fact("Draws", format!("{}, of methods that draw random numbers {}", law.draws[0], law.draws[1])),
+            fact(
+                "Draws",
+                format!(
+                    "{}, for methods with random numbers of their own the first {}; errors and densities are of \
+                     the first {1} for all, coverage and sign tests of all that a method has",
+                    law.draws[0], law.draws[1]
+                ),
+            ),
         ]);
     }
     if let Some(data) = &study.data {
