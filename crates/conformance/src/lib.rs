@@ -4,10 +4,12 @@
 //! demands. Whoever runs the battery makes one test of each pair of estimator and check; a waiver
 //! carries its reason, and a waived check that passes is a failure too ([`verdict`]).
 
+mod calibration;
 mod checks;
 mod cohort;
 mod envelopes;
 
+pub use calibration::{Calibration, calibration};
 pub use checks::CHECKS;
 pub use cohort::{Coverage, coverage};
 pub use envelopes::{bent, exponential, scattered};

@@ -146,7 +146,7 @@ const PREDICT: &[Field] = &[
     Field {
         key: "draws_seeded",
         kind: Kind::Integer { min: 1, max: 100_000 },
-        default: Default::Integer(30),
+        default: Default::Integer(20),
         meaning: "Draws for methods with random numbers of their own, the slow ones: the first ones of those.",
         source: "what a minute on two cores allows",
         ..PLAIN

@@ -5,7 +5,7 @@
 
 #![allow(clippy::print_stdout, reason = "a test harness")]
 
-use conformance::{CHECKS, Subject, Waiver, coverage, verdict};
+use conformance::{CHECKS, Subject, Waiver, calibration, coverage, verdict};
 use estimator::{Entry, Tag};
 use libtest_mimic::{Arguments, Failed, Trial};
 use registry::ESTIMATORS;
@@ -36,6 +36,10 @@ fn main() -> ExitCode {
         if entry.has(Tag::Interval) {
             let name = format!("{}::its_intervals_cover_the_truth", entry.id);
             trials.push(Trial::test(name, || covers(entry, SHORT)));
+            let name = format!("{}::its_posteriors_are_calibrated", entry.id);
+            trials.push(Trial::test(name, || calibrated(entry, SHORT)));
+            let name = format!("{}::its_posteriors_are_calibrated_over_a_thousand_envelopes", entry.id);
+            trials.push(Trial::test(name, || calibrated(entry, LONG)).with_ignored_flag(true));
             let name = format!("{}::its_intervals_cover_over_a_thousand_envelopes", entry.id);
             trials.push(Trial::test(name, || covers(entry, LONG)).with_ignored_flag(true));
         }
@@ -53,4 +57,26 @@ fn covers(entry: &Entry, envelopes: u64) -> Result<(), Failed> {
     let found = coverage(&subject, envelopes)?;
     println!("{}: {:.1} % of {} intervals", entry.id, 100.0 * found.share(), found.envelopes);
     if found.is_within(COVERAGE_BAR) { Ok(()) } else { Err(format!("{found:?}").into()) }
+}
+
+/// Chance that a calibrated estimator fails, at most.
+const CALIBRATION_ALPHA: f64 = 0.001;
+
+fn calibrated(entry: &Entry, envelopes: u64) -> Result<(), Failed> {
+    let subject = Subject::new(entry).map_err(|error| error.to_string())?;
+    let found = calibration(&subject, envelopes)?;
+    let (deviation, band) = (found.deviation(), found.band(CALIBRATION_ALPHA));
+    let silent = found.without_interval;
+    println!(
+        "{}: levels of the truth off the uniform by {deviation:.3}, band {band:.3}, {silent} without interval",
+        entry.id
+    );
+    if deviation > band {
+        return Err(format!("off by {deviation:.3}, band {band:.3}").into());
+    }
+    // On a handful of peaks a method may be unable to tell signal from scatter, and should say so; rarely.
+    if 100 * silent > envelopes {
+        return Err(format!("{silent} of {envelopes} envelopes without interval").into());
+    }
+    Ok(())
 }

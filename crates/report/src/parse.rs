@@ -1,7 +1,8 @@
 //! From the texts of a run folder to typed values.
 
 use runs::result::{
-    ComparisonResult, EnvelopeRow, EstimationResult, PredictionCsvRow, PredictionResult, RESULT_SCHEMA, TraceRow,
+    ComparisonResult, EnvelopeRow, EstimationResult, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
+    TraceRow,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;

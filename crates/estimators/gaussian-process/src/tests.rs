@@ -247,3 +247,55 @@ fn the_intervals_hold_the_truth_over_thousands_of_envelopes() {
         }
     }
 }
+
+fn fit_at(kernel: Kernel, envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(seed), None, &Silent, &cancel).predicting_at(times);
+    config(kernel).fit(envelope, &context).unwrap()
+}
+
+#[test]
+fn at_the_peaks_predictions_are_the_fitted_function() {
+    for kernel in KERNELS {
+        let envelope = envelope();
+        let estimate = fit_at(kernel, &envelope, 0, envelope.times_s());
+        assert_eq!(estimate.predictions.len(), envelope.len());
+        for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+            assert!((prediction.log_amplitude - fitted).abs() < 1e-10, "{kernel:?}: {prediction:?} {fitted}");
+        }
+        // Asking changes nothing else.
+        assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(kernel, &envelope, 0));
+    }
+}
+
+#[test]
+fn an_exponential_without_scatter_is_extrapolated() {
+    let times = [-2.0, 3.3, 10.0, 40.0];
+    for kernel in KERNELS {
+        let envelope = simulated(20, 0.2, 0.0, &mut Seed::new(0).generator());
+        for (time, found) in times.iter().zip(fit_at(kernel, &envelope, 0, &times).predictions) {
+            let off = (found.log_amplitude + 0.6 + 0.2 * time).abs();
+            assert!(off < 1e-7 && off < found.std_error.unwrap(), "{kernel:?} {time}: {off:e} {found:?}");
+        }
+    }
+}
+
+#[test]
+fn predictive_intervals_hold_fresh_peaks() {
+    let mut generator = Seed::new(17).generator();
+    let replicates: u32 = 300;
+    let held = (0..replicates)
+        .filter(|&replicate| {
+            let envelope = simulated(30, 0.2, 0.1, &mut generator);
+            // From the first peak to a quarter of the record beyond the last.
+            let time = 10.8 * f64::from(replicate) / f64::from(replicates);
+            let fresh = simulated(3, 0.0, 0.1, &mut generator).log_amplitudes()[2] - 0.2 * time;
+            let found = fit_at(Kernel::Rbf, &envelope, u64::from(replicate), &[time]).predictions[0];
+            // Student's t with some 27 degrees of freedom.
+            (fresh - found.log_amplitude).abs() <= 2.052 * found.std_error.unwrap()
+        })
+        .count();
+    let share = held as f64 / f64::from(replicates);
+    // Four standard deviations of such a share.
+    assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(replicates)).sqrt(), "{share}");
+}

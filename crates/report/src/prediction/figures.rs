@@ -89,7 +89,8 @@ impl Peaks<'_> {
             series.push(Series {
                 label: function.title.to_owned(),
                 hue: Hue::of_series(index),
-                mark: Mark::Line,
+                // Two forms of one method may lie on each other.
+                mark: if index.is_multiple_of(2) { Mark::Line } else { Mark::Dashes },
                 points: points(&mut function.values.iter().copied()),
             });
         }
@@ -120,7 +121,7 @@ impl Peaks<'_> {
     fn shaded(&self) -> Vec<(f64, f64)> {
         let mut held = self.rows.iter().filter(|row| row.held_out).map(|row| row.time_s);
         let first = held.next();
-        let last = held.last();
+        let last = held.next_back();
         first.zip(last).into_iter().collect()
     }
 
@@ -150,7 +151,12 @@ fn named(problem: &ProblemRow) -> String {
     format!("{} ({kind})", problem.title)
 }
 
-fn log_amplitude(anchor: &str, problem: &ProblemRow, study: &ProblemStudy, peaks: &Peaks<'_>) -> Option<Figure> {
+fn log_amplitude(
+    anchor: &str,
+    problem: &ProblemRow,
+    study: &ProblemStudy,
+    peaks: &Peaks<'_>,
+) -> Option<Figure> {
     let plot = Plot {
         x: time_axis(),
         y: Axis::linear(format!("ln(A / {})", study.unit)),
@@ -224,9 +230,10 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
     Some(Figure {
         id: format!("{anchor}-errors").into(),
         title: title.into(),
-        explanation: "A dot left of its ring predicts between other peaks better than beyond the last one; a \
+        explanation:
+            "A dot left of its ring predicts between other peaks better than beyond the last one; a \
                       ring left of the dashed line predicts beyond it better than the best exponential."
-            .to_owned(),
+                .to_owned(),
         notes,
         legend,
         wide,

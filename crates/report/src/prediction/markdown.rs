@@ -24,10 +24,8 @@ pub(crate) fn markdown(result: &PredictionResult) -> String {
 
 fn problem(row: &ProblemRow) -> Vec<String> {
     let origin = verdict::origin(&row.origin);
-    let mut blocks = vec![
-        format!("## {}", escape(&row.title)),
-        format!("**{}.** {}", origin.label, origin.note),
-    ];
+    let mut blocks =
+        vec![format!("## {}", escape(&row.title)), format!("**{}.** {}", origin.label, origin.note)];
     match &row.outcome {
         ProblemOutcome::Absent { reason } => blocks.push(format!("**ABSENT.** {}", escape(reason))),
         ProblemOutcome::Studied(study) => {

@@ -11,8 +11,8 @@ mod tests;
 
 use askama::Template;
 use runs::result::{
-    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
-    SplitSummary,
+    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
+    ProblemStudy, SplitSummary,
 };
 
 use crate::figures::Figure;
@@ -110,15 +110,19 @@ fn facts(study: &ProblemStudy) -> Vec<Fact> {
             fact("Parameters", law.parameters.clone()),
             fact("Closed form", law.exactness.clone()),
             fact("Scatter", law.scatter.clone()),
-            fact(
-                "λ of the viscous part",
-                format::quantity(&format::significant(law.viscous_rate, 6), "1/s"),
-            ),
+            fact("λ of the viscous part", format::quantity(&format::significant(law.viscous_rate, 6), "1/s")),
             fact(
                 "Projected slope of the noise-free ln A",
                 format::quantity(&format::significant(law.projected_slope, 6), "1/s"),
             ),
-            fact("Draws", format!("{}, of methods that draw random numbers {}", law.draws[0], law.draws[1])),
+            fact(
+                "Draws",
+                format!(
+                    "{}, for methods with random numbers of their own the first {}; errors and densities are of \
+                     the first {1} for all, coverage and sign tests of all that a method has",
+                    law.draws[0], law.draws[1]
+                ),
+            ),
         ]);
     }
     if let Some(data) = &study.data {

@@ -8,7 +8,7 @@ use crate::tables::whole;
 /// How to read these tables.
 pub(super) const READING: [&str; 4] = [
     "Errors are root mean squares of predicted less observed ln A over the held-out peaks, of a simulation the \
-     median over its draws; Â/A is the same as a relative error of the amplitude, where a motion predicted to \
+     median over the draws that all methods were fitted on; Â/A is the same as a relative error of the amplitude, where a motion predicted to \
      be at rest misses by 100 %. “To truth” is the error against the noise-free ln A. Rows stand in the order \
      of the error beyond.",
     "ln p is the mean logarithm of the density that a method states for a held-out ln A, Gaussian with its own \
@@ -63,12 +63,8 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let exponential = &study.exponential;
     let mut cells = held_out(Some(&exponential.interpolation), Some(&exponential.extrapolation), has_truth);
     cells.resize(columns.len() - 1, String::new());
-    let reference = ScoreView {
-        title: "Best exponential".to_owned(),
-        cells,
-        reason: String::new(),
-        is_reference: true,
-    };
+    let reference =
+        ScoreView { title: "Best exponential".to_owned(), cells, reason: String::new(), is_reference: true };
     let place = study.methods.iter().position(|row| error(row) >= exponential.extrapolation.rms_log_error);
     let mut rows: Vec<ScoreView> = study.methods.iter().map(|row| view(row, has_truth)).collect();
     rows.insert(place.unwrap_or(rows.len()), reference);

@@ -97,7 +97,8 @@ pub struct LawSummary {
     pub projected_slope: f64,
     /// Scatter of the peaks, in words.
     pub scatter: String,
-    /// Draws for methods without random numbers of their own, and for those with.
+    /// Draws for methods without random numbers of their own, and for those with. The latter are the first
+    /// of the former; errors and densities are of these alone.
     pub draws: [usize; 2],
 }
 
@@ -169,7 +170,8 @@ pub struct MethodScores {
     pub seconds: f64,
 }
 
-/// Scores on held-out peaks.
+/// Scores on held-out peaks. Errors and densities are of the draws that every method was fitted on, so that
+/// rows can be compared; coverage and the sign test are of all draws that the method was fitted on.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct HeldOutScore {
     /// Held-out peaks, over all draws.

@@ -242,7 +242,8 @@ fn examine(
     methods: &[Method],
     trials: &ProblemTrials,
 ) -> Option<ProblemStudy> {
-    let reference = |kind| score(ready, &trials.exponential, kind, None);
+    let common = study.settings.draws_seeded;
+    let reference = |kind| score(ready, &trials.exponential, kind, common, None);
     let exponential = ExponentialScores {
         interpolation: reference(SplitKind::Interpolation)?,
         extrapolation: reference(SplitKind::Extrapolation)?,
@@ -255,7 +256,7 @@ fn examine(
             id: method.id().to_owned(),
             title: method.title().to_owned(),
             family: method.family().to_owned(),
-            outcome: outcome(ready, placed, &trials.exponential),
+            outcome: outcome(ready, placed, &trials.exponential, common),
         })
         .collect();
     let pairs = rows

@@ -79,11 +79,6 @@ impl Split {
     pub(crate) fn seen_of(&self, values: &[f64]) -> Vec<f64> {
         self.seen().filter_map(|peak| values.get(peak).copied()).collect()
     }
-
-    /// How many peaks are held out.
-    pub(crate) fn held_out_count(&self) -> usize {
-        self.held_out.iter().flatten().count()
-    }
 }
 
 #[cfg(test)]
@@ -116,7 +111,7 @@ mod tests {
                 assert!(block.is_none_or(|block| block == peak / 3));
             }
         }
-        assert_eq!(end[0].held_out_count(), 23);
+        assert_eq!(end[0].held_out.iter().flatten().count(), 23);
         assert!(end[0].held_out[46].is_none() && end[0].held_out[47].is_some());
     }
 

@@ -78,15 +78,14 @@ fn error(row: &PredictionRow) -> f64 {
     }
 }
 
-/// Whether a method's errors are those of the best exponential to six digits, on the same draws.
+/// Whether a method's errors are those of the best exponential to six digits.
 fn is_same_line(row: &PredictionRow, study: &ProblemStudy) -> bool {
     let PredictionOutcome::Scored(scores) = &row.outcome else { return false };
     let (Some(inside), Some(beyond)) = (&scores.interpolation, &scores.extrapolation) else { return false };
     let is_tied =
         |score: &HeldOutScore| score.against_exponential.is_none_or(|pair| pair.better + pair.worse == 0);
-    let draws_differ = study.law.as_ref().is_some_and(|law| scores.draws < law.draws[0]);
     let reference = study.exponential.extrapolation.rms_log_error;
-    let is_near = draws_differ || (beyond.rms_log_error - reference).abs() <= 1e-6 * reference;
+    let is_near = (beyond.rms_log_error - reference).abs() <= 1e-6 * reference;
     scores.failed_fits == 0 && is_tied(inside) && is_tied(beyond) && is_near
 }
 

@@ -31,8 +31,13 @@ struct Units {
 
 /// The scores of a method from its trials, `exponential` being the best exponential's on the same draws.
 ///
-/// p-values are not adjusted yet: [`adjust`] does that once all methods of a problem are known.
-pub(crate) fn outcome(problem: &Ready, trials: &[Placed], exponential: &[Placed]) -> PredictionOutcome {
+/// `common` is the number of draws that every method was fitted on. p-values are not adjusted yet: [`adjust`] does that once all methods of a problem are known.
+pub(crate) fn outcome(
+    problem: &Ready,
+    trials: &[Placed],
+    exponential: &[Placed],
+    common: usize,
+) -> PredictionOutcome {
     let fitted = || trials.iter().filter_map(|placed| placed.trial.as_ref().ok());
     let first_failure = trials.iter().find_map(|placed| placed.trial.as_ref().err().cloned());
     if fitted().next().is_none() {
@@ -40,7 +45,7 @@ pub(crate) fn outcome(problem: &Ready, trials: &[Placed], exponential: &[Placed]
             reason: first_failure.unwrap_or_else(|| "nothing was fitted".to_owned()),
         };
     }
-    let of = |kind| score(problem, trials, kind, Some(exponential));
+    let of = |kind| score(problem, trials, kind, common, Some(exponential));
     let (equation, commonest_form) = laws(problem, trials);
     PredictionOutcome::Scored(Box::new(MethodScores {
         draws: trials.iter().map(|placed| placed.draw + 1).max().unwrap_or(0),
@@ -64,37 +69,40 @@ pub(crate) fn outcome(problem: &Ready, trials: &[Placed], exponential: &[Placed]
     }))
 }
 
-/// The scores on held-out peaks of one kind; `None` where the method makes no prediction.
+/// The scores on held-out peaks of one kind; `None` where the method makes no prediction. Errors and
+/// densities are of the first `common` draws, so that they can be laid beside those of methods with fewer.
 pub(crate) fn score(
     problem: &Ready,
     trials: &[Placed],
     kind: SplitKind,
+    common: usize,
     exponential: Option<&[Placed]>,
 ) -> Option<HeldOutScore> {
-    let units = units(problem, trials, kind)?;
-    let rms = units.errors(scoring::rms_log_error);
-    let all: Vec<HeldOutPeak> = units.peaks.values().flatten().copied().collect();
-    let lost: usize = units.lost.values().sum();
+    let units = units(problem, trials, kind, usize::MAX)?;
+    let shared = self::units(problem, trials, kind, common)?;
+    let rms = shared.errors(scoring::rms_log_error);
     Some(HeldOutScore {
-        peaks: all.len() + lost,
-        not_finite: lost + all.iter().filter(|peak| !peak.predicted.is_finite()).count(),
+        peaks: units.all().len() + units.lost_peaks(),
+        not_finite: units.lost_peaks()
+            + units.all().iter().filter(|peak| !peak.predicted.is_finite()).count(),
         rms_log_error: scoring::median(rms.iter().copied()),
         worst_rms_log_error: scoring::worst(rms.iter().copied()),
-        amplitude_error_percent: scoring::median(units.errors(scoring::relative_amplitude_error_percent)),
-        truth_rms_log_error: truth_error(problem, trials, kind),
-        mean_log_density: scoring::mean_log_density(&all)
-            .map(|mean| if lost > 0 { f64::NEG_INFINITY } else { mean }),
+        amplitude_error_percent: scoring::median(shared.errors(scoring::relative_amplitude_error_percent)),
+        truth_rms_log_error: truth_error(problem, trials, kind, common),
+        mean_log_density: scoring::mean_log_density(&shared.all())
+            .map(|mean| if shared.lost_peaks() > 0 { f64::NEG_INFINITY } else { mean }),
         coverage: units.coverage(),
         against_exponential: exponential
             .filter(|_| !(problem.truth.is_none() && kind == SplitKind::Extrapolation))
-            .and_then(|reference| Some(compare(&units, &self::units(problem, reference, kind)?))),
+            .and_then(|reference| Some(compare(&units, &self::units(problem, reference, kind, usize::MAX)?))),
     })
 }
 
-fn units(problem: &Ready, trials: &[Placed], kind: SplitKind) -> Option<Units> {
+/// The held-out peaks of the first so many draws.
+fn units(problem: &Ready, trials: &[Placed], kind: SplitKind, draws: usize) -> Option<Units> {
     let is_record = problem.truth.is_none();
     let mut units = Units { peaks: BTreeMap::new(), lost: BTreeMap::new(), is_record };
-    for placed in trials {
+    for placed in trials.iter().filter(|placed| placed.draw < draws) {
         let Some(split) = problem.splits.get(placed.split).filter(|split| split.kind == kind) else {
             continue;
         };
@@ -118,11 +126,18 @@ fn units(problem: &Ready, trials: &[Placed], kind: SplitKind) -> Option<Units> {
 }
 
 impl Units {
+    fn all(&self) -> Vec<HeldOutPeak> {
+        self.peaks.values().flatten().copied().collect()
+    }
+
+    fn lost_peaks(&self) -> usize {
+        self.lost.values().sum()
+    }
+
     /// An error of each draw; of a record the one error over all its peaks. Infinite where a fit failed.
     fn errors(&self, error: fn(&[HeldOutPeak]) -> f64) -> Vec<f64> {
         if self.is_record {
-            let all: Vec<HeldOutPeak> = self.peaks.values().flatten().copied().collect();
-            return vec![if self.lost.is_empty() { error(&all) } else { f64::INFINITY }];
+            return vec![if self.lost.is_empty() { error(&self.all()) } else { f64::INFINITY }];
         }
         let lost = self.lost.keys().map(|_| f64::INFINITY);
         self.peaks.values().map(|peaks| error(peaks)).chain(lost).collect()
@@ -182,11 +197,13 @@ pub(crate) fn adjust(comparisons: Vec<&mut PairedComparison>) -> usize {
     open.len()
 }
 
-/// The median over the draws of the error against the noise-free ln A; infinite draws included.
-fn truth_error(problem: &Ready, trials: &[Placed], kind: SplitKind) -> Option<f64> {
+/// The median over the first `common` draws of the error against the noise-free ln A; infinite ones
+/// included.
+fn truth_error(problem: &Ready, trials: &[Placed], kind: SplitKind, common: usize) -> Option<f64> {
     let truth = problem.truth.as_ref()?;
     let errors: Option<Vec<f64>> = trials
         .iter()
+        .filter(|placed| placed.draw < common)
         .filter_map(|placed| Some((placed, problem.splits.get(placed.split)?)))
         .filter(|(_, split)| split.kind == kind)
         .map(|(placed, split)| match &placed.trial {

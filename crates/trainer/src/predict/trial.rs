@@ -88,10 +88,7 @@ pub(crate) fn best_exponential(
     let at = |&time: &f64| {
         let leverage = 1.0 / count + ((time - mean) / spread).powi(2);
         let std_error = scatter * (1.0 + leverage).sqrt();
-        Prediction {
-            log_amplitude: fit.log_amplitude_at(time),
-            std_error: Some(std_error).filter(|error| error.is_finite()),
-        }
+        Prediction::new(fit.log_amplitude_at(time), Some(std_error))
     };
     Ok(Trial {
         curve: Some(envelope.times_s().iter().map(at).collect()),

@@ -52,15 +52,18 @@ fn tested(
     score: impl Fn(&PredictionRow) -> Option<&HeldOutScore>,
     significance: f64,
 ) -> String {
-    let (mut better, mut worse, mut open, mut same) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    let (mut better, mut worse, mut open) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut same, mut seen) = (0, 0);
     for row in &study.methods {
         let Some(found) = score(row) else { continue };
         let Some(pair) = &found.against_exponential else { continue };
+        seen += 1;
         let name = format!(
-            "{} ({}; {} of {})",
+            "{} (error {}; better in {}, worse in {} of {})",
             row.id,
             format::significant(found.rms_log_error, 2),
             pair.better,
+            pair.worse,
             pair.better + pair.worse + pair.equal
         );
         if pair.better + pair.worse == 0 {
@@ -74,6 +77,9 @@ fn tested(
         }
     }
     let reference = format::significant(exponential.rms_log_error, 2);
+    if seen == 0 {
+        return format!("no method predicts; the best exponential misses by {reference}.");
+    }
     let parts = [
         Some(match better.len() {
             0 => format!(
@@ -95,6 +101,12 @@ fn tested(
 fn single_stretch(study: &ProblemStudy) -> String {
     let reference = study.exponential.extrapolation.rms_log_error;
     let errors = || study.methods.iter().filter_map(|row| Some((row, extrapolation(row)?.rms_log_error)));
+    if errors().next().is_none() {
+        return format!(
+            "Beyond the last peak seen no method predicts; the best exponential misses by {}.",
+            format::significant(reference, 2)
+        );
+    }
     let below = errors().filter(|(_, error)| *error < reference * (1.0 - 1e-6)).count();
     let best = errors().next().map_or_else(String::new, |(row, error)| {
         format!("; the smallest is {} ({})", format::significant(error, 2), row.id)
