@@ -314,7 +314,6 @@ impl<'a> March<'a> {
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         couplings.clear();
-        columns.clear_sources();
         let slope = if self.drive.is_present() { self.drive.raw(self.time).1 } else { 0.0 };
         let mut links = [None; MOST_STATES];
         for (rate, link) in links.iter_mut().enumerate().take(*states) {
@@ -323,6 +322,7 @@ impl<'a> March<'a> {
             if link.is_some() {
                 continue;
             }
+            columns.clear_sources(rate, degree);
             graph.differentiate(node, degree - 1);
             for state in 0..*states {
                 let partial = graph.derivative(STATE + state);
