@@ -18,6 +18,8 @@ mod edges;
 pub mod effects;
 mod error;
 mod field;
+#[cfg(test)]
+mod fixtures;
 mod input;
 mod law;
 mod nominal;

@@ -43,6 +43,12 @@ impl Start {
         Self { position, velocity: 0.0 }
     }
 
+    /// Position beyond which a motion counts as running away: a hundred thousand times the release, or that many
+    /// units.
+    pub(crate) fn bound(&self) -> f64 {
+        1e5 * self.position.abs().max(1.0)
+    }
+
     pub(crate) fn check(&self) -> Result<(), DynamicsError> {
         for (what, value) in [("position", self.position), ("velocity", self.velocity)] {
             if !value.is_finite() {
