@@ -116,10 +116,10 @@ fn write(
         truth_digest: sealed.digest().to_owned(),
     };
     if record == 0 {
-        folder.write(&format!("{RECORDS_FOLDER}/{place}nominal.toml"), nominal.as_bytes())?;
+        folder.write_reproducible(&format!("{RECORDS_FOLDER}/{place}nominal.toml"), nominal.as_bytes())?;
     }
-    folder.write(&line.record, text.as_bytes())?;
-    folder.write(&line.truth, sealed.text_to_store().as_bytes())?;
+    folder.write_reproducible(&line.record, text.as_bytes())?;
+    folder.write_reproducible(&line.truth, sealed.text_to_store().as_bytes())?;
     Ok(Written { line, samples: samples as u64, effects, first: record == 0 })
 }
 
