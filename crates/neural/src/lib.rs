@@ -8,7 +8,9 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod adam;
 mod affine_skip;
+pub mod amortized;
 mod decay;
 mod device;
 mod flat;
@@ -16,14 +18,17 @@ mod laplace;
 mod lbfgs;
 mod levenberg_marquardt;
 mod minimum;
+mod sequence;
 mod weights;
 
+pub use adam::Adam;
 pub use affine_skip::{AffineSkipNetwork, Linearization};
-pub use decay::{Differentiated, Encoder, Reconstruction, Sequence};
+pub use decay::{Differentiated, Encoder, Reconstruction};
 pub use device::{device, tensor, values};
 pub use flat::{flat_gradient, named_parameters, with_parameters};
 pub use laplace::Laplace;
 pub use lbfgs::{Lbfgs, Smooth};
 pub use levenberg_marquardt::{LeastSquares, LevenbergMarquardt, Linearized};
 pub use minimum::{Iteration, Minimum, StopReason};
+pub use sequence::Sequence;
 pub use weights::{NamedTensor, from_safetensors, to_safetensors};

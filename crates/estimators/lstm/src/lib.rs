@@ -15,11 +15,13 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod amortized;
 mod backpropagation;
 mod config;
 mod fit;
 mod network;
 
+pub use amortized::{AMORTIZED_ENTRY, AmortizedLstmConfig};
 pub use config::LstmConfig;
 
 use estimator::{Entry, Estimator, Tag};

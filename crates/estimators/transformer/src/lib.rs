@@ -17,10 +17,12 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod amortized;
 mod config;
 mod fit;
 mod network;
 
+pub use amortized::{AMORTIZED_ENTRY, AmortizedTransformerConfig};
 pub use config::TransformerConfig;
 
 use estimator::{Entry, Estimator, Tag};
