@@ -8,14 +8,20 @@ use std::collections::HashMap;
 use std::hash::Hash;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
+/// The seed of a fit and the cap on its steps.
+type Course = (u64, Option<u64>);
+
+/// What pretraining gives.
+type Reader = Option<Box<dyn Estimator>>;
+
 /// An estimator under test, with its default settings. What one check has had it fit or learn, the next
 /// one finds done.
 pub struct Subject<'a> {
     /// The registry's line.
     pub entry: &'a Entry,
     estimator: Box<dyn Estimator>,
-    pretrained: Done<(u64, Option<u64>), Result<Option<Box<dyn Estimator>>, FitError>>,
-    fitted: Done<(Vec<u64>, u64, Option<u64>), Result<Estimate, FitError>>,
+    pretrained: Done<Course, Result<Reader, FitError>>,
+    fitted: Done<(Vec<u64>, Course), Result<Estimate, FitError>>,
 }
 
 /// Steps of an amortized estimator where a check asks for a training of its own and what it learns does
@@ -42,7 +48,7 @@ impl<'a> Subject<'a> {
     pub fn fit(&self, envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Result<Estimate, FitError> {
         let numbers = envelope.times_s().iter().chain(envelope.log_amplitudes());
         let bits = numbers.chain([&envelope.omega_rad_s()]).map(|number| number.to_bits()).collect();
-        let fit = self.fitted.of((bits, seed, max_steps), || self.read(envelope, seed, max_steps));
+        let fit = self.fitted.of((bits, (seed, max_steps)), || self.read(envelope, seed, max_steps));
         fit.as_ref().clone()
     }
 
@@ -90,7 +96,7 @@ impl<'a> Subject<'a> {
         if self.entry.has(Tag::Amortized) { 0 } else { draw }
     }
 
-    fn pretrain(&self, seed: u64, max_steps: Option<u64>) -> Result<Option<Box<dyn Estimator>>, FitError> {
+    fn pretrain(&self, seed: u64, max_steps: Option<u64>) -> Result<Reader, FitError> {
         let cancel = Cancel::new();
         self.estimator.pretrain(&self.context(seed, max_steps, &cancel))
     }

@@ -1,5 +1,6 @@
 //! What the networks share on burn: double precision, affine-skip networks, encoders of a decay,
-//! parameters as a flat list, Levenberg-Marquardt, limited-memory BFGS, safetensors.
+//! parameters as a flat list, Levenberg-Marquardt, limited-memory BFGS, Adam, safetensors; and how a network
+//! learns to read envelopes in general ([`amortized`]).
 //!
 //! burn computes forward and backward passes; what is added here is what reaching many digits takes:
 //! a device set to double precision, exact Jacobians of a network's values and of its input

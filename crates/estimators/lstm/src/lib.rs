@@ -10,6 +10,9 @@
 //! a skill. Its minimum is the exponential that fits best in the sense of least squares, and there it
 //! arrives to the last digits.
 //!
+//! [`AMORTIZED_ENTRY`] is the same network with a skill instead: trained on simulated envelopes only, then
+//! shown one it never saw ([`neural::amortized`]).
+//!
 //! Reference: Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735; the forget gate: Gers,
 //! Schmidhuber, Cummins, Neural Computation 12 (2000) 2451.
 

@@ -27,7 +27,9 @@ pub struct AmortizedTransformerConfig {
 }
 
 const SOURCE_OF_LAYERS: &str =
-    "one layer comes within 7 % of least squares, two within 5 %, at the same number of steps";
+    "on hardly bent envelopes one layer comes within 7 % of least squares, two within 5 %";
+
+const SOURCE_OF_LENGTH: &str = "the attention costs as the square of the length; means over runs cost 1/runs² of the accuracy, 1.2 % at 9";
 
 /// The configuration keys.
 const FIELDS: &[Field] = &[
@@ -35,9 +37,9 @@ const FIELDS: &[Field] = &[
     HEADS,
     HEAD_WIDTH,
     FEED_FORWARD_WIDTH,
-    fields::LONGEST_SEQUENCE,
+    Field { default: settings::Default::Integer(16), source: SOURCE_OF_LENGTH, ..fields::LONGEST_SEQUENCE },
     fields::MOST_LOOKS,
-    Field { default: settings::Default::Integer(300), ..fields::MAX_STEPS },
+    Field { default: settings::Default::Integer(450), ..fields::MAX_STEPS },
     fields::BATCH,
     fields::LEARNING_RATE,
     fields::CALIBRATION,

@@ -24,8 +24,8 @@ pub struct Prior {
     pub missing: f64,
     /// Share of the envelopes that bend.
     pub bent: f64,
-    /// Largest distance of a bent envelope's middle from its chord, as a share of the decay; drawn
-    /// evenly, to either side.
+    /// Largest distance of a bent envelope from its chord, as a share of the decay; drawn evenly, to
+    /// either side.
     pub bend: f64,
 }
 
@@ -91,8 +91,8 @@ impl Prior {
         let change = growth * log_uniform(self.decay, generator);
         let scatter = log_uniform(self.scatter, generator);
         let bends = generator.random::<f64>() < self.bent;
-        let sag = if bends { change * self.bend * generator.random_range(-1.0..=1.0) } else { 0.0 };
-        let curve: Vec<f64> = times.iter().map(|s| change * s / 2.0 + sag * (1.0 - s * s)).collect();
+        let bend = if bends { Bend::draw(self.bend, generator) } else { Bend::NONE };
+        let curve: Vec<f64> = times.iter().map(|&s| change * (s / 2.0 + bend.off_chord(s))).collect();
         let line = closest_line(&times, &curve);
         let values =
             curve.iter().map(|value| value + scatter * generator.sample::<f64, _>(StandardNormal)).collect();
@@ -138,6 +138,40 @@ impl Simulated {
         let [true_level, true_rate] = self.line;
         let left = [true_level - level, true_rate - rate];
         Example { line: standard.scaled(left), sequence: standard.sequence }
+    }
+}
+
+/// How a curve leaves its chord: as uᵖ does from u, with u the share of the record that is over, or still
+/// to come.
+///
+/// p = 2 is a parabola, as a damping that falls with the amplitude gives it to first order; a large p stays
+/// straight and plunges at one end, as dry friction makes ln A do before the oscillator comes to rest.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Bend {
+    /// Largest distance from the chord, as a share of the decay; of either sign.
+    size: f64,
+    power: f64,
+    /// Whether u is what is still to come.
+    early: bool,
+}
+
+/// Powers p of a bend.
+const POWERS: [f64; 2] = [2.0, 8.0];
+
+impl Bend {
+    const NONE: Self = Self { size: 0.0, power: 2.0, early: false };
+
+    fn draw(largest: f64, generator: &mut impl Rng) -> Self {
+        let size = largest * generator.random_range(-1.0..=1.0);
+        Self { size, power: log_uniform(POWERS, generator), early: generator.random() }
+    }
+
+    /// Distance from the chord at s, as a share of the decay.
+    fn off_chord(self, s: f64) -> f64 {
+        let u = if self.early { (1.0 - s) / 2.0 } else { (1.0 + s) / 2.0 };
+        // u − uᵖ is largest at u = p^(−1/(p − 1)).
+        let farthest = self.power.powf(-1.0 / (self.power - 1.0));
+        self.size * (u - u.powf(self.power)) / (farthest - farthest.powf(self.power))
     }
 }
 
@@ -191,7 +225,7 @@ fn closest_line(times: &[f64], curve: &[f64]) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::{Prior, closest_line};
+    use super::{Bend, Prior, closest_line};
     use crate::amortized::tiny::prior;
     use crate::sequence::Sequence;
     use rand::SeedableRng;
@@ -243,21 +277,34 @@ mod tests {
             assert!(((squares / 400.0).sqrt() / 0.05 - 1.0).abs() < 0.18, "{squares}");
         }
         let bent = Prior { bent: 1.0, scatter: [1e-9, 1e-9], decay: [2.0, 2.0], ..straight };
-        let sags: Vec<f64> = bent
+        let distances: Vec<f64> = bent
             .sequences(400, &mut generator())
             .iter()
-            .map(|(sequence, _)| {
-                let chord = f64::midpoint(sequence.values[0], sequence.values[399]);
-                let middle = sequence.times.iter().position(|&s| s >= 0.0).unwrap();
-                // The chord has moved on by the time of the first peak after the middle.
-                let slope = (sequence.values[399] - sequence.values[0]) / 2.0;
-                sequence.values[middle] - chord - slope * sequence.times[middle]
+            .map(|(Sequence { times, values }, _)| {
+                let (first, last) = (values[0], values[399]);
+                let chord = |s: &f64| first + (last - first) * (s + 1.0) / 2.0;
+                times.iter().zip(values).map(|(s, z)| (z - chord(s)).abs()).fold(0.0, f64::max)
             })
             .collect();
-        // Even within ±0.1·2.
-        assert!(sags.iter().all(|sag| sag.abs() < 0.2 + 1e-6));
-        let half = share(&sags, |sag| sag.abs() < 0.1);
+        // Even within 0 to 0.1·2.
+        assert!(distances.iter().all(|distance| *distance < 0.2 + 1e-6));
+        let half = share(&distances, |distance| *distance < 0.1);
         assert!((half - 0.5).abs() < 0.125, "{half}");
+    }
+
+    #[test]
+    fn a_bend_leaves_its_chord_at_neither_end_and_goes_as_far_as_it_says() {
+        for (power, farthest) in [(2.0, 0.5), (8.0, 8_f64.powf(-1.0 / 7.0))] {
+            for early in [false, true] {
+                let bend = Bend { size: -0.3, power, early };
+                assert!(bend.off_chord(-1.0).abs() < 1e-15 && bend.off_chord(1.0).abs() < 1e-15);
+                let u: f64 = if early { 1.0 - farthest } else { farthest };
+                assert!((bend.off_chord(2.0 * u - 1.0) + 0.3).abs() < 1e-14);
+                let within =
+                    (0..=200).all(|at| bend.off_chord(f64::from(at) / 100.0 - 1.0).abs() < 0.3 + 1e-14);
+                assert!(within);
+            }
+        }
     }
 
     #[test]

@@ -53,6 +53,9 @@ struct Trained<N> {
 const WATCHED_PEAKS: usize = 30;
 const WATCHED_INTERVAL_S: f64 = 0.1;
 
+/// Looks at what is watched: enough to tell how far the training is, at a tenth of its time.
+const WATCHED_LOOKS: usize = 2;
+
 impl<N: Skilled> Amortized<N> {
     /// The estimator from checked settings: prior and training from the section `estimator`, which holds
     /// [`fields`](super::fields) besides the network's own keys.
@@ -74,9 +77,10 @@ impl<N: Skilled> Amortized<N> {
         let device = device()?;
         let encoder = self.network.encoder(SAID, &device);
         let start = self.network.start(&encoder, &context.seed("initial weights"))?;
+        let glance = Training { most_looks: WATCHED_LOOKS, ..self.training.clone() };
         let rate_of = |parameters: &[f64]| {
             let encoder = with_parameters(encoder.clone(), parameters, &device)?;
-            let reading = self.training.read(&encoder, watched, &device)?;
+            let reading = glance.read(&encoder, watched, &device)?;
             Ok(scaling.rate_per_centered_time(reading.rate))
         };
         self.training.train(&self.prior, &encoder, start, context, &device, rate_of)

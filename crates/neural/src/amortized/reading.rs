@@ -27,6 +27,10 @@ pub(super) struct Reading {
 /// A look that moves the rate by a smaller share of its stated error tells nothing new.
 const SETTLED: f64 = 0.01;
 
+/// Looks that are believed in full. Where they have not settled it, the network sees too much one time and
+/// too much the other way the next; going half way ends that, and ends at the same place.
+const FULL_LOOKS: usize = 10;
+
 /// A spread that is left over, as a share of the one at the beginning, where rounding has the last word.
 const ROUNDING: f64 = 1e-13;
 
@@ -57,8 +61,9 @@ impl Reading {
     fn learn(&mut self, seen: &Standardized, [level, rate, level_variance, rate_variance]: [f64; SAID]) {
         let entries = seen.sequence.len() as f64;
         let std_error = |log_variance: f64| (log_variance.exp() / entries).sqrt();
-        self.level += seen.mean + seen.spread * level;
-        self.rate += seen.spread * rate;
+        let share = if self.looks < FULL_LOOKS { 1.0 } else { 0.5 };
+        self.level += seen.mean + share * seen.spread * level;
+        self.rate += share * seen.spread * rate;
         self.level_std_error = seen.spread * std_error(level_variance);
         self.rate_std_error = seen.spread * std_error(rate_variance);
         self.moved = rate.abs() / std_error(rate_variance);
@@ -194,7 +199,7 @@ mod tests {
         let training = estimator().training;
         let times: Vec<f64> = (0..9).map(|at| f64::from(at) / 4.0 - 1.0).collect();
         let line = Sequence { values: times.iter().map(|s| 1.0 - 3.0 * s).collect(), times: times.clone() };
-        let reading = training.read(&reader(0.7), &line, &device).unwrap();
+        let reading = training.read(&reader(0.75), &line, &device).unwrap();
         assert!(reading.exact && (reading.rate - 3.0).abs() < 1e-12, "{reading:?}");
         let flat = Sequence { values: vec![4.0; 9], times };
         let reading = training.read(&reader(0.7), &flat, &device).unwrap();
@@ -204,9 +209,14 @@ mod tests {
     #[test]
     fn looks_are_counted_and_end() {
         let device = device().unwrap();
-        // It says twice the rate it sees: the next look sees it with the other sign.
-        let reading = estimator().training.read(&reader(2.0), &sequence(5.0), &device).unwrap();
+        let read = |share| estimator().training.read(&reader(share), &sequence(5.0), &device).unwrap();
+        // It says five times the rate it sees: the next look sees more of it, with the other sign.
+        let reading = read(5.0);
         assert!(!reading.is_settled() && reading.looks == 20, "{reading:?}");
+        // Twice the rate: full looks go to and fro for ever, halves settle where others do.
+        let (reading, other) = (read(2.0), read(0.7));
+        assert!(reading.is_settled() && reading.looks > 10, "{reading:?}");
+        assert!((reading.rate - other.rate).abs() < 0.05 * other.rate_std_error, "{reading:?} {other:?}");
     }
 
     #[test]
