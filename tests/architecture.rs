@@ -11,7 +11,7 @@ fn layer(name: &str) -> Option<u8> {
     Some(match name {
         "record" | "seed" | "settings" => 0,
         "envelope" => 1,
-        "estimator" => 2,
+        "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,
         "oracle" => 4,

@@ -231,3 +231,36 @@ fn a_classical_method_takes_no_cap_on_its_steps() {
     let message = refusal(&["configs/ols.toml", "fit.max_steps=3"]);
     assert!(message.contains("`fit.max_steps` is 3; expected to be left out"), "{message}");
 }
+
+#[test]
+fn studies_of_prediction() {
+    let quick = ["configs/beyond.toml", "predict.methods=ols", "predict.problems=dry-friction"];
+    for (argument, expected) in [
+        ("predict.methods=olz", "unknown method \"olz\"; did you mean `ols`?"),
+        ("predict.problems=dry", "unknown problem \"dry\"; "),
+        ("predict.draws=0", "expected a whole number from 1"),
+        ("predict.last_share=1", "expected a finite number from 0.05 to 0.8"),
+        ("problem.dry-friction.kind=dry", "expected one of \"exponential\", \"coulomb-viscous\""),
+        ("problem.dry-friction.deadzone=1", "did you mean `problem.dry-friction.dead_zone`?"),
+        ("problem.dry-friction.dead_zone=0.01", "dry friction ends the motion at turning point "),
+        ("problem.dry-friction.scatter_size=0.1", "standard deviations of the scatter"),
+        ("predict.block_peaks=60", "72 peaks cannot be split: interpolation needs three blocks"),
+        ("problem.new.kind=record", "`problem.new.path` is missing"),
+    ] {
+        let message = refusal(&[&quick[..], &[argument]].concat());
+        assert!(message.contains(expected), "{argument}: {message}");
+    }
+    let message = with_config("task = \"predict\"\n");
+    assert!(message.contains("`problem.NAME` is missing: A study needs problems."), "{message}");
+    let message = with_config("task = \"predict\"\n[problem.a]\n");
+    assert!(message.contains("`problem.a.kind` is missing"), "{message}");
+    let message = with_config("task = \"predict\"\n[problem.a]\nkind = \"exponential\"\ndead_zone = 1\n");
+    assert!(message.contains(":4:1: unknown key `problem.a.dead_zone`"), "{message}");
+    // A record that is there and cannot be used is no absence.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("record.csv");
+    std::fs::write(&file, "time_s,angle_rad\n0,1\n").unwrap();
+    let path = format!("problem.shipped-record.path={}", file.display());
+    let message = refusal(&["configs/beyond.toml", "predict.problems=shipped-record", &path]);
+    assert!(message.contains("record.csv: has 1 sample;"), "{message}");
+}

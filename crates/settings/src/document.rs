@@ -49,6 +49,8 @@ pub struct Leaf {
 pub struct Document {
     file: String,
     leaves: Vec<Leaf>,
+    /// Dotted names of the tables that the file opens, empty ones among them.
+    tables: Vec<String>,
 }
 
 impl Document {
@@ -62,7 +64,7 @@ impl Document {
             let problem = error.message().trim().replace('\n', ", ");
             SettingsError::Syntax { file: file.to_owned(), line, column, problem }
         })?;
-        let mut document = Self { file: file.to_owned(), leaves: Vec::new() };
+        let mut document = Self { file: file.to_owned(), ..Self::default() };
         document.collect(text, "", table.get_ref())?;
         Ok(document)
     }
@@ -83,6 +85,28 @@ impl Document {
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Leaf> {
         self.leaves.iter().find(|leaf| leaf.key == key)
+    }
+
+    /// Names of the tables directly below a table, as `one` of `[prefix.one]`: in the order written, those
+    /// that only an override opens last.
+    #[must_use]
+    pub fn tables_below(&self, prefix: &str) -> Vec<String> {
+        let below = |key: &str| {
+            let rest = key.strip_prefix(prefix)?.strip_prefix('.')?;
+            Some(rest.split('.').next().unwrap_or(rest).to_owned())
+        };
+        // A leaf directly below the prefix is a key, not a table.
+        let is_inside = |leaf: &&Leaf| {
+            leaf.key.strip_prefix(prefix).is_some_and(|rest| rest.trim_start_matches('.').contains('.'))
+        };
+        let leaves = self.leaves.iter().filter(is_inside).map(|leaf| leaf.key.as_str());
+        let mut names: Vec<String> = Vec::new();
+        for name in self.tables.iter().map(String::as_str).chain(leaves).filter_map(below) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 
     /// Applies one `key=value` argument; the value is TOML, or plain text where it is not.
@@ -126,6 +150,7 @@ impl Document {
             let (line, column) = place(text, name.span().start);
             let origin = Origin::File { file: self.file.clone(), line, column };
             if let DeValue::Table(inner) = value.get_ref() {
+                self.tables.push(key.clone());
                 self.collect(text, &key, inner)?;
             } else {
                 let value = plain(value.get_ref()).map_err(|problem| SettingsError::Syntax {

@@ -150,3 +150,29 @@ fn an_override_without_a_key_is_refused() {
 fn a_section_given_as_a_number_is_an_unknown_key() {
     assert_eq!(message("fit = 3", &[]), "a.toml:1:1: unknown key `fit`; known are seed");
 }
+
+#[test]
+fn tables_below_a_name_are_found_in_the_order_written() {
+    let text = "[problem.b]\nkind = 1\n[other]\nx = 1\n[problem.empty]\n[problem.a]\nkind = 2\n";
+    let mut document = Document::parse("a.toml", text).unwrap();
+    document.apply_override("problem.c.kind=3").unwrap();
+    document.apply_override("problem.a.kind=4").unwrap();
+    assert_eq!(document.tables_below("problem"), ["b", "empty", "a", "c"]);
+    assert_eq!(document.tables_below("prob"), [] as [&str; 0]);
+}
+
+#[test]
+fn a_table_that_the_configuration_names_is_checked_like_any_other() {
+    let document = Document::parse("a.toml", "[problem.mine]\nduration = -1\n").unwrap();
+    let name = "problem.mine".to_owned();
+    let fields = [Field { key: "duration", ..SECTIONS[1].fields[1] }];
+    let sections = [Section { name: &name, fields: &fields }];
+    let refused = Resolved::new(&document, &sections).unwrap_err().to_string();
+    assert_eq!(
+        refused,
+        "a.toml:2:1: `problem.mine.duration` is -1; expected a finite number from 0 to 1000 (s)"
+    );
+    let document = Document::parse("a.toml", "[problem.mine]\nduration = 2\n").unwrap();
+    let resolved = Resolved::new(&document, &sections).unwrap();
+    assert!(resolved.to_toml().contains("\n[problem.mine]\nduration = 2.0"), "{}", resolved.to_toml());
+}

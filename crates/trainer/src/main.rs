@@ -14,6 +14,7 @@ mod input;
 mod interrupt;
 mod list;
 mod method;
+mod predict;
 mod progress;
 mod rerender;
 mod run;

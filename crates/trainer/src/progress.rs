@@ -66,6 +66,15 @@ impl Progress {
         }
     }
 
+    /// One more of very many fits is done: a line for every tenth part of them.
+    pub(crate) fn one_of_many_done(&self) {
+        self.bar.inc(1);
+        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
+            console::remark(&format!("{done} of {all} fits"));
+        }
+    }
+
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
     }

@@ -5,8 +5,14 @@
 //! is not.
 
 mod comparison;
+mod prediction;
 
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
+pub use prediction::{
+    Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
+    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
+    SplitSummary,
+};
 
 use serde::{Deserialize, Deserializer, Serialize};
 
