@@ -179,11 +179,7 @@ mod tests {
 
     /// An envelope that is no exponential: it bends and scatters.
     fn envelope() -> Envelope {
-        let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
-        let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
-        let logs =
-            times.iter().enumerate().map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i)).collect();
-        Envelope::new(times, logs, 21.8).unwrap()
+        conformance::bent().unwrap()
     }
 
     /// The slope of the least-squares line, and its standard error, from the textbook.
@@ -302,7 +298,7 @@ mod tests {
 
     #[test]
     fn predictive_intervals_hold_fresh_peaks() {
-        let (mut held, replicates) = (0, 12);
+        let (mut held, replicates) = (0, 8);
         // From the first peak to a third of the record beyond the last.
         let times: Vec<f64> = (0..20).map(|i| 0.55 * f64::from(i)).collect();
         for replicate in 0..replicates {

@@ -38,7 +38,7 @@ impl TangentSpace {
         let mut rest: Vec<f64> = column.iter().map(|entry| entry / length).collect();
         for _ in 0..2 {
             for direction in &self.basis {
-                let pairs = direction.iter().zip(&rest).take(self.peaks);
+                let pairs = self.measured(direction).iter().zip(self.measured(&rest));
                 let along: f64 = pairs.map(|(a, b)| a * b).sum();
                 rest.iter_mut().zip(direction).for_each(|(rest, entry)| *rest -= along * entry);
             }
@@ -64,7 +64,11 @@ impl TangentSpace {
     }
 
     fn norm(&self, column: &[f64]) -> f64 {
-        column.iter().take(self.peaks).map(|entry| entry * entry).sum::<f64>().sqrt()
+        self.measured(column).iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+    }
+
+    fn measured<'a>(&self, column: &'a [f64]) -> &'a [f64] {
+        column.get(..self.peaks).unwrap_or(column)
     }
 }
 
