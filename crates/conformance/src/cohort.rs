@@ -1,5 +1,6 @@
 //! Coverage of stated intervals over a cohort of simulated envelopes.
 
+use crate::calibration::{Calibration, level};
 use crate::{Subject, query_times, scattered};
 use rand_distr::{Distribution, Normal};
 use seed::Seed;
@@ -35,13 +36,15 @@ impl Coverage {
 }
 
 /// What [`coverage`] finds.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Cohort {
     /// Intervals of λ.
     pub rates: Coverage,
     /// Predictive intervals of one fresh peak an envelope; none tried where the method states no standard
     /// deviation of its predictions.
     pub fresh_peaks: Coverage,
+    /// Where λ fell in the stated posteriors.
+    pub calibration: Calibration,
 }
 
 /// The normal distribution's quantile at 97.5 %: with 67 degrees of freedom Student's t is 2 % wider, half
@@ -69,6 +72,8 @@ pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String>
             subject.read(&envelope, subject.seed_of_draw(draw), None).map_err(|error| error.to_string())?;
         let known = estimate.uncertainty.ok_or_else(|| format!("draw {draw}: no interval"))?;
         let [low, high] = known.interval_95;
+        let level = level(&known, estimate.decay_rate, RATE);
+        cohort.calibration.levels.extend(level);
         cohort.rates.count((low..=high).contains(&RATE));
         let asked: Vec<_> = query_times(&envelope).into_iter().zip(&estimate.predictions).collect();
         // Another place in every envelope, so that the peaks are independent.
@@ -80,5 +85,6 @@ pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String>
             cohort.fresh_peaks.count((peak - prediction.log_amplitude).abs() <= QUANTILE_975 * std_error);
         }
     }
+    cohort.calibration.levels.sort_by(f64::total_cmp);
     Ok(cohort)
 }

@@ -165,7 +165,14 @@ fn tables_below_a_name_are_found_in_the_order_written() {
 fn a_table_that_the_configuration_names_is_checked_like_any_other() {
     let document = Document::parse("a.toml", "[problem.mine]\nduration = -1\n").unwrap();
     let name = "problem.mine".to_owned();
-    let fields = [Field { key: "duration", ..SECTIONS[1].fields[1] }];
+    let fields = [Field {
+        key: "duration",
+        kind: Kind::Float { min: 0.0, max: 1e3 },
+        default: Default::Required,
+        unit: "s",
+        meaning: "How long.",
+        source: "",
+    }];
     let sections = [Section { name: &name, fields: &fields }];
     let refused = Resolved::new(&document, &sections).unwrap_err().to_string();
     assert_eq!(

@@ -19,12 +19,12 @@ pub(super) fn verdict(study: &ProblemStudy, significance: f64) -> Vec<String> {
     }];
     sentences.push(format!(
         "Between other peaks {}",
-        tested(study, &study.exponential.interpolation, |row| interpolation(row), significance)
+        tested(study, &study.exponential.interpolation, interpolation, significance)
     ));
     sentences.push(if study.law.is_some() {
         format!(
             "Beyond the last peak seen {}",
-            tested(study, &study.exponential.extrapolation, |row| extrapolation(row), significance)
+            tested(study, &study.exponential.extrapolation, extrapolation, significance)
         )
     } else {
         single_stretch(study)
