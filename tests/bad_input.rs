@@ -33,6 +33,29 @@ fn refusal(arguments: &[&str]) -> String {
     message
 }
 
+/// Runs a simulation with these overrides and expects a refusal with these words.
+fn not_simulated(arguments: &[&str], expected: &str) {
+    let message = refusal(&[&["simulate", "configs/default-record.toml"], arguments].concat());
+    assert!(message.contains(expected), "no `{expected}` in: {message}");
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused() {
+    not_simulated(&["effects.1.id=columb_friction"], "did you mean `coulomb_friction`?");
+    not_simulated(&["nominal.inertia=-1"], "`nominal.inertia` is -1; expected a finite number from 0 up");
+    not_simulated(&["nominal.damping.from=1e-4"], "expected a number, or a prior");
+    not_simulated(&["sensor.noise=-1"], "`sensor.noise` is -1; expected a finite number from 0 up (rad)");
+    not_simulated(&["effects.4.parameters.step=3"], "`step` is 3, but must be at most");
+    not_simulated(&["effects.5.parameters.interval=0.001"], "a shorter burst holds zero samples");
+    not_simulated(&["effects.9.id=sensor_lag"], "`effects.9.parameters.time_constant` is missing");
+    not_simulated(&["record.seconds=0.03"], "default-record.toml: system 0, record 0: ");
+    not_simulated(&["record.decimals=3"], "unknown key `record.decimals`");
+    let message = refusal(&["simulate", "configs/no-such.toml"]);
+    assert!(message.contains("configs/no-such.toml: cannot be read"), "{message}");
+    let message = refusal(&["simulate", "configs/pinn.toml"]);
+    assert!(message.contains("configs/pinn.toml:"), "{message}");
+}
+
 /// A record of a decaying oscillation, one sample a line.
 fn decay(samples: usize) -> String {
     let mut text = "time_s,angle_rad\n".to_owned();
@@ -230,4 +253,37 @@ fn with_config(text: &str) -> String {
 fn a_classical_method_takes_no_cap_on_its_steps() {
     let message = refusal(&["configs/ols.toml", "fit.max_steps=3"]);
     assert!(message.contains("`fit.max_steps` is 3; expected to be left out"), "{message}");
+}
+
+#[test]
+fn studies_of_prediction() {
+    let quick = ["configs/beyond.toml", "predict.methods=ols", "predict.problems=dry-friction"];
+    for (argument, expected) in [
+        ("predict.methods=olz", "unknown method \"olz\"; did you mean `ols`?"),
+        ("predict.problems=dry", "unknown problem \"dry\"; "),
+        ("predict.draws=0", "expected a whole number from 1"),
+        ("predict.last_share=1", "expected a finite number from 0.05 to 0.8"),
+        ("problem.dry-friction.kind=dry", "expected one of \"exponential\", \"coulomb-viscous\""),
+        ("problem.dry-friction.deadzone=1", "did you mean `problem.dry-friction.dead_zone`?"),
+        ("problem.dry-friction.dead_zone=0.01", "dry friction ends the motion at turning point "),
+        ("problem.dry-friction.scatter_size=0.1", "standard deviations of the scatter"),
+        ("predict.block_peaks=60", "72 peaks cannot be split: interpolation needs three blocks"),
+        ("problem.new.kind=record", "`problem.new.path` is missing"),
+    ] {
+        let message = refusal(&[&quick[..], &[argument]].concat());
+        assert!(message.contains(expected), "{argument}: {message}");
+    }
+    let message = with_config("task = \"predict\"\n");
+    assert!(message.contains("`problem.NAME` is missing: A study needs problems."), "{message}");
+    let message = with_config("task = \"predict\"\n[problem.a]\n");
+    assert!(message.contains("`problem.a.kind` is missing"), "{message}");
+    let message = with_config("task = \"predict\"\n[problem.a]\nkind = \"exponential\"\ndead_zone = 1\n");
+    assert!(message.contains(":4:1: unknown key `problem.a.dead_zone`"), "{message}");
+    // A record that is there and cannot be used is no absence.
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("record.csv");
+    std::fs::write(&file, "time_s,angle_rad\n0,1\n").unwrap();
+    let path = format!("problem.shipped-record.path={}", file.display());
+    let message = refusal(&["configs/beyond.toml", "predict.problems=shipped-record", &path]);
+    assert!(message.contains("record.csv: has 1 sample;"), "{message}");
 }

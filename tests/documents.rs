@@ -38,10 +38,18 @@ fn the_help_shows_the_exit_codes_and_examples() {
     }
 }
 
-/// Each one as a user would run it. The null estimator's misses its bar by design.
+/// Each one as a user would run it, the study of many problems cut short. The null estimator's misses its
+/// bar by design.
 #[test]
 fn every_shipped_configuration_runs() {
     for path in files("configs", "toml") {
+        if path.ends_with("beyond.toml") {
+            // A record that is absent is no obstacle to it.
+            let quick = ["predict.draws=2", "predict.draws_seeded=1", "predict.max_steps=20"];
+            let (code, result, _) = result(&[&[path.to_str().unwrap()], &quick[..]].concat());
+            assert_eq!(code, 0, "{}: {result}", path.display());
+            continue;
+        }
         let text = std::fs::read_to_string(&path).unwrap();
         let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../shared/data/"));
         if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {

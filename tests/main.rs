@@ -19,6 +19,8 @@ mod documents;
 mod honesty;
 mod measured_records;
 mod nist;
+mod prediction;
 mod recipe;
 mod runs;
+mod simulation;
 mod support;

@@ -7,7 +7,7 @@ use seed::Seed;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// How evenly the truth fell over the stated posteriors.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct Calibration {
     /// The posterior's distribution function at the truth, one number in 0..1 for each envelope, in
     /// increasing order.
@@ -38,7 +38,7 @@ impl Calibration {
     }
 }
 
-/// Fits `envelopes` simulated envelopes of a population, each with its own number of peaks (8 to 80),
+/// Fits `envelopes` simulated envelopes of a population, each with its own number of peaks (12 to 80),
 /// decay rate (0.02 to 2 1/s) and scatter (0.03 to 0.3 on ln A), and asks each stated posterior for its
 /// distribution function at the true rate.
 ///
@@ -56,10 +56,11 @@ pub fn calibration(subject: &Subject<'_>, envelopes: u64) -> Result<Calibration,
         let seed = Seed::new(draw).child("calibration");
         let mut generator = seed.child("truth").generator();
         let mut between = |low: f64, high: f64| low * (high / low).powf(generator.random::<f64>());
-        let (peaks, rate, scatter) = (between(8.0, 80.0) as usize, between(0.02, 2.0), between(0.03, 0.3));
+        let (peaks, rate, scatter) = (between(12.0, 80.0) as usize, between(0.02, 2.0), between(0.03, 0.3));
         let envelope = scattered(peaks, rate, scatter, &seed)
             .ok_or_else(|| "the battery's own envelope is unusable".to_owned())?;
-        let estimate = subject.fit(&envelope, draw, None).map_err(|error| error.to_string())?;
+        let estimate =
+            subject.read(&envelope, subject.seed_of_draw(draw), None).map_err(|error| error.to_string())?;
         let Some(known) = estimate.uncertainty else {
             without_interval += 1;
             continue;
@@ -74,7 +75,7 @@ pub fn calibration(subject: &Subject<'_>, envelopes: u64) -> Result<Calibration,
 
 /// The distribution function at `truth` of Student's t about `center`, with the degrees of freedom that
 /// standard error and interval tell.
-fn level(known: &Uncertainty, center: f64, truth: f64) -> Option<f64> {
+pub(crate) fn level(known: &Uncertainty, center: f64, truth: f64) -> Option<f64> {
     let [low, high] = known.interval_95;
     let quantile = (high - low) / (2.0 * known.std_error);
     let freedom = degrees_of_freedom(quantile)?;

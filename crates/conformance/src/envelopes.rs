@@ -45,3 +45,43 @@ pub fn bent() -> Option<Envelope> {
     let scatter = |time: f64| 0.03 * (37.0 * time).sin() + 0.02 * (91.0 * time + 1.0).cos();
     envelope(69, |time| -0.6 - 0.15 * time - 0.003 * time * time + scatter(time))
 }
+
+#[cfg(test)]
+mod tests {
+    use envelope::{Envelope, EnvelopeError};
+
+    /// What no estimator can be handed, whoever wrote it: the type refuses, with a typed error.
+    #[test]
+    fn peaks_out_of_order_twice_not_finite_or_too_few_are_no_envelope() {
+        let logs = [0.0, -0.1, -0.3, -0.4];
+        let rows = |order: &[usize]| -> (Vec<f64>, Vec<f64>) {
+            order.iter().map(|&at| (at as f64, logs[at])).unzip()
+        };
+        let with = |time: f64, log: f64| {
+            let (mut times, mut logs) = rows(&[0, 1, 2, 3]);
+            (times[2], logs[2]) = (time, log);
+            (times, logs)
+        };
+        let (times, _) = rows(&[0, 1, 2, 3]);
+        for (name, (times, logs)) in [
+            ("another order", rows(&[0, 2, 1, 3])),
+            ("backward", rows(&[3, 2, 1, 0])),
+            ("twice", rows(&[0, 1, 1, 2, 3])),
+            ("a time that is no number", with(f64::NAN, -0.3)),
+            ("an infinite time", with(f64::INFINITY, -0.3)),
+            ("a logarithm that is no number", with(2.0, f64::NAN)),
+            ("the logarithm of zero", with(2.0, f64::NEG_INFINITY)),
+            ("none", rows(&[])),
+            ("one", rows(&[0])),
+            ("two", rows(&[0, 1])),
+            ("more times than logarithms", (times.clone(), vec![0.0; 3])),
+        ] {
+            let refused = Envelope::new(times, logs, 21.8);
+            assert!(matches!(refused, Err(EnvelopeError::TooFewPeaks { .. })), "{name}: {refused:?}");
+        }
+        for omega in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(Envelope::new(times.clone(), logs.to_vec(), omega).is_err(), "{omega}");
+        }
+        assert!(Envelope::new(times, logs.to_vec(), 21.8).is_ok());
+    }
+}

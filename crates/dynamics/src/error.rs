@@ -98,6 +98,36 @@ pub enum DynamicsError {
         /// The effect's id.
         effect: &'static str,
     },
+    /// An effect in the system where one of the measuring chain is expected.
+    #[error("`{effect}` changes the motion and does not belong to the measuring chain")]
+    NotInTheChain {
+        /// The effect's id.
+        effect: &'static str,
+    },
+    /// A sensor on which the effect has no meaning.
+    #[error("`{effect}` needs {needs}")]
+    NotForThisSensor {
+        /// The effect's id.
+        effect: &'static str,
+        /// What it needs.
+        needs: &'static str,
+    },
+    /// A standard deviation of noise that is none.
+    #[error("the sensor's noise is {value}; expected a finite number of 0 or above")]
+    BadNoise {
+        /// The standard deviation as given.
+        value: f64,
+    },
+    /// Columns of a sampled motion that do not belong together.
+    #[error("the sampled {what} holds {found} numbers for {times} times; expected one each, at least two")]
+    UnequalLengths {
+        /// The column.
+        what: &'static str,
+        /// Its length.
+        found: usize,
+        /// Number of times.
+        times: usize,
+    },
     /// A release from rest inside the dead zone: the spring does not pull.
     #[error(
         "the dead zone of `backlash`, ±{half_width}, is wider than the release, {release} from the rest \

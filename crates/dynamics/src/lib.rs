@@ -12,11 +12,14 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod active;
+pub mod chain;
 mod description;
 mod edges;
 pub mod effects;
 mod error;
 mod field;
+#[cfg(test)]
+mod fixtures;
 mod input;
 mod law;
 mod nominal;
@@ -38,6 +41,6 @@ pub use field::SYSTEM_HIDDEN;
 pub use input::{Hold, Input};
 pub use law::{Hidden, Law, MOST_HIDDEN, MOST_PARAMETERS, Margins, Moment, Values};
 pub use nominal::{Coefficients, Nominal};
-pub use registry::{Effect, REGISTRY, SystemEffect};
+pub use registry::{ChainEffect, Effect, REGISTRY, SystemEffect};
 pub use system::{Start, System};
 pub use units::{Coordinate, Quantity, Units};

@@ -1,14 +1,17 @@
 //! The effects there are, one line each.
 //!
 //! Everybody who needs to know what effects exist reads [`REGISTRY`]: simulator, diagnosis, documents. An
-//! effect in the system is a file under `effects/` and a line in `system_effects!`.
+//! effect in the system is a file under `effects/`, one in the measuring chain a file under `chain/`; either
+//! takes a line in `registry!`.
 
+use crate::chain::{self, Extent, Observed, Sampled, SampledMotion, Samples, Step};
 use crate::description::Description;
 use crate::effects;
 use crate::error::DynamicsError;
 use crate::law::{Hidden, Law, Margins, Moment, Values};
 use crate::nominal::Nominal;
 use crate::scalar::Scalar;
+use rand::Rng;
 
 /// Makes the enumeration of effects and hands every question to the effect's own law, at compile time.
 macro_rules! system_effects {
@@ -91,13 +94,82 @@ macro_rules! system_effects {
                 match self { $(Self::$name => effects::$name::check(values, nominal),)+ }
             }
         }
-
-        /// Every effect of the vocabulary that is implemented, in the order of the documents.
-        pub static REGISTRY: &[Effect] = &[$(Effect::System(SystemEffect::$name),)+];
     };
 }
 
-system_effects! {
+/// The same for the measuring chain.
+macro_rules! chain_effects {
+    ($($name:ident,)+) => {
+        /// An effect in the measuring chain.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum ChainEffect {
+            $(#[doc = concat!("See [`chain::", stringify!($name), "`].")] $name,)+
+        }
+
+        impl ChainEffect {
+            /// Every effect in the measuring chain, in the order in which they act.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)+];
+
+            /// What is known about it.
+            #[must_use]
+            pub const fn description(self) -> &'static Description {
+                match self { $(Self::$name => chain::$name::DESCRIPTION,)+ }
+            }
+
+            /// As [`Step::DIFFERENTIABLE`].
+            #[must_use]
+            pub const fn is_differentiable(self) -> bool {
+                match self { $(Self::$name => chain::$name::DIFFERENTIABLE,)+ }
+            }
+
+            /// As [`Step::transform`].
+            pub fn transform<S: Sampled>(
+                self,
+                values: &Values<S>,
+                motion: &SampledMotion<'_, S>,
+                observed: Observed,
+                samples: &mut Samples<S>,
+            ) {
+                match self { $(Self::$name => chain::$name::transform(values, motion, observed, samples),)+ }
+            }
+
+            /// As [`Step::distort`].
+            pub fn distort<R: Rng + ?Sized>(
+                self,
+                values: &Values<f64>,
+                samples: &mut Samples<f64>,
+                generator: &mut R,
+            ) {
+                match self { $(Self::$name => chain::$name::distort(values, samples, generator),)+ }
+            }
+
+            /// As [`Step::check`].
+            ///
+            /// # Errors
+            /// As [`Step::check`].
+            pub fn check(self, values: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
+                match self { $(Self::$name => chain::$name::check(values, extent),)+ }
+            }
+        }
+    };
+}
+
+macro_rules! registry {
+    (system { $($system:ident,)+ } measuring_chain { $($chain:ident,)+ }) => {
+        system_effects! { $($system,)+ }
+        chain_effects! { $($chain,)+ }
+
+        /// Every effect of the vocabulary: those in the system in the order of the documents, then those in the
+        /// measuring chain in the order in which they act.
+        pub static REGISTRY: &[Effect] = &[
+            $(Effect::System(SystemEffect::$system),)+
+            $(Effect::MeasuringChain(ChainEffect::$chain),)+
+        ];
+    };
+}
+
+registry! {
+    system {
     CoulombFriction,
     StribeckFriction,
     QuadraticDrag,
@@ -114,14 +186,28 @@ system_effects! {
     FlexibleCoupling,
     InputDelay,
     InputSaturation,
+    }
+    measuring_chain {
+    SensorLag,
+    SensorNonlinearity,
+    SensorDrift,
+    SensorSaturation,
+    SensorQuantization,
+    Outliers,
+    Dropouts,
+    ClockDrift,
+    TimestampJitter,
+    TimestampBatching,
+    }
 }
 
 /// An effect of the registry, by where it acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[non_exhaustive]
 pub enum Effect {
     /// In the system: it changes the motion.
     System(SystemEffect),
+    /// In the measuring chain: it changes what a file says of the motion.
+    MeasuringChain(ChainEffect),
 }
 
 impl Effect {
@@ -130,6 +216,7 @@ impl Effect {
     pub const fn description(self) -> &'static Description {
         match self {
             Self::System(effect) => effect.description(),
+            Self::MeasuringChain(effect) => effect.description(),
         }
     }
 

@@ -43,6 +43,12 @@ impl Start {
         Self { position, velocity: 0.0 }
     }
 
+    /// Position beyond which a motion counts as running away: a hundred thousand times the release, or that many
+    /// units.
+    pub(crate) fn bound(&self) -> f64 {
+        1e5 * self.position.abs().max(1.0)
+    }
+
     pub(crate) fn check(&self) -> Result<(), DynamicsError> {
         for (what, value) in [("position", self.position), ("velocity", self.velocity)] {
             if !value.is_finite() {
@@ -125,6 +131,9 @@ impl System {
 fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
     match active.effect() {
         Effect::System(effect) => Ok(effect),
+        Effect::MeasuringChain(effect) => {
+            Err(DynamicsError::NotInTheSystem { effect: effect.description().id })
+        }
     }
 }
 

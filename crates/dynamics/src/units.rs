@@ -53,14 +53,28 @@ pub enum Quantity {
     AngularFrequency,
     /// An angle, whatever the coordinate.
     Angle,
+    /// What the sensor observes: a position, or its first or second derivative.
+    Observed,
+    /// Change of what the sensor observes, per second.
+    ObservedPerTime,
+    /// A share, or a relative change.
+    Ratio,
+    /// A number of samples.
+    Samples,
 }
 
 impl Quantity {
-    /// The unit's symbol, such as `N m/rad`.
+    /// The unit's symbol, such as `N m/rad`; for [`Quantity::Observed`] that of a sensor of positions.
     #[must_use]
     pub const fn unit(self, units: Units) -> &'static str {
         use Coordinate::{Angle, Displacement};
         match (self, units) {
+            (Self::Ratio, _) => "1",
+            (Self::Samples, _) => "samples",
+            (Self::Observed, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad",
+            (Self::Observed, _) => "m",
+            (Self::ObservedPerTime, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad/s",
+            (Self::ObservedPerTime, _) => "m/s",
             (Self::Time, _) => "s",
             (Self::Rate, _) => "1/s",
             (Self::AngularFrequency, _) => "rad/s",

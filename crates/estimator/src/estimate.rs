@@ -67,11 +67,26 @@ impl Uncertainty {
 /// What a fitted estimator says of a peak it may not have seen.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Prediction {
-    /// ln A at the time asked about, the amplitude in the record's unit: finite.
+    /// ln A at the time asked about, the amplitude in the record's unit: the fitted function's own value.
+    ///
+    /// Beyond the peaks not every function has a finite one: −∞ where the motion has come to rest by
+    /// then (dry friction ends it), +∞ where it has grown beyond all bounds, NaN where the function is
+    /// not defined (the logarithm of an expression that has turned negative) or where the method
+    /// cannot follow it so far. Ask [`is_finite`](f64::is_finite) before computing with it.
     pub log_amplitude: f64,
     /// Standard deviation of a **measured** ln A about it, scatter and the fit's own uncertainty
-    /// together, where the method states one.
+    /// together, where the method states one: finite, at least 0. `None` where `log_amplitude` is not
+    /// finite.
     pub std_error: Option<f64>,
+}
+
+impl Prediction {
+    /// A prediction with what can be said of its error: a standard deviation that is not finite is none.
+    #[must_use]
+    pub fn new(log_amplitude: f64, std_error: Option<f64>) -> Self {
+        let usable = |std_error: &f64| log_amplitude.is_finite() && std_error.is_finite();
+        Self { log_amplitude, std_error: std_error.filter(usable) }
+    }
 }
 
 /// A trained model as a file.
@@ -101,10 +116,57 @@ pub struct Estimate {
     /// The fitted function ln A at the envelope's times.
     pub fitted_log_amplitudes: Vec<f64>,
     /// The fitted function at [`FitContext::query_times`](crate::FitContext::query_times), one for each
-    /// time asked about.
+    /// time asked about, in their order.
     pub predictions: Vec<Prediction>,
     /// The law that the method discovered, in the record's units, where it discovers laws.
     pub equation: Option<String>,
     /// The trained model, where there is something to keep.
     pub model: Option<ModelFile>,
+}
+
+impl Estimate {
+    /// The earliest of the times asked about that has no finite prediction; `None` where all have one.
+    ///
+    /// `query_times` are those that the fit was asked for.
+    #[must_use]
+    pub fn first_without_prediction(&self, query_times: &[f64]) -> Option<f64> {
+        let finite = self.predictions.iter().map(|prediction| prediction.log_amplitude.is_finite());
+        let missing = query_times.iter().zip(finite.chain(std::iter::repeat(false)));
+        missing.filter(|(_, finite)| !finite).map(|(time, _)| *time).min_by(f64::total_cmp)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Estimate, Prediction, Reached, Stop};
+
+    #[test]
+    fn an_error_of_what_is_not_finite_is_none() {
+        let error =
+            |log_amplitude: f64, std_error: f64| Prediction::new(log_amplitude, Some(std_error)).std_error;
+        assert_eq!(error(-1.0, 0.1), Some(0.1));
+        assert_eq!([error(-1.0, f64::INFINITY), error(-1.0, f64::NAN)], [None; 2]);
+        assert_eq!([error(f64::NEG_INFINITY, 0.1), error(f64::NAN, 0.1)], [None; 2]);
+    }
+
+    #[test]
+    fn the_first_time_without_a_prediction_is_found_in_any_order() {
+        let estimate = |logs: &[f64]| Estimate {
+            decay_rate: 0.1,
+            log_amplitude: 0.0,
+            uncertainty: None,
+            stop: Stop { reached: Reached::Converged, because: String::new() },
+            steps: 0,
+            parameters: 1,
+            fitted_log_amplitudes: Vec::new(),
+            predictions: logs.iter().map(|&log| Prediction::new(log, None)).collect(),
+            equation: None,
+            model: None,
+        };
+        let times = [9.0, 1.0, 7.0, 8.0];
+        let found = |logs: &[f64]| estimate(logs).first_without_prediction(&times);
+        assert_eq!(found(&[-3.0, -1.0, -2.0, -2.5]), None);
+        assert_eq!(found(&[f64::NEG_INFINITY, -1.0, -2.0, f64::NAN]), Some(8.0));
+        assert_eq!(found(&[]), Some(1.0));
+    }
 }

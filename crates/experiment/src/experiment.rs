@@ -60,11 +60,12 @@ pub struct Comparison {
     pub inertia_kg_m2: f64,
 }
 
+/// The keys at the top.
 #[derive(Deserialize)]
-struct Top {
-    task: String,
-    name: Option<String>,
-    seed: u64,
+pub(crate) struct Top {
+    pub(crate) task: String,
+    pub(crate) name: Option<String>,
+    pub(crate) seed: u64,
 }
 
 /// The section `data`.
@@ -221,14 +222,19 @@ pub fn resolve(
         name: top.name.unwrap_or(default_name),
         seed: top.seed,
         data: resolved.section("data")?,
-        envelope: EnvelopeSettings {
-            pipeline: pipeline.pipeline,
-            paper: resolved.section("envelope.paper")?,
-            recommended: resolved.section("envelope.recommended")?,
-        },
+        envelope: pipelines(&resolved, pipeline.pipeline)?,
         fit: resolved.section("fit")?,
         task,
         resolved,
+    })
+}
+
+/// The settings of both pipelines, one of them in force.
+pub(crate) fn pipelines(resolved: &Resolved, pipeline: Pipeline) -> Result<EnvelopeSettings, SettingsError> {
+    Ok(EnvelopeSettings {
+        pipeline,
+        paper: resolved.section("envelope.paper")?,
+        recommended: resolved.section("envelope.recommended")?,
     })
 }
 

@@ -4,7 +4,7 @@ use record::{ClockChoice, Format, Origin, TimeUnit, Unit};
 use settings::{Default, Field, Kind, Section};
 
 /// A field without unit and source, to be refined by struct update.
-const PLAIN: Field =
+pub(crate) const PLAIN: Field =
     Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
 /// Every section but those of a single task.
@@ -48,12 +48,12 @@ const COMPARE_FIELDS: &[Field] = &[
     },
 ];
 
-const TOP: &[Field] = &[
+pub(crate) const TOP: &[Field] = &[
     Field {
         key: "task",
-        kind: Kind::Choice(&["estimate", "compare"]),
+        kind: Kind::Choice(&["estimate", "compare", "predict"]),
         default: Default::Text("estimate"),
-        meaning: "What to do with the record: fit one estimator, or compare many methods.",
+        meaning: "What to do: fit one estimator to a record, compare many methods on it, or score them on peaks held out.",
         ..PLAIN
     },
     Field {
@@ -71,7 +71,7 @@ const TOP: &[Field] = &[
     },
 ];
 
-const DATA: &[Field] = &[
+pub(crate) const DATA: &[Field] = &[
     Field {
         key: "path",
         default: Default::Text("experiments/default-record/record.csv"),
@@ -160,7 +160,7 @@ const ENVELOPE: &[Field] = &[Field {
     ..PLAIN
 }];
 
-const PAPER: &[Field] = &[
+pub(crate) const PAPER: &[Field] = &[
     Field {
         key: "interpolation_step_s",
         kind: Kind::Float { min: 1e-9, max: 1e6 },
@@ -210,7 +210,7 @@ const PAPER: &[Field] = &[
     },
 ];
 
-const RECOMMENDED: &[Field] = &[
+pub(crate) const RECOMMENDED: &[Field] = &[
     Field {
         key: "half_width_periods",
         kind: Kind::Float { min: 1e-3, max: 0.25 },

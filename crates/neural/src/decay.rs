@@ -8,72 +8,23 @@ use crate::device::{tensor, values};
 use crate::flat::{flat_gradient, named_parameters, with_parameters};
 use crate::lbfgs::{Lbfgs, Smooth};
 use crate::minimum::{Minimum, StopReason};
+use crate::sequence::Sequence;
 use crate::weights::to_safetensors;
 use burn::module::Module;
 use burn::tensor::{Device, Tensor};
 use envelope::Envelope;
-use estimator::{Estimate, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
+use estimator::{
+    Estimate, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop, Uncertainty,
+};
 use nalgebra::DVector;
 use std::cell::RefCell;
 use std::ops::ControlFlow;
 
-/// What an encoder reads: peaks, or means of neighboring peaks, in scaled units.
-///
-/// Times s in −1..1 by the record's length, values z with mean 0 and standard deviation 1 over the
-/// peaks.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sequence {
-    /// Scaled times, increasing.
-    pub times: Vec<f64>,
-    /// Scaled ln A.
-    pub values: Vec<f64>,
-}
-
-impl Sequence {
-    /// Number of entries.
-    #[must_use]
-    pub fn len(&self) -> usize {
-        self.times.len()
-    }
-
-    /// Whether there are no entries.
-    #[must_use]
-    pub fn is_empty(&self) -> bool {
-        self.times.is_empty()
-    }
-
-    /// The mean time between entries; 1 where there is one entry only.
-    #[must_use]
-    pub fn mean_interval(&self) -> f64 {
-        match (self.times.first(), self.times.last()) {
-            (Some(first), Some(last)) if self.len() > 1 => (last - first) / (self.len() - 1) as f64,
-            _ => 1.0,
-        }
-    }
-
-    /// At most `most` entries: the means of times and values over runs of neighbors, the runs' lengths
-    /// as even as they can be. A shorter sequence stays as it is.
-    #[must_use]
-    pub fn pooled(self, most: usize) -> Self {
-        let (count, runs) = (self.len(), most.max(1));
-        if count <= runs {
-            return self;
-        }
-        let means = |entries: &[f64]| -> Vec<f64> {
-            (0..runs)
-                .filter_map(|run| entries.get(run * count / runs..(run + 1) * count / runs))
-                .map(|part| part.iter().sum::<f64>() / part.len() as f64)
-                .collect()
-        };
-        Self { times: means(&self.times), values: means(&self.values) }
-    }
-}
-
 /// A network that reads a sequence and says (c, r): the level of z in the middle of the record and the
 /// decay rate, so that z(s) ≈ c − r·s.
 pub trait Encoder: Module {
-    /// The network's input, of shape 1 × entries × features: one sequence.
-    fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3>;
+    /// The network's input, of shape sequences × entries × features. The sequences are of one length.
+    fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3>;
 
     /// (c, r) of every sequence: sequences × 2 of sequences × entries × features.
     fn encode(&self, input: Tensor<3>) -> Tensor<2>;
@@ -142,7 +93,7 @@ impl Reconstruction {
         device: &Device,
     ) -> Result<Estimate, FitError> {
         let scaling = Scaling::of(envelope)?;
-        let peaks = scaling.sequence(envelope);
+        let peaks = Sequence::of(envelope, &scaling);
         let recording = device.clone().autodiff();
         let sequence = peaks.clone().pooled(self.longest_sequence);
         let objective = Objective::new(encoder, &sequence, &peaks, &recording);
@@ -157,7 +108,8 @@ impl Reconstruction {
                 planned: method.max_steps,
                 phase: "L-BFGS, reconstruction".to_owned(),
                 loss: state.loss,
-                decay_rate: scaling.rate(objective.code(state.parameters).map_or(f64::NAN, |c| c.rate)),
+                decay_rate: scaling
+                    .rate_per_centered_time(objective.code(state.parameters).map_or(f64::NAN, |c| c.rate)),
             });
             if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
@@ -166,13 +118,22 @@ impl Reconstruction {
         }
         let code = objective.code(&minimum.parameters)?;
         let stop = stop(&minimum, code.slope(&peaks));
-        let decay_rate = scaling.rate(code.rate);
+        let decay_rate = scaling.rate_per_centered_time(code.rate);
         let fitted = |s: f64| scaling.log_amplitude(code.level - code.rate * s);
         let trained = with_parameters(encoder.clone(), minimum.parameters.as_slice(), device)?;
-        let uncertainty = match stop.reached {
+        let knowledge = match stop.reached {
             // Away from the minimum the loss has no such shape.
-            Reached::Converged => code.uncertainty(&peaks, &scaling),
+            Reached::Converged => code.knowledge(&peaks),
             _ => None,
+        };
+        let uncertainty = knowledge.and_then(|known| {
+            let std_error = scaling.rate_per_centered_time(known.rate_std_error());
+            Uncertainty::students_t(decay_rate, std_error, known.degrees_of_freedom)
+        });
+        let predict = |&time: &f64| {
+            let s = scaling.centered_time(time);
+            let std_error = knowledge.map(|known| scaling.deviation(known.prediction_std_error(s)));
+            Prediction { log_amplitude: fitted(s), std_error }
         };
         Ok(Estimate {
             decay_rate,
@@ -182,59 +143,13 @@ impl Reconstruction {
             steps: minimum.steps,
             parameters: minimum.parameters.len(),
             fitted_log_amplitudes: peaks.times.iter().map(|&s| fitted(s)).collect(),
-            predictions: Vec::new(),
+            predictions: context.query_times().iter().map(predict).collect(),
             equation: None,
             model: Some(ModelFile {
                 name: "weights.safetensors".to_owned(),
                 bytes: to_safetensors(&named_parameters(&trained)?)?,
             }),
         })
-    }
-}
-
-/// The scaled coordinates: s = (t − middle)/half_range in −1..1 and z = (ln A − mean)/spread. No line is
-/// fitted here, only a range, a mean and a standard deviation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Scaling {
-    half_range: f64,
-    mean: f64,
-    spread: f64,
-}
-
-impl Scaling {
-    fn of(envelope: &Envelope) -> Result<Self, FitError> {
-        let half_range = envelope.times_s().last().copied().unwrap_or_default() / 2.0;
-        let logs = envelope.log_amplitudes();
-        let count = logs.len() as f64;
-        let mean = logs.iter().sum::<f64>() / count;
-        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
-        // Below this the logarithms differ by their rounding only.
-        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
-            return Err(FitError::NoSpread { spread });
-        }
-        // Within so short a time that no rate can be written down.
-        if !(spread / half_range).is_finite() {
-            return Err(FitError::NoSpread { spread: spread / half_range });
-        }
-        Ok(Self { half_range, mean, spread })
-    }
-
-    fn sequence(&self, envelope: &Envelope) -> Sequence {
-        let scaled = |time: &f64| (time - self.half_range) / self.half_range;
-        Sequence {
-            times: envelope.times_s().iter().map(scaled).collect(),
-            values: envelope.log_amplitudes().iter().map(|log| (log - self.mean) / self.spread).collect(),
-        }
-    }
-
-    /// ln A of a scaled value.
-    fn log_amplitude(&self, scaled: f64) -> f64 {
-        self.mean + self.spread * scaled
-    }
-
-    /// A rate in 1/s from one in scaled units.
-    fn rate(&self, scaled: f64) -> f64 {
-        scaled * self.spread / self.half_range
     }
 }
 
@@ -266,15 +181,42 @@ impl Code {
         f64::max(f64::abs(by_level), f64::abs(by_rate)) / peaks.len() as f64
     }
 
-    /// The loss's curvature in (level, rate), Σ (1, −s)ᵀ(1, −s), inverted, times the residual variance.
-    fn uncertainty(&self, peaks: &Sequence, scaling: &Scaling) -> Option<Uncertainty> {
+    /// What is known of the code at the loss's minimum; `None` where the peaks leave no scatter to go by.
+    fn knowledge(&self, peaks: &Sequence) -> Option<Knowledge> {
         let count = peaks.len() as f64;
-        let degrees = count - 2.0;
+        let degrees_of_freedom = count - 2.0;
         let middle = peaks.times.iter().sum::<f64>() / count;
         let curvature: f64 = peaks.times.iter().map(|s| (s - middle).powi(2)).sum();
         let squares: f64 = self.residuals(peaks).map(|(_, residual)| residual * residual).sum();
-        let std_error = (squares / degrees / curvature).sqrt();
-        Uncertainty::students_t(scaling.rate(self.rate), scaling.rate(std_error), degrees)
+        let variance = squares / degrees_of_freedom;
+        let usable = variance.is_finite() && curvature > 0.0;
+        usable.then_some(Knowledge { variance, curvature, middle, count, degrees_of_freedom })
+    }
+}
+
+/// The Laplace approximation in (level, rate): the loss's curvature Σ (1, −s)ᵀ(1, −s), inverted, times the
+/// residual variance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Knowledge {
+    /// Variance of a peak's z about the decoder's line.
+    variance: f64,
+    /// Σ (s − middle)².
+    curvature: f64,
+    /// Mean of s.
+    middle: f64,
+    /// Number of peaks.
+    count: f64,
+    degrees_of_freedom: f64,
+}
+
+impl Knowledge {
+    fn rate_std_error(&self) -> f64 {
+        (self.variance / self.curvature).sqrt()
+    }
+
+    /// Standard deviation of a measured z at s about the line: its own scatter and the line's.
+    fn prediction_std_error(&self, s: f64) -> f64 {
+        (self.variance * (1.0 + 1.0 / self.count + (s - self.middle).powi(2) / self.curvature)).sqrt()
     }
 }
 
@@ -297,7 +239,7 @@ impl<'a, E: Encoder> Objective<'a, E> {
         Self {
             encoder,
             recording,
-            input: encoder.input(sequence, recording),
+            input: encoder.input(std::slice::from_ref(sequence), recording),
             decoder: tensor(rows, [2, count], recording),
             targets: tensor(peaks.values.clone(), [1, count], recording),
             last: RefCell::new(None),
@@ -364,9 +306,10 @@ fn stop(minimum: &Minimum, slope: f64) -> Stop {
 
 #[cfg(test)]
 mod tests {
-    use super::{Code, Encoder, Reconstruction, Scaling, Sequence, stop};
+    use super::{Code, Encoder, Reconstruction, stop};
     use crate::device::device;
     use crate::minimum::{Minimum, StopReason};
+    use crate::sequence::Sequence;
     use burn::module::Module;
     use burn::nn::{Initializer, Linear, LinearConfig};
     use burn::tensor::{Device, Tensor};
@@ -377,32 +320,6 @@ mod tests {
 
     fn sequence() -> Sequence {
         Sequence { times: vec![-1.0, -0.4, 0.0, 0.5, 1.0], values: vec![1.0, 2.0, 4.0, 8.0, 16.0] }
-    }
-
-    #[test]
-    fn a_long_sequence_is_read_as_means_over_even_runs() {
-        assert_eq!(sequence().pooled(5), sequence());
-        // Five entries in two runs: two and three.
-        let pooled = sequence().pooled(2);
-        assert_eq!(pooled.values, [1.5, 28.0 / 3.0]);
-        assert_eq!(pooled.times, [-0.7, 0.5]);
-        let long = Sequence { times: vec![0.0; 100_000], values: vec![3.0; 100_000] };
-        assert_eq!(long.pooled(999).values, [3.0; 999]);
-    }
-
-    #[test]
-    fn scaled_units_are_what_they_are_said_to_be() {
-        let envelope = Envelope::new(vec![5.0, 6.0, 9.0], vec![3.0, 2.0, -2.0], 6.0).unwrap();
-        let scaling = Scaling::of(&envelope).unwrap();
-        let scaled = scaling.sequence(&envelope);
-        assert_eq!(scaled.times, [-1.0, -0.5, 1.0]);
-        assert!(scaled.values.iter().sum::<f64>().abs() < 1e-15);
-        let squares: f64 = scaled.values.iter().map(|z| z * z).sum();
-        assert!((squares / 3.0 - 1.0).abs() < 1e-15);
-        assert_eq!(scaled.mean_interval(), 1.0);
-        // z = c − r·s is ln A = ln A₀ − λ·t with λ = scaling.rate(r).
-        let [at_start, at_end] = [-1.0, 1.0].map(|s| scaling.log_amplitude(0.3 - 0.7 * s));
-        assert!((at_start - 4.0 * scaling.rate(0.7) - at_end).abs() < 1e-14);
     }
 
     #[test]
@@ -446,8 +363,8 @@ mod tests {
     }
 
     impl Encoder for Mean {
-        fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3> {
-            Tensor::ones([1, sequence.len(), 1], device)
+        fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+            Tensor::ones([1, sequences[0].len(), 1], device)
         }
 
         fn encode(&self, input: Tensor<3>) -> Tensor<2> {

@@ -4,6 +4,7 @@
 //! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74 (1980).
 
 use crate::minimum::{Iteration, Minimum, StopReason};
+use estimator::{Reached, Stop};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::ControlFlow;
 
@@ -140,6 +141,31 @@ impl LevenbergMarquardt {
         Ok(Minimum { last_gain, loss: point.loss, parameters: point.parameters, steps, reason })
     }
 
+    /// What a fit reached with a minimum of this method, and why it stopped there, as an estimate says it.
+    #[must_use]
+    pub fn stop(minimum: &Minimum) -> Stop {
+        let steps = minimum.steps;
+        let (reached, because) = match minimum.reason {
+            StopReason::Settled => (
+                Reached::Converged,
+                format!("the last step lowered the loss by {:.0e} of itself", minimum.last_gain),
+            ),
+            StopReason::Stationary => {
+                (Reached::Converged, "no step lowers the loss or its gradient any more".to_owned())
+            }
+            StopReason::StepsSpent => (
+                Reached::BudgetSpent,
+                format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
+            ),
+            StopReason::NotFinite => (
+                Reached::Diverged,
+                format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
+            ),
+            StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
+        };
+        Stop { reached, because }
+    }
+
     /// The point after a step, or `None` where it is worse.
     fn try_step<P: LeastSquares>(
         &self,
@@ -207,7 +233,7 @@ impl Normal {
 
 #[cfg(test)]
 mod tests {
-    use super::{LeastSquares, LevenbergMarquardt, Linearized, StopReason};
+    use super::{LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason};
     use nalgebra::{DMatrix, DVector};
     use std::convert::Infallible;
     use std::ops::ControlFlow;
@@ -275,5 +301,29 @@ mod tests {
         }
         let minimum = METHOD.minimize(&Line, DVector::zeros(3), |_| ControlFlow::Continue(())).unwrap();
         assert!(minimum.loss < 1e-20, "{minimum:?}");
+    }
+
+    #[test]
+    fn every_stop_has_its_sentence() {
+        let minimum =
+            |reason| Minimum { parameters: DVector::zeros(1), loss: 1.0, last_gain: 2e-9, steps: 7, reason };
+        for (reason, reached, because) in [
+            (StopReason::Settled, "converged", "the last step lowered the loss by 2e-9 of itself"),
+            (StopReason::Stationary, "converged", "no step lowers the loss or its gradient any more"),
+            (
+                StopReason::StepsSpent,
+                "budget_spent",
+                "the budget of 7 steps ended; raise estimator.max_steps or fit.max_steps",
+            ),
+            (
+                StopReason::NotFinite,
+                "diverged",
+                "the loss is not finite after 7 steps; lower estimator.initial_scale",
+            ),
+            (StopReason::Interrupted, "interrupted", "interrupted after 7 steps"),
+        ] {
+            let stop = LevenbergMarquardt::stop(&minimum(reason));
+            assert_eq!((stop.reached.name(), stop.because.as_str()), (reached, because));
+        }
     }
 }

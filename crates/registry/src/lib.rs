@@ -2,7 +2,8 @@
 
 use estimator::Entry;
 
-/// Every estimator, in the paper's order, the null estimator first.
+/// Every estimator, in the paper's order, the null estimator first, those that the paper does not have
+/// last.
 pub const ESTIMATORS: &[Entry] = &[
     estimator_baseline::ENTRY,
     estimator_sindy::ENTRY,
@@ -15,4 +16,6 @@ pub const ESTIMATORS: &[Entry] = &[
     estimator_envelope_matching::ENTRY,
     estimator_gaussian_process::ENTRY,
     estimator_transformer::ENTRY,
+    estimator_lstm::AMORTIZED_ENTRY,
+    estimator_transformer::AMORTIZED_ENTRY,
 ];

@@ -1,5 +1,7 @@
 //! The plots of a run: what each shows, in a sentence, and its data as CSV.
 
+use std::borrow::Cow;
+
 use runs::result::{EnvelopeRow, TraceRow};
 
 use crate::format;
@@ -14,8 +16,8 @@ const MOST_ENTRIES: usize = 10;
 /// A plot with everything that stands around it.
 pub(crate) struct Figure {
     /// Name of its anchor in the page.
-    pub(crate) id: &'static str,
-    pub(crate) title: &'static str,
+    pub(crate) id: Cow<'static, str>,
+    pub(crate) title: Cow<'static, str>,
     /// What it shows and how to read it.
     pub(crate) explanation: String,
     /// What is missing from it.
@@ -161,12 +163,13 @@ fn distance(run: &Run) -> Option<Figure> {
 }
 
 pub(crate) fn figure(
-    id: &'static str,
-    title: &'static str,
+    id: impl Into<Cow<'static, str>>,
+    title: impl Into<Cow<'static, str>>,
     explanation: &str,
     plot: &Plot,
     (csv, rows): (String, String),
 ) -> Option<Figure> {
+    let (id, title) = (id.into(), title.into());
     let description = format!("{title}: {} against {}.", plot.y.label, plot.x.label);
     let Drawing { wide, narrow, mut legend, left_out, thinned } = plot.draw(&description)?;
     let mut notes = Vec::new();

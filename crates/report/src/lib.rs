@@ -5,8 +5,9 @@
 //! difference, a ratio or a conversion of units. The same texts give the same bytes.
 //!
 //! What was run decides the page: [`render_run`] shows one estimator's estimate,
-//! [`render_comparison`] many methods on one envelope, whose tables [`comparison_markdown`] gives
-//! as Markdown too.
+//! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
+//! did not see. The tables of the latter two [`comparison_markdown`] and [`prediction_markdown`] give as
+//! Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -18,6 +19,7 @@ mod frame;
 mod page;
 mod parse;
 pub mod plot;
+mod prediction;
 mod tables;
 mod verdict;
 
@@ -33,14 +35,16 @@ pub struct RunTexts<'a> {
     pub name: &'a str,
     /// `config.toml`: the resolved settings. Shown as it is; may be empty.
     pub config: &'a str,
-    /// `result.json`: see [`runs::result::EstimationResult`] and
-    /// [`runs::result::ComparisonResult`].
+    /// `result.json`: see [`runs::result::EstimationResult`],
+    /// [`runs::result::ComparisonResult`] and [`runs::result::PredictionResult`].
     pub result: &'a str,
     /// `trace.csv`: see [`runs::result::TraceRow`]. Empty for a method that takes no steps, and
     /// for a comparison.
     pub trace: &'a str,
-    /// `envelope.csv`: see [`runs::result::EnvelopeRow`].
+    /// `envelope.csv`: see [`runs::result::EnvelopeRow`]. Empty for a study of prediction.
     pub envelope: &'a str,
+    /// `predictions.csv`: see [`runs::result::PredictionCsvRow`]. Empty but for a study of prediction.
+    pub predictions: &'a str,
     /// `environment.json`: what the run was made with. Shown as it is; may be empty.
     pub environment: &'a str,
 }
@@ -56,6 +60,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     match parse::task(texts.result)? {
         parse::Task::Estimate => render_run(texts),
         parse::Task::Compare => render_comparison(texts),
+        parse::Task::Predict => render_prediction(texts),
     }
 }
 
@@ -75,6 +80,26 @@ pub fn render_run(texts: &RunTexts<'_>) -> Result<String, ReportError> {
 /// As [`render`], and where the run was asked for something else.
 pub fn render_comparison(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     comparison::render(texts, &parse::parse_comparison(texts)?)
+}
+
+/// The report on a study of held-out prediction, `task = "predict"`. Of `texts`, trace and envelope may be
+/// empty.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
+pub fn render_prediction(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    prediction::render(texts, &parse::parse_prediction(texts)?)
+}
+
+/// The verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its
+/// `result.json`.
+///
+/// # Errors
+///
+/// As [`render`], for that file.
+pub fn prediction_markdown(result: &str) -> Result<String, ReportError> {
+    Ok(prediction::markdown(&parse::prediction_result(result)?))
 }
 
 /// The verdict and the tables of a comparison as GitHub Markdown, from its `result.json`.

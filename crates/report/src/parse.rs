@@ -1,6 +1,9 @@
 //! From the texts of a run folder to typed values.
 
-use runs::result::{ComparisonResult, EnvelopeRow, EstimationResult, RESULT_SCHEMA, TraceRow};
+use runs::result::{
+    ComparisonResult, EnvelopeRow, EstimationResult, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
+    TraceRow,
+};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -20,11 +23,18 @@ pub(crate) struct Comparison {
     pub(crate) envelope: Vec<EnvelopeRow>,
 }
 
+/// The parsed content of the folder of a study of held-out prediction.
+pub(crate) struct Prediction {
+    pub(crate) result: PredictionResult,
+    pub(crate) rows: Vec<PredictionCsvRow>,
+}
+
 /// What a run was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
     Estimate,
     Compare,
+    Predict,
 }
 
 impl Task {
@@ -33,6 +43,7 @@ impl Task {
         match self {
             Self::Estimate => "estimate",
             Self::Compare => "compare",
+            Self::Predict => "predict",
         }
     }
 }
@@ -63,6 +74,18 @@ pub(crate) fn comparison_result(text: &str) -> Result<ComparisonResult, ReportEr
     result(text, Task::Compare)
 }
 
+pub(crate) fn parse_prediction(texts: &RunTexts<'_>) -> Result<Prediction, ReportError> {
+    // No rows is a valid table: no method may have predicted anything.
+    Ok(Prediction {
+        result: prediction_result(texts.result)?,
+        rows: table("predictions.csv", texts.predictions)?,
+    })
+}
+
+pub(crate) fn prediction_result(text: &str) -> Result<PredictionResult, ReportError> {
+    result(text, Task::Predict)
+}
+
 fn envelope(text: &str) -> Result<Vec<EnvelopeRow>, ReportError> {
     let rows: Vec<EnvelopeRow> = table("envelope.csv", text)?;
     if rows.is_empty() { Err(ReportError::Empty { file: "envelope.csv" }) } else { Ok(rows) }
@@ -90,9 +113,13 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     if tag.schema != RESULT_SCHEMA {
         return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });
     }
-    [Task::Estimate, Task::Compare].into_iter().find(|task| task.name() == tag.task).ok_or_else(|| {
-        ReportError::Task { expected: "\"estimate\" or \"compare\"".to_owned(), found: tag.task }
-    })
+    [Task::Estimate, Task::Compare, Task::Predict]
+        .into_iter()
+        .find(|task| task.name() == tag.task)
+        .ok_or_else(|| ReportError::Task {
+            expected: "\"estimate\", \"compare\" or \"predict\"".to_owned(),
+            found: tag.task,
+        })
 }
 
 fn json_error(error: serde_json::Error) -> ReportError {
@@ -203,8 +230,8 @@ mod tests {
         let mut sample = Sample::new();
         sample.result.task = "dream".into();
         let text = sample.render().unwrap_err().to_string();
-        assert!(text.starts_with("result.json, field `task`: this report reads \"estimate\" or "), "{text}");
-        assert!(text.contains("\"compare\", the file says \"dream\""), "{text}");
+        assert!(text.starts_with("result.json, field `task`: this report reads \"estimate\", "), "{text}");
+        assert!(text.contains("\"compare\" or \"predict\", the file says \"dream\""), "{text}");
         sample.result.task = "compare".into();
         let text = sample.render().unwrap_err().to_string();
         assert!(text.contains("reads \"estimate\", the file says \"compare\""), "{text}");

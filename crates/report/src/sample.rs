@@ -57,6 +57,7 @@ impl Sample {
             result: &or(&self.result_text, self.json()),
             trace: &or(&self.trace_text, table(&self.trace)),
             envelope: &or(&self.envelope_text, table(&self.envelope)),
+            predictions: "",
             environment: &self.environment,
         })
     }

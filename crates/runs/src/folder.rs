@@ -29,10 +29,12 @@ pub struct Texts {
     pub config: String,
     /// `result.json`.
     pub result: String,
-    /// `trace.csv`.
+    /// `trace.csv`; empty where nothing was trained.
     pub trace: String,
-    /// `envelope.csv`.
+    /// `envelope.csv`; empty where a run has more than one envelope.
     pub envelope: String,
+    /// `predictions.csv`; empty where nothing was predicted.
+    pub predictions: String,
     /// `environment.json`.
     pub environment: String,
 }
@@ -90,11 +92,25 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Io`] with the file and what was tried.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
+        atomic::write(&self.place(name)?, content)
+    }
+
+    /// As [`RunFolder::write`], for one of very many files that a seed gives again: whole or absent after a crash
+    /// of the program, but not flushed to the disk.
+    ///
+    /// # Errors
+    /// As [`RunFolder::write`].
+    pub fn write_reproducible(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
+        atomic::write_unflushed(&self.place(name)?, content)
+    }
+
+    /// The path of a file of the run, its subfolder made.
+    fn place(&self, name: &str) -> Result<PathBuf, RunError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(RunError::io(folder, "create"))?;
         }
-        atomic::write(&path, content)
+        Ok(path)
     }
 
     /// Writes a value as a JSON file, indented, ending in a line break.
@@ -132,7 +148,8 @@ impl RunFolder {
         file.write_all(text.as_bytes()).map_err(RunError::io(&path, "write"))
     }
 
-    /// Reads what a report is made of. `trace.csv` may be absent: nothing was trained.
+    /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
+    /// affair.
     ///
     /// # Errors
     /// [`RunError::Io`] with the file that is missing.
@@ -141,9 +158,9 @@ impl RunFolder {
             let path = self.path.join(name);
             std::fs::read_to_string(&path).map_err(RunError::io(&path, "read"))
         };
-        let trace = match read("trace.csv") {
-            Err(RunError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => String::new(),
-            other => other?,
+        let table = |name: &str| match read(name) {
+            Err(RunError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok(String::new()),
+            other => other,
         };
         // `.` and `..` have a name only once resolved.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
@@ -152,8 +169,9 @@ impl RunFolder {
             name,
             config: read("config.toml")?,
             result: read("result.json")?,
-            trace,
-            envelope: read("envelope.csv")?,
+            trace: table("trace.csv")?,
+            envelope: table("envelope.csv")?,
+            predictions: table("predictions.csv")?,
             environment: read("environment.json")?,
         })
     }

@@ -45,10 +45,14 @@ pub struct Leaf {
 }
 
 /// A configuration as written, overrides included: an ordered list of leaves, each key once.
+///
+/// An array of tables is a table of numbered ones: the second `[[effects]]` is `[effects.2]`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     file: String,
     leaves: Vec<Leaf>,
+    /// Dotted names of the tables that the file opens, empty ones among them.
+    tables: Vec<String>,
 }
 
 impl Document {
@@ -62,7 +66,7 @@ impl Document {
             let problem = error.message().trim().replace('\n', ", ");
             SettingsError::Syntax { file: file.to_owned(), line, column, problem }
         })?;
-        let mut document = Self { file: file.to_owned(), leaves: Vec::new() };
+        let mut document = Self { file: file.to_owned(), ..Self::default() };
         document.collect(text, "", table.get_ref())?;
         Ok(document)
     }
@@ -83,6 +87,28 @@ impl Document {
     #[must_use]
     pub fn get(&self, key: &str) -> Option<&Leaf> {
         self.leaves.iter().find(|leaf| leaf.key == key)
+    }
+
+    /// Names of the tables directly below a table, as `one` of `[prefix.one]`: in the order written, those
+    /// that only an override opens last.
+    #[must_use]
+    pub fn tables_below(&self, prefix: &str) -> Vec<String> {
+        let below = |key: &str| {
+            let rest = key.strip_prefix(prefix)?.strip_prefix('.')?;
+            Some(rest.split('.').next().unwrap_or(rest).to_owned())
+        };
+        // A leaf directly below the prefix is a key, not a table.
+        let is_inside = |leaf: &&Leaf| {
+            leaf.key.strip_prefix(prefix).is_some_and(|rest| rest.trim_start_matches('.').contains('.'))
+        };
+        let leaves = self.leaves.iter().filter(is_inside).map(|leaf| leaf.key.as_str());
+        let mut names: Vec<String> = Vec::new();
+        for name in self.tables.iter().map(String::as_str).chain(leaves).filter_map(below) {
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        names
     }
 
     /// Applies one `key=value` argument; the value is TOML, or plain text where it is not.
@@ -109,7 +135,13 @@ impl Document {
         Ok(())
     }
 
+    /// Puts a leaf in place of what it displaces: the leaf of that key, a table of that name with all that is
+    /// below it, or a value where the key now needs a table.
     fn set(&mut self, leaf: Leaf) {
+        let lies_below =
+            |key: &str, table: &str| key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
+        self.leaves.retain(|known| !lies_below(&known.key, &leaf.key) && !lies_below(&leaf.key, &known.key));
+        self.tables.retain(|table| *table != leaf.key && !lies_below(table, &leaf.key));
         match self.leaves.iter_mut().find(|known| known.key == leaf.key) {
             Some(known) => *known = leaf,
             None => self.leaves.push(leaf),
@@ -126,7 +158,14 @@ impl Document {
             let (line, column) = place(text, name.span().start);
             let origin = Origin::File { file: self.file.clone(), line, column };
             if let DeValue::Table(inner) = value.get_ref() {
+                self.tables.push(key.clone());
                 self.collect(text, &key, inner)?;
+            } else if let Some(inner) = tables(value.get_ref()) {
+                for (number, inner) in inner.into_iter().enumerate() {
+                    let key = format!("{key}.{}", number + 1);
+                    self.tables.push(key.clone());
+                    self.collect(text, &key, inner)?;
+                }
             } else {
                 let value = plain(value.get_ref()).map_err(|problem| SettingsError::Syntax {
                     file: self.file.clone(),
@@ -139,6 +178,16 @@ impl Document {
         }
         Ok(())
     }
+}
+
+/// The tables of a list that holds nothing else, and something.
+fn tables<'a, 'i>(value: &'a DeValue<'i>) -> Option<Vec<&'a DeTable<'i>>> {
+    let DeValue::Array(entries) = value else { return None };
+    let inner = entries.iter().map(|entry| match entry.get_ref() {
+        DeValue::Table(inner) => Some(inner),
+        _ => None,
+    });
+    inner.collect::<Option<Vec<_>>>().filter(|tables| !tables.is_empty())
 }
 
 /// A parsed value without its spans. Numbers are decoded here: the parser keeps them as text.

@@ -122,8 +122,9 @@ pub struct Field {
 /// A table of a configuration and the keys it may hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Section<'a> {
-    /// The table's dotted name; empty for the keys at the top.
-    pub name: &'static str,
+    /// The table's dotted name; empty for the keys at the top. A configuration may name tables of its own,
+    /// as in `[problem.NAME]`: [`crate::Document::tables_below`] finds them.
+    pub name: &'a str,
     /// The keys.
     pub fields: &'a [Field],
 }

@@ -10,7 +10,7 @@ use toml::{Table, Value};
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setting {
     /// The section's dotted name; empty at the top.
-    pub section: &'static str,
+    pub section: String,
     /// The declaration.
     pub field: Field,
     /// The value in force; `None` for an optional key that was not given.
@@ -36,7 +36,7 @@ impl Resolved {
             .iter()
             .flat_map(|section| section.fields.iter().map(move |&field| (section.name, field)))
             .map(|(section, field)| Setting {
-                section,
+                section: section.to_owned(),
                 field,
                 value: field.default.value(),
                 origin: Origin::Default,
@@ -106,7 +106,7 @@ impl Resolved {
         let mut current = "";
         for setting in &self.settings {
             if setting.section != current {
-                current = setting.section;
+                current = &setting.section;
                 text.push_str(&format!("\n[{current}]\n"));
             }
             let Some(value) = &setting.value else {

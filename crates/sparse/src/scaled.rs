@@ -1,7 +1,7 @@
 //! The envelope in scaled coordinates.
 
 use envelope::Envelope;
-use estimator::FitError;
+use estimator::{FitError, Scaling};
 
 /// s = t/span in 0..1 and x = ln A − mean: no line is fitted here, only a range, a mean and a standard
 /// deviation. The logarithms keep their unit, because the terms of a law are exponentials of them.
@@ -23,23 +23,15 @@ impl Scaled {
     /// The scaled envelope.
     ///
     /// # Errors
-    /// [`FitError::NoSpread`] where ln A is the same at every peak.
+    /// [`FitError::NoSpread`] as for [`Scaling::of`].
     pub fn of(envelope: &Envelope) -> Result<Self, FitError> {
-        let span_s = envelope.times_s().last().copied().unwrap_or_default();
-        let logs = envelope.log_amplitudes();
-        let count = logs.len() as f64;
-        let mean = logs.iter().sum::<f64>() / count;
-        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
-        // Below this the logarithms differ by their rounding only.
-        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
-            return Err(FitError::NoSpread { spread });
-        }
+        let scaling = Scaling::of(envelope)?;
         Ok(Self {
-            span_s,
-            mean,
-            spread,
-            times: envelope.times_s().iter().map(|time| time / span_s).collect(),
-            logs: logs.iter().map(|log| log - mean).collect(),
+            span_s: scaling.duration(),
+            mean: scaling.mean(),
+            spread: scaling.spread(),
+            times: scaling.unit_times(envelope),
+            logs: envelope.log_amplitudes().iter().map(|log| log - scaling.mean()).collect(),
         })
     }
 

@@ -7,6 +7,7 @@ use record::RecordError;
 use report::ReportError;
 use runs::RunError;
 use settings::SettingsError;
+use simulator::{GenerationError, SimulationError};
 use thiserror::Error;
 
 /// Why a command gave no result.
@@ -34,6 +35,17 @@ pub(crate) enum TrainerError {
         "{estimator}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps"
     )]
     NotFinite { estimator: &'static str, seed: u64 },
+    #[error("problem.{problem}: {source}")]
+    Simulation { problem: String, source: SimulationError },
+    #[error(
+        "problem.{problem}: {peaks} peaks cannot be split: {missing}; lower predict.block_peaks or \
+         predict.last_share, or give an envelope with more peaks"
+    )]
+    Split { problem: String, peaks: usize, missing: &'static str },
+    #[error("predict.methods and predict.problems leave nothing to fit")]
+    NothingToFit,
+    #[error("{file}: system {system}, record {record}: {source}")]
+    Generation { file: String, system: usize, record: usize, source: GenerationError },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
@@ -56,6 +68,10 @@ impl TrainerError {
             | Self::Envelope { .. }
             | Self::Oracle { .. }
             | Self::Classical { .. }
+            | Self::Simulation { .. }
+            | Self::Split { .. }
+            | Self::NothingToFit
+            | Self::Generation { .. }
             | Self::TooManySeeds { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,

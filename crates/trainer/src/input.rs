@@ -4,7 +4,7 @@ use crate::error::TrainerError;
 use envelope::Extraction;
 use experiment::{Experiment, Pipeline};
 use oracle::DecayFit;
-use record::{Clock, ClockChoice, Record, Source, read_file};
+use record::{Clock, ClockChoice, Record, Source, Statements, read_file};
 use runs::result::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
 use std::path::Path;
 
@@ -36,25 +36,7 @@ impl Input {
     }
 
     pub(crate) fn data_summary(&self, experiment: &Experiment) -> DataSummary {
-        let statements = experiment.data.statements().or(&self.source.statements);
-        let mut findings = self.source.findings.clone();
-        findings.extend(statements.contradictions(self.record.len(), &self.clock));
-        DataSummary {
-            path: self.source.path.clone(),
-            digest: self.source.digest.clone(),
-            origin: statements.origin.unwrap_or_default().name().to_owned(),
-            samples: self.record.len(),
-            clock: self.clock.kind.name().to_owned(),
-            clock_reason: self.clock.reason.clone(),
-            believed_clock: self.believed.kind.name().to_owned(),
-            believed_clock_reason: self.believed.reason.clone(),
-            sample_period_s: 1.0 / self.clock.sample_rate_hz,
-            sample_rate_hz: self.clock.sample_rate_hz,
-            sample_rate_std_error_hz: self.clock.sample_rate_std_error_hz,
-            resolution: self.record.lattice().map(|lattice| lattice.step),
-            unit: self.record.unit().to_owned(),
-            findings,
-        }
+        summarize(&self.record, &self.source, &self.clock, &self.believed, experiment.data.statements())
     }
 
     /// The same record through each pipeline and each clock that makes a difference.
@@ -144,5 +126,35 @@ impl Input {
                 estimate,
             })
             .collect()
+    }
+}
+
+/// A record file, what it states of itself and what was found, under the clock in force and the one that is
+/// believed. What `stated` leaves open, the file answers.
+pub(crate) fn summarize(
+    record: &Record,
+    source: &Source,
+    clock: &Clock,
+    believed: &Clock,
+    stated: Statements,
+) -> DataSummary {
+    let statements = stated.or(&source.statements);
+    let mut findings = source.findings.clone();
+    findings.extend(statements.contradictions(record.len(), clock));
+    DataSummary {
+        path: source.path.clone(),
+        digest: source.digest.clone(),
+        origin: statements.origin.unwrap_or_default().name().to_owned(),
+        samples: record.len(),
+        clock: clock.kind.name().to_owned(),
+        clock_reason: clock.reason.clone(),
+        believed_clock: believed.kind.name().to_owned(),
+        believed_clock_reason: believed.reason.clone(),
+        sample_period_s: 1.0 / clock.sample_rate_hz,
+        sample_rate_hz: clock.sample_rate_hz,
+        sample_rate_std_error_hz: clock.sample_rate_std_error_hz,
+        resolution: record.lattice().map(|lattice| lattice.step),
+        unit: record.unit().to_owned(),
+        findings,
     }
 }

@@ -3,7 +3,10 @@
 use crate::error::TrainerError;
 use crate::fit::FitSetting;
 use envelope::Envelope;
-use estimator::{Entry, Estimate, Estimator, FitContext, Observer, Reached, Stop, Tag, Uncertainty};
+use estimator::{
+    Cancel, Entry, Estimate, Estimator, FitContext, Observer, Prediction, Reached, Silent, Stop, Tag,
+    Uncertainty,
+};
 use experiment::Single;
 use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
 use registry::ESTIMATORS;
@@ -96,6 +99,26 @@ impl Method {
         }
     }
 
+    /// The same method with the part of its work done that no envelope enters.
+    pub(crate) fn pretrained(
+        self,
+        seed: u64,
+        max_steps: Option<u64>,
+        cancel: &Cancel,
+    ) -> Result<Self, TrainerError> {
+        let Self::Learned(entry, estimator) = &self else { return Ok(self) };
+        let context = FitContext::new(Seed::new(seed).child(entry.id), max_steps, &Silent, cancel);
+        let trained = estimator.pretrain(&context).map_err(|source| TrainerError::Fit {
+            estimator: entry.id,
+            seed,
+            source,
+        })?;
+        Ok(match trained {
+            Some(trained) => Self::Learned(*entry, trained.into()),
+            None => self,
+        })
+    }
+
     /// Fits an envelope.
     ///
     /// A classical method takes no steps that could be capped, watched or stopped: the longest takes
@@ -115,7 +138,7 @@ impl Method {
                     seed,
                     source,
                 })?;
-                described(envelope, fit)
+                described(envelope, fit, setting.query_times)
             }
             Self::Learned(entry, estimator) => {
                 let context = FitContext::new(branch, setting.max_steps, observer, setting.cancel)
@@ -136,9 +159,11 @@ impl Method {
 }
 
 /// A classical method's line as an estimate.
-fn described(envelope: &Envelope, fit: ClassicalFit) -> Estimate {
+fn described(envelope: &Envelope, fit: ClassicalFit, query_times: &[f64]) -> Estimate {
     let times = envelope.times_s();
     let degrees = times.len() as f64 - 2.0;
+    let predictions = fit.predictions(envelope, query_times).into_iter();
+    let predictions = predictions.map(|line| Prediction::new(line.log_amplitude, line.std_error)).collect();
     let reached = match fit.reached {
         classical::Reached::Converged => Reached::Converged,
         classical::Reached::BudgetSpent => Reached::BudgetSpent,
@@ -155,7 +180,7 @@ fn described(envelope: &Envelope, fit: ClassicalFit) -> Estimate {
         // Intercept and slope.
         parameters: 2,
         fitted_log_amplitudes: times.iter().map(|t| fit.log_amplitude - fit.decay_rate * t).collect(),
-        predictions: Vec::new(),
+        predictions,
         equation: None,
         model: None,
     }

@@ -32,6 +32,7 @@ pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
         result: &texts.result,
         trace: &texts.trace,
         envelope: &texts.envelope,
+        predictions: &texts.predictions,
         environment: &texts.environment,
     })?;
     folder.write("report.html", html.as_bytes())?;

@@ -11,8 +11,10 @@ use crate::fit::SeedFit;
 use crate::input::Input;
 use crate::interrupt;
 use crate::method::Method;
+use crate::predict::predict;
+use crate::simulate::{is_simulation, simulate};
 use estimator::Cancel;
-use experiment::{Experiment, Task, resolve};
+use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
 use rayon::ThreadPool;
 use registry::ESTIMATORS;
@@ -21,6 +23,7 @@ use runs::{RunFolder, default_root};
 use serde::Serialize;
 use serde_json::json;
 use settings::Document;
+use simulator::Plan;
 
 /// An experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
@@ -35,16 +38,18 @@ pub(crate) struct Run<'a> {
 /// Reads, fits, compares, writes and prints.
 pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
-    let experiment = read_config(arguments)?;
+    let document = read_config(arguments)?;
+    if is_simulation(&document) {
+        return simulate(arguments, &Plan::resolve(&document)?, cancel);
+    }
+    let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
+    if is_prediction(&document) {
+        return predict(arguments, &resolve_prediction(&document, ESTIMATORS, &classical)?, cancel);
+    }
+    let experiment = resolve(&document, ESTIMATORS, &classical)?;
     let input = Input::read(&experiment)?;
-    let folder = match &arguments.out {
-        Some(path) => RunFolder::create_at(path)?,
-        None => RunFolder::create(&default_root(), &experiment.name)?,
-    };
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.map_or(0, usize::from))
-        .build()
-        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    let folder = new_folder(arguments, &experiment.name)?;
+    let pool = thread_pool(arguments)?;
     folder.write("config.toml", experiment.resolved.to_toml().as_bytes())?;
     let environment = Environment::new(pool.current_num_threads(), &input.source.digest);
     folder.write_json("environment.json", &environment)?;
@@ -54,6 +59,22 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
         Task::Estimate(single) => estimate(&run, &Method::of(single)?),
         Task::Compare(comparison) => compare(&run, comparison),
     }
+}
+
+/// The folder that the arguments name, or a new one below the default root.
+pub(crate) fn new_folder(arguments: &ExperimentArguments, name: &str) -> Result<RunFolder, TrainerError> {
+    Ok(match &arguments.out {
+        Some(path) => RunFolder::create_at(path)?,
+        None => RunFolder::create(&default_root(), name)?,
+    })
+}
+
+/// As many threads as asked for.
+pub(crate) fn thread_pool(arguments: &ExperimentArguments) -> Result<ThreadPool, TrainerError> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })
 }
 
 impl Run<'_> {
@@ -67,24 +88,36 @@ impl Run<'_> {
         self.output.quiet || self.output.json
     }
 
-    /// Prints a result as asked for: as JSON, as the given text, or not at all.
+    /// Prints a result as [`Output::print`].
     pub(crate) fn print(
         &self,
         result: &impl Serialize,
         text: impl FnOnce() -> String,
     ) -> Result<(), TrainerError> {
-        if self.output.json {
+        self.output.print(result, text)
+    }
+}
+
+impl Output {
+    /// Prints a result as asked for: as JSON, as the given text, or not at all.
+    pub(crate) fn print(
+        self,
+        result: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), TrainerError> {
+        if self.json {
             let json = serde_json::to_string_pretty(result)
                 .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
             console::result(&json);
-        } else if !self.output.quiet {
+        } else if !self.quiet {
             console::result(&text());
         }
         Ok(())
     }
 }
 
-fn read_config(arguments: &ExperimentArguments) -> Result<Experiment, TrainerError> {
+/// Reads the configuration that the arguments name, overrides applied.
+pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
@@ -98,6 +131,5 @@ fn read_config(arguments: &ExperimentArguments) -> Result<Experiment, TrainerErr
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
-    let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
-    Ok(resolve(&document, ESTIMATORS, &classical)?)
+    Ok(document)
 }

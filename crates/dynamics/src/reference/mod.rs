@@ -40,7 +40,7 @@ pub struct Tolerance {
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self { relative: 1e-12, most_steps: 10_000_000 }
+        Self { relative: 1e-12, most_steps: 1_000_000 }
     }
 }
 

@@ -24,9 +24,6 @@ pub(crate) enum Stepping {
 /// Events in a row without any time passing, beyond which the march is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
-/// Position beyond which a motion counts as running away, in the coordinate's unit.
-const BOUND: f64 = 1e12;
-
 /// Iterations of the stage equations beyond which a step counts as too large.
 const MOST_ITERATIONS: usize = 30;
 
@@ -54,6 +51,8 @@ pub(crate) struct Run<'a> {
     scale: Vector,
     /// Size of the next step, in seconds.
     size: f64,
+    /// Position beyond which the motion counts as running away.
+    bound: f64,
     recorder: Recorder,
 }
 
@@ -97,6 +96,7 @@ impl<'a> Run<'a> {
             mode,
             scale: vector.map(f64::abs),
             size,
+            bound: start.bound(),
             recorder,
         })
     }
@@ -172,7 +172,7 @@ impl<'a> Run<'a> {
             size *= factor;
             self.size = size;
             if size <= f64::EPSILON * self.time.abs().max(end.abs()) {
-                if !self.vector.iter().all(|value| value.is_finite() && value.abs() < BOUND) {
+                if !self.vector.iter().all(|value| value.is_finite() && value.abs() < f64::MAX) {
                     return Err(DynamicsError::Diverged { time_s: self.time, position: self.position() });
                 }
                 return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: size });
@@ -344,7 +344,7 @@ impl<'a> Run<'a> {
             *scale = scale.max(value.abs());
         }
         let position = self.position();
-        if !position.is_finite() || position.abs() > BOUND {
+        if !position.is_finite() || position.abs() > self.bound {
             return Err(DynamicsError::Diverged { time_s: self.time, position });
         }
         if let Some(edge) = edge {

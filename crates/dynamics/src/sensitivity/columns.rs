@@ -54,9 +54,12 @@ impl Columns {
         }
     }
 
-    pub(crate) fn clear_sources(&mut self) {
-        for source in self.blocks.iter_mut().flat_map(|block| &mut block.sources) {
-            source.fill([0.0; LANES]);
+    /// Forgets the direct influences on a rate, below a degree.
+    pub(crate) fn clear_sources(&mut self, rate: usize, degree: usize) {
+        for source in self.blocks.iter_mut().filter_map(|block| block.sources.get_mut(rate)) {
+            for lanes in source.iter_mut().take(degree) {
+                *lanes = [0.0; LANES];
+            }
         }
     }
 

@@ -10,16 +10,16 @@ use crate::edges::Edge;
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
 use crate::input::Input;
-use crate::system::Drive;
+use crate::system::{Drive, Start};
 
 /// Steps in a row without any time passing, beyond which the march is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
-/// Position beyond which a motion counts as running away, in the coordinate's unit.
-const BOUND: f64 = 1e12;
-
 /// Parts of a step at which the sign of a margin is looked at.
 const LOOKS: u32 = 8;
+
+/// Parts of a step at which its defect is looked at.
+const PARTS: [f64; 2] = [1.0, 0.6];
 
 /// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
 const MOST_DEFECT: f64 = 20.0;
@@ -42,6 +42,8 @@ pub(crate) struct March<'a> {
     /// Size of the last step, in seconds.
     size: f64,
     end: f64,
+    /// Position beyond which the motion counts as running away.
+    bound: f64,
 }
 
 impl<'a> March<'a> {
@@ -72,6 +74,7 @@ impl<'a> March<'a> {
             scale: state.map(f64::abs),
             size: 0.0,
             end,
+            bound: Start { position: start.position, velocity: start.velocity }.bound(),
             model,
         };
         march.mode = march.model.field.mode(&march.point());
@@ -208,7 +211,9 @@ impl<'a> March<'a> {
         }
         let degree = expand(graph, &mut series, states, most, room, &self.scale, settings.tolerance);
         let mut size = self.step_size(&series, degree, number).min(room);
-        while size > f64::EPSILON * self.time.abs() && self.defect(&series, degree, size) > MOST_DEFECT {
+        while size > f64::EPSILON * self.time.abs()
+            && PARTS.into_iter().any(|part| self.defect(&series, degree, part * size) > MOST_DEFECT)
+        {
             size *= 0.7;
         }
         if size <= f64::EPSILON * self.time.abs() && room > 4.0 * f64::EPSILON * self.time.abs() {
@@ -231,7 +236,7 @@ impl<'a> March<'a> {
         }
         self.time = if size >= room { self.drive.until().min(self.end) } else { self.time + size };
         let [position, ..] = self.state;
-        if !position.is_finite() || position.abs() > BOUND {
+        if !position.is_finite() || position.abs() > self.bound {
             return Err(DynamicsError::Diverged { time_s: self.time, position });
         }
         if let Some((edge, _)) = edge {
@@ -314,7 +319,6 @@ impl<'a> March<'a> {
         let Some(piece) = graphs.get_mut(number) else { return };
         let graph = &mut piece.graph;
         couplings.clear();
-        columns.clear_sources();
         let slope = if self.drive.is_present() { self.drive.raw(self.time).1 } else { 0.0 };
         let mut links = [None; MOST_STATES];
         for (rate, link) in links.iter_mut().enumerate().take(*states) {
@@ -323,6 +327,7 @@ impl<'a> March<'a> {
             if link.is_some() {
                 continue;
             }
+            columns.clear_sources(rate, degree);
             graph.differentiate(node, degree - 1);
             for state in 0..*states {
                 let partial = graph.derivative(STATE + state);
@@ -558,11 +563,21 @@ fn crossing(margin: &[f64], until: f64, resolution: f64) -> Option<f64> {
         return Some(0.0);
     }
     let mut from = 0.0;
+    let mut falling = true;
     for look in 1..=LOOKS {
         let to = until * f64::from(look) / f64::from(LOOKS);
+        let still_falling = slope(margin, to) < 0.0;
         if value(margin, to) < 0.0 {
             return Some(crate::root::bracketed(from, to, |time| value(margin, time)));
         }
+        if falling && !still_falling {
+            // A short visit behind the edge, between two looks.
+            let lowest = crate::root::bracketed(from, to, |time| -slope(margin, time));
+            if value(margin, lowest) < 0.0 {
+                return Some(crate::root::bracketed(from, lowest, |time| value(margin, time)));
+            }
+        }
+        falling = still_falling;
         from = to;
     }
     None

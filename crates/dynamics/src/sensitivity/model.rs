@@ -32,7 +32,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-11, degree: 14, velocity: false, acceleration: false, most_steps: 1_000_000 }
+        Self { tolerance: 1e-10, degree: 14, velocity: false, acceleration: false, most_steps: 1_000_000 }
     }
 }
 

@@ -3,9 +3,11 @@
 use crate::config::{BayesianConfig, Method};
 use crate::model::{Conjugate, Model, Prior, Statistics};
 use crate::sampler::{LARGEST_R_HAT, Sample, loss_at_start};
-use crate::scaling::Scaling;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop,
+    Uncertainty,
+};
 use nalgebra::Vector3;
 
 /// Fewest peaks to sample from: with fewer, the posterior has no fourth moment, and the Monte-Carlo error
@@ -19,7 +21,7 @@ const AT_ODDS: f64 = 5.0;
 impl Estimator for BayesianConfig {
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         let scaling = Scaling::of(envelope)?;
-        let times = scaling.scaled_times(envelope);
+        let times = scaling.unit_times(envelope);
         let prior = Prior {
             width: self.prior_width,
             noise_shape: self.prior_noise_shape,
@@ -49,6 +51,8 @@ struct Found {
     rate: f64,
     scatter: f64,
     uncertainty: Option<Uncertainty>,
+    /// Times asked about, τ, and the predictive standard deviation at each.
+    asked: Vec<(f64, Option<f64>)>,
     stop: Stop,
     steps: u64,
     /// Further lines of the posterior's file.
@@ -58,10 +62,10 @@ struct Found {
 impl Fit<'_> {
     fn in_closed_form(&self, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         let posterior = self.model.conjugate();
-        let Conjugate { start, rate, rate_scale, degrees_of_freedom, scatter } = posterior;
+        let Conjugate { start, rate, rate_scale, degrees_of_freedom, scatter, .. } = posterior;
         let uncertainty = Uncertainty::students_t(
-            self.scaling.rate(rate),
-            self.scaling.rate(rate_scale),
+            self.scaling.rate_per_unit_time(rate),
+            self.scaling.rate_per_unit_time(rate_scale),
             degrees_of_freedom,
         );
         let remarks = format!(
@@ -69,7 +73,8 @@ impl Fit<'_> {
              degrees_of_freedom = {degrees_of_freedom:?}\n"
         );
         let stop = Stop { reached: Reached::Converged, because: self.check(&posterior, context) };
-        self.describe(Found { start, rate, scatter, uncertainty, stop, steps: 0, remarks })
+        let asked = self.asked(context, |time| posterior.predictive_deviation(time));
+        self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps: 0, remarks })
     }
 
     /// What the sampler says of the closed form, in a sentence.
@@ -124,7 +129,7 @@ impl Fit<'_> {
                 planned,
                 phase: phase.to_owned(),
                 loss,
-                decay_rate: self.scaling.rate(rate),
+                decay_rate: self.scaling.rate_per_unit_time(rate),
             });
         });
         let [start, rate, log_sigma] =
@@ -133,11 +138,11 @@ impl Fit<'_> {
         let uncertainty = (!sample.is_empty() && sample.steps > config.warm_up + 1).then(|| {
             let (deviation, [low, high]) = sample.spread(&Vector3::y());
             Uncertainty {
-                std_error: self.scaling.rate(deviation),
-                interval_95: [self.scaling.rate(low), self.scaling.rate(high)],
+                std_error: self.scaling.rate_per_unit_time(deviation),
+                interval_95: [self.scaling.rate_per_unit_time(low), self.scaling.rate_per_unit_time(high)],
             }
         });
-        let error = self.scaling.rate(rate.error);
+        let error = self.scaling.rate_per_unit_time(rate.error);
         let stop = match (sample.interrupted, converged) {
             (true, _) => Stop {
                 reached: Reached::Interrupted,
@@ -161,7 +166,20 @@ impl Fit<'_> {
             sample.diagnostics.tail,
         );
         let (start, rate, scatter) = (start.value, rate.value, log_sigma.value.exp());
-        self.describe(Found { start, rate, scatter, uncertainty, stop, steps: sample.steps, remarks })
+        let known = uncertainty.is_some();
+        let asked = self.asked(context, |time| known.then(|| sample.predictive_deviation(time)));
+        let steps = sample.steps;
+        self.describe(Found { start, rate, scatter, uncertainty, asked, stop, steps, remarks })
+    }
+
+    /// The times asked about, τ, with what is known of a new value there.
+    fn asked(
+        &self,
+        context: &FitContext<'_>,
+        deviation: impl Fn(f64) -> Option<f64>,
+    ) -> Vec<(f64, Option<f64>)> {
+        let times = context.query_times().iter().map(|&time| self.scaling.unit_time(time));
+        times.map(|time| (time, deviation(time))).collect()
     }
 
     /// Why a sample is not enough, and what to do.
@@ -184,12 +202,9 @@ impl Fit<'_> {
     }
 
     fn describe(&self, found: Found) -> Result<Estimate, FitError> {
-        let decay_rate = self.scaling.rate(found.rate);
-        let fitted: Vec<f64> = self
-            .times
-            .iter()
-            .map(|time| self.scaling.log_amplitude(found.start - found.rate * time))
-            .collect();
+        let decay_rate = self.scaling.rate_per_unit_time(found.rate);
+        let at = |time: f64| self.scaling.log_amplitude(found.start - found.rate * time);
+        let fitted: Vec<f64> = self.times.iter().map(|&time| at(time)).collect();
         if !(decay_rate.is_finite() && fitted.iter().all(|log| log.is_finite())) {
             return Err(FitError::NotFinite { loss: found.rate });
         }
@@ -199,7 +214,7 @@ impl Fit<'_> {
              decay_rate_per_s = {decay_rate:?}\nlog_amplitude = {log_amplitude:?}\n\
              scatter_of_log_amplitude = {:?}\n\
              damping_ratio = {:?}\n",
-            self.scaling.scatter(found.scatter),
+            self.scaling.deviation(found.scatter),
             self.envelope.damping_ratio(decay_rate)
         );
         if let Some(Uncertainty { std_error, interval_95: [low, high] }) = found.uncertainty {
@@ -220,7 +235,14 @@ impl Fit<'_> {
             steps: found.steps,
             parameters: 3,
             fitted_log_amplitudes: fitted,
-            predictions: Vec::new(),
+            predictions: found
+                .asked
+                .iter()
+                .map(|&(time, deviation)| {
+                    let deviation = deviation.map(|scaled| self.scaling.deviation(scaled));
+                    Prediction::new(at(time), deviation)
+                })
+                .collect(),
             equation: None,
             model: Some(ModelFile { name: "posterior.toml".to_owned(), bytes: text.into_bytes() }),
         })

@@ -28,7 +28,6 @@ mod fit;
 mod model;
 mod nuts;
 mod sampler;
-mod scaling;
 #[cfg(test)]
 mod tests;
 mod zero_variance;

@@ -55,6 +55,12 @@ impl Statistics {
         let y3 = rest.sum::<f64>().sqrt();
         Self { count, c11, c12: -mean_time * c11, c22, y1: mean_value * c11, y2, y3 }
     }
+
+    /// Of V⁻¹ = XᵀX + `precision`.
+    fn determinant(&self, precision: f64) -> f64 {
+        let Self { c11, c12, c22, .. } = *self;
+        (c11 * c22).powi(2) + precision * (c11 * c11 + c12 * c12 + c22 * c22) + precision * precision
+    }
 }
 
 /// Prior and data together: the log posterior density of (u, r, ℓ) with ℓ = ln σ.
@@ -103,6 +109,25 @@ pub(crate) struct Conjugate {
     pub(crate) degrees_of_freedom: f64,
     /// √(b/a): the scatter's standard deviation.
     pub(crate) scatter: f64,
+    statistics: Statistics,
+    /// 1/κ².
+    precision: f64,
+}
+
+impl Conjugate {
+    /// Standard deviation of a new value at a time τ. It is Student's t about u − rτ with the scale
+    /// √(b/a · (1 + xᵀVx)), x = (1, −τ); its standard deviation is √(ν/(ν − 2)) of that, and there is none
+    /// for ν ≤ 2 degrees of freedom.
+    ///
+    /// Reference: Gelman et al. (2013), section 14.3.
+    pub(crate) fn predictive_deviation(&self, time: f64) -> Option<f64> {
+        let Statistics { c11, c12, c22, .. } = self.statistics;
+        // xᵀVx as a sum of squares.
+        let leverage = (c11 * time + c12).powi(2) + c22 * c22 + self.precision * (1.0 + time * time);
+        let share = leverage / self.statistics.determinant(self.precision);
+        let freedom = self.degrees_of_freedom;
+        (freedom > 2.0).then(|| self.scatter * (freedom / (freedom - 2.0) * (1.0 + share)).sqrt())
+    }
 }
 
 impl Model {
@@ -114,8 +139,7 @@ impl Model {
         let Statistics { count, c11, c12, c22, y1, y2, .. } = self.statistics;
         let precision = 1.0 / (self.prior.width * self.prior.width);
         // The two-by-two system written out, the terms that cancel taken away by hand.
-        let determinant =
-            (c11 * c22).powi(2) + precision * (c11 * c11 + c12 * c12 + c22 * c22) + precision * precision;
+        let determinant = self.statistics.determinant(precision);
         let start = c11 * (c22 * (c22 * y1 - c12 * y2) + precision * y1) / determinant;
         let rate = (c11 * c11 * c22 * y2 + precision * (c12 * y1 + c22 * y2)) / determinant;
         let shape = self.prior.noise_shape + count / 2.0;
@@ -127,6 +151,8 @@ impl Model {
             rate_scale: (variance * rate_variance).sqrt(),
             degrees_of_freedom: 2.0 * shape,
             scatter: variance.sqrt(),
+            statistics: self.statistics,
+            precision,
         }
     }
 
@@ -202,6 +228,20 @@ mod tests {
         assert!((found.degrees_of_freedom - 2.0 * shape).abs() < 1e-13);
         assert!((found.scatter - (rate / shape).sqrt()).abs() < 1e-13);
         assert!((found.rate_scale - (rate / shape * covariance[(1, 1)]).sqrt()).abs() < 1e-13);
+    }
+
+    #[test]
+    fn the_predictive_deviation_is_that_of_its_definition() {
+        let posterior = model(TIGHT).conjugate();
+        let design = DMatrix::from_fn(6, 2, |row, column| if column == 0 { 1.0 } else { -TIMES[row] });
+        let covariance = (design.tr_mul(&design) + DMatrix::identity(2, 2) / 4.0).try_inverse().unwrap();
+        for time in [-0.5, 0.0, 0.4, 3.0] {
+            let x = DVector::from_vec(vec![1.0, -time]);
+            let scale = posterior.scatter * (1.0 + x.dot(&(&covariance * &x))).sqrt();
+            // 2a = 6 + 2·1.5 = 9 degrees of freedom.
+            let expected = scale * (9.0_f64 / 7.0).sqrt();
+            assert!((posterior.predictive_deviation(time).unwrap() / expected - 1.0).abs() < 1e-13, "{time}");
+        }
     }
 
     #[test]

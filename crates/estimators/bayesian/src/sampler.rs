@@ -102,6 +102,15 @@ impl Sample {
         ((squares / (count - 1.0)).sqrt(), [quantile(&draws, 0.025), quantile(&draws, 0.975)])
     }
 
+    /// Standard deviation of a new value at a time τ: by the law of total variance, the mean of σ² and the
+    /// variance of u − rτ over the draws.
+    pub(crate) fn predictive_deviation(&self, time: f64) -> f64 {
+        let (deviation, _) = self.spread(&Vector3::new(1.0, -time, 0.0));
+        let variances = self.chains.iter().flatten().map(|draw| (2.0 * draw.position.z).exp());
+        let count = self.chains.iter().map(Vec::len).sum::<usize>() as f64;
+        (variances.sum::<f64>() / count + deviation * deviation).sqrt()
+    }
+
     /// The share of draws of w·(u, r, ℓ) that lie below a value.
     #[cfg(test)]
     pub(crate) fn share_below(&self, weights: &Vector3<f64>, value: f64) -> f64 {

@@ -20,10 +20,7 @@ fn config(method: Method) -> BayesianConfig {
 
 /// An envelope that is no exponential: it bends and scatters.
 fn envelope() -> Envelope {
-    let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
-    let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
-    let logs = times.iter().enumerate().map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i)).collect();
-    Envelope::new(times, logs, 21.8).unwrap()
+    conformance::bent().unwrap()
 }
 
 /// A line with normal scatter.
@@ -271,4 +268,71 @@ fn the_sampler_is_calibrated() {
 #[ignore = "ten seconds: the long form of the test above"]
 fn the_sampler_is_calibrated_over_two_thousand_replicates() {
     calibration(2000);
+}
+
+fn fit_at(method: Method, envelope: &Envelope, times: &[f64]) -> Estimate {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(times);
+    config(method).fit(envelope, &context).unwrap()
+}
+
+#[test]
+fn at_the_peaks_predictions_are_the_fitted_function() {
+    let envelope = envelope();
+    for method in [Method::Conjugate, Method::Nuts] {
+        let estimate = fit_at(method, &envelope, envelope.times_s());
+        assert_eq!(estimate.predictions.len(), envelope.len());
+        for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+            assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
+        }
+        // Asking changes nothing else.
+        assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(method, &envelope, 0));
+    }
+}
+
+#[test]
+fn the_draws_predict_as_the_closed_form_does() {
+    let times = [-3.0, 0.0, 9.0, 19.0, 60.0];
+    let [closed, drawn] = [Method::Conjugate, Method::Nuts].map(|method| fit_at(method, &envelope(), &times));
+    for (closed, drawn) in closed.predictions.iter().zip(&drawn.predictions) {
+        let (stated, sampled) = (closed.std_error.unwrap(), drawn.std_error.unwrap());
+        assert!((closed.log_amplitude - drawn.log_amplitude).abs() < 1e-3 * stated, "{closed:?} {drawn:?}");
+        assert!((sampled / stated - 1.0).abs() < 0.03, "{closed:?} {drawn:?}");
+    }
+}
+
+#[test]
+fn an_exponential_without_scatter_is_extrapolated() {
+    let envelope = simulated(69, 0.2, 0.0, &mut Seed::new(0).generator());
+    let times = [-5.0, 40.0, 200.0];
+    let predictions = fit_at(Method::Conjugate, &envelope, &times).predictions;
+    for (time, prediction) in times.iter().zip(predictions) {
+        let off = (prediction.log_amplitude + 0.6 + 0.2 * time).abs();
+        // The prior pulls by 2e-11 of the rate.
+        assert!(off < 1e-9 * (1.0 + time.abs()) && off < prediction.std_error.unwrap(), "{time}: {off:e}");
+    }
+}
+
+#[test]
+fn predictive_intervals_hold_fresh_peaks() {
+    let quick = BayesianConfig { check_by_sampling: false, ..config(Method::Conjugate) };
+    let mut generator = Seed::new(21).generator();
+    let replicates = 4000;
+    let held = (0..replicates)
+        .filter(|&replicate| {
+            let envelope = simulated(20, 0.2, 0.1, &mut generator);
+            // From the first peak to as far again beyond the last.
+            let times = [11.0 * f64::from(replicate) / f64::from(replicates)];
+            let cancel = Cancel::new();
+            let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(&times);
+            let prediction = quick.fit(&envelope, &context).unwrap().predictions[0];
+            let fresh = -0.6 - 0.2 * times[0] + 0.1 * generator.sample::<f64, _>(StandardNormal);
+            // Student's t with 18 degrees of freedom has the deviation √(18/16) times its scale.
+            let scale = prediction.std_error.unwrap() * (16.0_f64 / 18.0).sqrt();
+            (fresh - prediction.log_amplitude).abs() <= 2.1009 * scale
+        })
+        .count();
+    let share = held as f64 / f64::from(replicates);
+    // Four standard deviations of such a share.
+    assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(replicates)).sqrt(), "{share}");
 }

@@ -1,9 +1,9 @@
 //! The match.
 
 use crate::config::EnvelopeMatchingConfig;
-use crate::matching::{Linearized, Matching};
+use crate::matching::{Linearized, Matching, Reading};
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, Reached, Step, Stop, Uncertainty};
+use estimator::{Estimate, Estimator, FitContext, FitError, Prediction, Reached, Step, Stop, Uncertainty};
 use nalgebra::{Matrix2, Vector2};
 use rand::RngExt;
 
@@ -34,16 +34,22 @@ impl Estimator for EnvelopeMatchingConfig {
         }
         let matching = Matching::new(envelope, self.steps_per_period, self.most_periods)?;
         let found = self.minimize(&matching, self.start(context), context)?;
-        let decay_rate = matching.rate(found.parameters.y);
+        let decay_rate = matching.scaling.rate_per_unit_time(found.parameters.y);
+        let predictions = predictions(&matching, &found, context.query_times());
         Ok(Estimate {
             decay_rate,
-            log_amplitude: matching.log_amplitude(found.parameters.x),
+            log_amplitude: matching.scaling.log_amplitude(found.parameters.x),
             uncertainty: uncertainty(&matching, &found),
             stop: found.stop,
             steps: found.steps,
             parameters: 2,
-            fitted_log_amplitudes: found.at.fitted.iter().map(|&z| matching.log_amplitude(z)).collect(),
-            predictions: Vec::new(),
+            fitted_log_amplitudes: found
+                .at
+                .fitted
+                .iter()
+                .map(|&z| matching.scaling.log_amplitude(z))
+                .collect(),
+            predictions,
             equation: None,
             model: None,
         })
@@ -83,7 +89,7 @@ impl EnvelopeMatchingConfig {
                 planned: max_steps,
                 phase: "matching".to_owned(),
                 loss: at.loss / matching.len() as f64,
-                decay_rate: matching.rate(parameters.y),
+                decay_rate: matching.scaling.rate_per_unit_time(parameters.y),
             });
             if context.is_cancelled() {
                 break (Reached::Interrupted, format!("interrupted after {steps} steps"));
@@ -147,6 +153,23 @@ fn gain(at: &Linearized, next: &Linearized, step: &Vector2<f64>, damping: f64) -
 fn uncertainty(matching: &Matching, found: &Found) -> Option<Uncertainty> {
     let degrees = matching.len() as f64 - 2.0;
     let variance = found.at.loss / degrees * found.at.normal.try_inverse()?.m22;
-    let std_error = matching.rate(variance.sqrt());
-    Uncertainty::students_t(matching.rate(found.parameters.y), std_error, degrees)
+    let std_error = matching.scaling.rate_per_unit_time(variance.sqrt());
+    Uncertainty::students_t(matching.scaling.rate_per_unit_time(found.parameters.y), std_error, degrees)
+}
+
+/// The simulated envelope at the times asked about; NaN where the simulation does not reach.
+///
+/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), g the derivatives of the simulated ln A there.
+fn predictions(matching: &Matching, found: &Found, query_times: &[f64]) -> Vec<Prediction> {
+    let scaling = &matching.scaling;
+    let times: Vec<f64> = query_times.iter().map(|&time| scaling.unit_time(time)).collect();
+    let variance = found.at.loss / (matching.len() as f64 - 2.0);
+    let inverse = found.at.normal.try_inverse().filter(|_| found.steps > 0);
+    let predict = |reading: Option<Reading>| {
+        let (value, gradient) = reading.unwrap_or((f64::NAN, Vector2::zeros()));
+        let leverage = inverse.map(|inverse| gradient.dot(&(inverse * gradient)));
+        let std_error = leverage.map(|leverage| scaling.deviation((variance * (1.0 + leverage)).sqrt()));
+        Prediction::new(scaling.log_amplitude(value), std_error)
+    };
+    matching.readings(&found.parameters, &times).into_iter().map(predict).collect()
 }

@@ -3,7 +3,7 @@
 use crate::dual::Dual;
 use crate::oscillator::{Oscillator, Peak, Viscous};
 use envelope::Envelope;
-use estimator::FitError;
+use estimator::{FitError, Scaling};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::TAU;
 
@@ -19,15 +19,12 @@ const SIMULATION_NOISE: f64 = 1e-13;
 /// Most periods however much ln A changes: a simulation of seconds. Beyond, it is not finite.
 const LIMIT: f64 = 1e6;
 
-/// The measured envelope in scaled coordinates, and the oscillator that it is matched by.
+/// The measured envelope in scaled units, τ in 0..1 and z, and the oscillator that it is matched by.
 ///
-/// x = t/T in 0..1 with T the record's length, z = (ln A − mean)/spread: a range, a mean and a standard
-/// deviation, no line. Parameters: z at time 0, and λ·T/spread.
+/// Parameters: z at time 0, and λ·T/spread with T the record's length.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Matching {
-    duration_s: f64,
-    mean: f64,
-    spread: f64,
+    pub(crate) scaling: Scaling,
     times: Vec<f64>,
     targets: Vec<f64>,
     /// Angular frequency per record.
@@ -53,25 +50,16 @@ impl Matching {
         steps_per_period: usize,
         most_periods: usize,
     ) -> Result<Self, FitError> {
-        let duration_s = envelope.times_s().last().copied().unwrap_or_default();
-        let logs = envelope.log_amplitudes();
-        let count = logs.len() as f64;
-        let mean = logs.iter().sum::<f64>() / count;
-        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
-        // Below this the logarithms differ by their rounding only.
-        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
-            return Err(FitError::NoSpread { spread });
-        }
+        let scaling = Scaling::of(envelope)?;
         // The envelope of a linear oscillator does not depend on its frequency. So the frequency may leave
         // the measured one where the record is too long to simulate, or too short for a second peak.
-        let fewest = FEWEST_PERIODS.max(4.0 * spread / MOST_CHANGE_PER_PERIOD).min(LIMIT);
-        let periods = (envelope.omega_rad_s() * duration_s / TAU).min(most_periods as f64).max(fewest);
+        let fewest = FEWEST_PERIODS.max(4.0 * scaling.spread() / MOST_CHANGE_PER_PERIOD).min(LIMIT);
+        let periods =
+            (envelope.omega_rad_s() * scaling.duration() / TAU).min(most_periods as f64).max(fewest);
         Ok(Self {
-            duration_s,
-            mean,
-            spread,
-            times: envelope.times_s().iter().map(|time| time / duration_s).collect(),
-            targets: logs.iter().map(|log| (log - mean) / spread).collect(),
+            scaling,
+            times: scaling.unit_times(envelope),
+            targets: scaling.scaled_logs(envelope),
             omega: TAU * periods,
             steps_per_period: steps_per_period as f64,
         })
@@ -82,41 +70,27 @@ impl Matching {
         self.targets.len()
     }
 
-    /// ln A of a scaled value.
-    pub(crate) fn log_amplitude(&self, scaled: f64) -> f64 {
-        self.mean + self.spread * scaled
-    }
-
-    /// A rate in 1/s from one in scaled units.
-    pub(crate) fn rate(&self, scaled: f64) -> f64 {
-        scaled * self.spread / self.duration_s
-    }
-
     /// What rounding leaves of ln A after a simulation, scaled.
     pub(crate) fn simulation_noise(&self) -> f64 {
-        SIMULATION_NOISE / self.spread
+        SIMULATION_NOISE / self.scaling.spread()
     }
 
     /// What the loss is when the match is exact but for rounding.
     pub(crate) fn rounding(&self) -> f64 {
-        let digit = self.simulation_noise() + 4.0 * f64::EPSILON * (1.0 + (self.mean / self.spread).abs());
+        let digit = self.simulation_noise()
+            + 4.0 * f64::EPSILON * (1.0 + (self.scaling.mean() / self.scaling.spread()).abs());
         self.len() as f64 * digit * digit
     }
 
     /// Simulates and compares. `None` where the simulation is not finite.
     pub(crate) fn linearize(&self, parameters: &Vector2<f64>) -> Option<Linearized> {
-        let rate = Dual::variable(parameters.y * self.spread);
-        let oscillator = Oscillator {
-            stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
-            damping: Viscous { rate },
-        };
-        let peaks = oscillator.peaks(1.0, TAU / self.omega / self.steps_per_period)?;
+        let peaks = self.simulate(Dual::variable(parameters.y * self.scaling.spread()), 1.0)?;
         let mut normal = Matrix2::zeros();
         let mut gradient = Vector2::zeros();
         let mut loss = 0.0;
         let mut fitted = Vec::with_capacity(self.len());
         for (log_height, target) in read(&peaks, &self.times).zip(&self.targets) {
-            let value = parameters.x + log_height.value / self.spread;
+            let value = parameters.x + log_height.value / self.scaling.spread();
             // By λ·T/spread: both scales cancel.
             let row = Vector2::new(1.0, log_height.slope);
             let residual = value - target;
@@ -127,6 +101,44 @@ impl Matching {
         }
         let finite = loss.is_finite() && normal.iter().chain(&gradient).all(|entry| entry.is_finite());
         (finite && fitted.len() == self.len()).then_some(Linearized { loss, normal, gradient, fitted })
+    }
+}
+
+/// The scaled envelope at a time, and its derivatives by the parameters.
+pub(crate) type Reading = (f64, Vector2<f64>);
+
+impl Matching {
+    /// The peaks of the oscillator, let go at time 0, for as many records' lengths.
+    fn simulate(&self, rate: Dual, duration: f64) -> Option<Vec<Peak>> {
+        let oscillator = Oscillator {
+            stiffness: Dual::constant(self.omega * self.omega) + rate * rate,
+            damping: Viscous { rate },
+        };
+        oscillator.peaks(duration, TAU / self.omega / self.steps_per_period)
+    }
+
+    /// The simulated envelope at times τ in any order, within the record or beyond it: after the record the
+    /// simulation goes on, and before it the motion is followed backward in time, where damping drives.
+    /// `None` for a time that the simulation does not reach: it ends after a million periods.
+    pub(crate) fn readings(&self, parameters: &Vector2<f64>, times: &[f64]) -> Vec<Option<Reading>> {
+        let mut found = vec![None; times.len()];
+        let rate = Dual::variable(parameters.y * self.scaling.spread());
+        for (rate, way) in [(rate, 1.0), (-rate, -1.0)] {
+            let asked = times.iter().map(|time| time * way).enumerate();
+            let reachable = |time: &f64| *time >= 0.0 && time * self.omega <= TAU * LIMIT;
+            let mut asked: Vec<(usize, f64)> = asked.filter(|(_, time)| reachable(time)).collect();
+            asked.sort_by(|(_, one), (_, other)| one.total_cmp(other));
+            let (places, asked): (Vec<usize>, Vec<f64>) = asked.into_iter().unzip();
+            let Some(last) = asked.last() else { continue };
+            let Some(peaks) = self.simulate(rate, last.max(1.0)) else { continue };
+            for (place, log_height) in places.into_iter().zip(read(&peaks, &asked)) {
+                let value = parameters.x + log_height.value / self.scaling.spread();
+                if let Some(entry) = found.get_mut(place) {
+                    *entry = Some((value, Vector2::new(1.0, log_height.slope)));
+                }
+            }
+        }
+        found
     }
 }
 

@@ -197,3 +197,70 @@ fn every_step_is_told_once_and_a_request_to_stop_is_heard() {
     let stopped = config().fit(&envelope(), &FitContext::new(Seed::new(0), None, &steps, &cancel)).unwrap();
     assert_eq!((stopped.stop.reached, stopped.steps), (Reached::Interrupted, 0));
 }
+
+fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(seed).child("envelope-matching"), None, &Silent, &cancel);
+    config().fit(envelope, &context.predicting_at(times)).unwrap()
+}
+
+#[test]
+fn at_the_peaks_predictions_are_the_fitted_function() {
+    // Backward: the order of the times does not matter.
+    let times: Vec<f64> = envelope().times_s().iter().rev().copied().collect();
+    let estimate = fit_at(&envelope(), 0, &times);
+    assert_eq!(estimate.predictions.len(), times.len());
+    for (prediction, fitted) in estimate.predictions.iter().rev().zip(&estimate.fitted_log_amplitudes) {
+        assert!((prediction.log_amplitude - fitted).abs() < 1e-14);
+    }
+    // Asking changes nothing else.
+    assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope(), 0));
+}
+
+#[test]
+fn the_oscillator_is_followed_both_ways_with_the_textbook_s_error() {
+    let (rate, height, std_error) = line(&envelope());
+    let times = [60.0, -4.0, 0.0, 8.0, 400.0];
+    let estimate = fit_at(&envelope(), 0, &times);
+    let t = envelope().times_s().to_vec();
+    let mean = t.iter().sum::<f64>() / 69.0;
+    let spread: f64 = t.iter().map(|t| (t - mean).powi(2)).sum();
+    for (time, prediction) in times.iter().zip(&estimate.predictions) {
+        let off = prediction.log_amplitude - (height - rate * time);
+        assert!(off.abs() < 1e-10, "{time}: {off:e}");
+        let variance = std_error.powi(2) * (spread * (1.0 + 1.0 / 69.0) + (time - mean).powi(2));
+        assert!((prediction.std_error.unwrap() / variance.sqrt() - 1.0).abs() < 1e-9, "{time}");
+    }
+}
+
+#[test]
+fn what_the_simulation_does_not_reach_is_not_predicted() {
+    let times = [1e9, 5.0, -1e9];
+    let estimate = fit_at(&envelope(), 0, &times);
+    let finite: Vec<bool> =
+        estimate.predictions.iter().map(|found| found.log_amplitude.is_finite()).collect();
+    assert_eq!(finite, [false, true, false]);
+    assert_eq!(estimate.first_without_prediction(&times), Some(-1e9));
+}
+
+#[test]
+fn predictive_intervals_hold_fresh_peaks() {
+    let mut generator = Seed::new(6).generator();
+    let mut scatter = || 0.1 * ((0..12).map(|_| generator.random::<f64>()).sum::<f64>() - 6.0);
+    let trials: u32 = 500;
+    let held = (0..trials)
+        .filter(|&trial| {
+            let times: Vec<f64> = (0..30).map(|i| 0.288 * f64::from(i)).collect();
+            let logs = times.iter().map(|t| -0.6 - 0.19 * t + scatter()).collect();
+            let envelope = Envelope::new(times, logs, 21.8).unwrap();
+            // From the first peak to as far again beyond the last.
+            let time = 16.0 * f64::from(trial) / f64::from(trials);
+            let found = fit_at(&envelope, u64::from(trial), &[time]).predictions[0];
+            // Student's t with 28 degrees of freedom.
+            (scatter() - 0.6 - 0.19 * time - found.log_amplitude).abs() <= 2.0484 * found.std_error.unwrap()
+        })
+        .count();
+    let share = held as f64 / f64::from(trials);
+    // Four standard deviations of such a share.
+    assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(), "{share}");
+}

@@ -3,9 +3,11 @@
 use crate::ascent::{Bounds, Ended, Summit, climb};
 use crate::config::GaussianProcessConfig;
 use crate::likelihood::{Evaluation, Process, Slope};
-use crate::scaling::Scaling;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Stop,
+    Uncertainty,
+};
 use nalgebra::{Cholesky, Matrix5, Vector5};
 use rand::RngExt;
 use std::ops::ControlFlow;
@@ -34,12 +36,13 @@ impl Estimator for GaussianProcessConfig {
             });
         }
         let scaling = Scaling::of(envelope)?;
-        let times = scaling.scaled_times(envelope);
+        let times = scaling.unit_times(envelope);
         let projection = Projection::new(&times);
         let process = Process::new(self.kernel, self.signal_scale, &times, &scaling.scaled_logs(envelope));
-        let rate = |at: &Evaluation| -scaling.rate(projection.slope(process.fitted(at).as_slice()));
+        let rate =
+            |at: &Evaluation| -scaling.rate_per_unit_time(projection.slope(process.fitted(at).as_slice()));
         let trained = self.train(&process, context, rate)?;
-        describe(&scaling, &process, &projection, &trained)
+        describe(&scaling, &process, &projection, &trained, context.query_times())
     }
 }
 
@@ -214,9 +217,10 @@ fn describe(
     process: &Process,
     projection: &Projection,
     trained: &Trained,
+    query_times: &[f64],
 ) -> Result<Estimate, FitError> {
     let function = process.fitted(&trained.best);
-    let decay_rate = -scaling.rate(projection.slope(function.as_slice()));
+    let decay_rate = -scaling.rate_per_unit_time(projection.slope(function.as_slice()));
     let fitted: Vec<f64> = function.iter().map(|&z| scaling.log_amplitude(z)).collect();
     if !(decay_rate.is_finite() && fitted.iter().all(|log| log.is_finite())) {
         return Err(FitError::NotFinite { loss: -trained.best.value });
@@ -224,15 +228,14 @@ fn describe(
     let [_, slope, log_signal, log_length, log_noise] = trained.best.parameters.into();
     let noise = log_noise.exp();
     let degrees = trained.degrees_of_freedom;
-    let std_error = scaling.rate(noise / projection.squares.sqrt());
-    let uncertainty = (degrees >= 1.0 && trained.stop.reached == Reached::Converged)
-        .then(|| Uncertainty::students_t(decay_rate, std_error, degrees))
-        .flatten();
+    let std_error = scaling.rate_per_unit_time(noise / projection.squares.sqrt());
+    let known = degrees >= 1.0 && trained.stop.reached == Reached::Converged;
+    let uncertainty = known.then(|| Uncertainty::students_t(decay_rate, std_error, degrees)).flatten();
     let text = format!(
         "# Gaussian process: ln A = line + signal of the given length scale + noise.\n\
          decay_rate_of_the_mean_per_s = {:?}\nsignal_of_log_amplitude = {:?}\nlength_s = {:?}\n\
          noise_of_log_amplitude = {:?}\ndegrees_of_freedom = {degrees:?}\nlog_likelihood = {:?}\n",
-        -scaling.rate(2.0 * slope),
+        -scaling.rate_per_unit_time(2.0 * slope),
         scaling.deviation(log_signal.exp()),
         scaling.duration() * log_length.exp(),
         scaling.deviation(noise),
@@ -246,7 +249,14 @@ fn describe(
         steps: trained.steps,
         parameters: trained.best.parameters.len(),
         fitted_log_amplitudes: fitted,
-        predictions: Vec::new(),
+        predictions: query_times
+            .iter()
+            .map(|&time| {
+                let (mean, variance) = process.predict(&trained.best, scaling.unit_time(time));
+                let std_error = known.then(|| scaling.deviation(variance.sqrt()));
+                Prediction::new(scaling.log_amplitude(mean), std_error)
+            })
+            .collect(),
         equation: None,
         model: Some(ModelFile { name: "process.toml".to_owned(), bytes: text.into_bytes() }),
     })

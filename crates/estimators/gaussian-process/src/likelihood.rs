@@ -1,7 +1,7 @@
 //! The restricted log likelihood with a prior, its gradient, and its curvature.
 
 use crate::kernel::Kernel;
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Matrix3, Matrix5, Vector3, Vector5};
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn, Matrix2, Matrix3, Matrix5, Vector2, Vector3, Vector5};
 use std::f64::consts::TAU;
 
 /// The process in scaled units: z(τ) = a + b·(2τ − 1) + g(τ) + noise, with g of covariance σ_f²·k(|τ − τ′|/ℓ)
@@ -12,6 +12,7 @@ pub(crate) struct Process {
     kernel: Kernel,
     /// s: scale of the half-Cauchy prior of σ_f/σ_n.
     signal_scale: f64,
+    times: DVector<f64>,
     distances: DMatrix<f64>,
     /// Columns 1 and 2τ − 1.
     basis: DMatrix<f64>,
@@ -63,7 +64,8 @@ impl Process {
         );
         let slope = column.map(|time| 2.0 * time - 1.0);
         let basis = DMatrix::from_columns(&[DVector::from_element(count, 1.0), slope]);
-        Self { kernel, signal_scale, distances, basis, values: DVector::from_column_slice(values) }
+        let values = DVector::from_column_slice(values);
+        Self { kernel, signal_scale, times: column, distances, basis, values }
     }
 
     /// The likelihood; `None` where the covariance is not positive definite to rounding.
@@ -227,6 +229,27 @@ impl Process {
         let [_, _, noise] = scales(&at.parameters);
         &self.values - &at.weights * noise
     }
+
+    /// The posterior mean of the function at a time τ and the variance of a new value there, noise and all,
+    /// under a flat prior of a and b: with k the covariances of the function there with those at the peaks
+    /// and h = (1, 2τ − 1),
+    ///
+    /// - mean hᵀ(a, b) + kᵀC⁻¹e;
+    /// - variance σ_f² − kᵀC⁻¹k + rᵀ(HᵀC⁻¹H)⁻¹r + σ_n², r = h − HᵀC⁻¹k.
+    ///
+    /// Reference: Rasmussen, Williams (2006), equations 2.38, 2.41 and 2.42.
+    pub(crate) fn predict(&self, at: &Evaluation, time: f64) -> (f64, f64) {
+        let [signal, inverse_length, noise] = scales(&at.parameters);
+        let across =
+            self.times.map(|peak| signal * self.kernel.correlation((peak - time).abs() * inverse_length)[0]);
+        let basis = Vector2::new(1.0, 2.0 * time - 1.0);
+        let mean = basis.dot(&at.parameters.fixed_rows::<2>(0)) + across.dot(&at.weights);
+        let seen = across.dot(&at.factor.solve(&across));
+        let rest = basis - at.basis_weights.tr_mul(&across).fixed_rows::<2>(0);
+        let line = at.mean_information.try_inverse().map_or(f64::NAN, |inverse| rest.dot(&(inverse * rest)));
+        // Rounding may take a variance that is next to none below it.
+        (mean, (signal - seen).max(0.0) + line + noise)
+    }
 }
 
 /// σ_f², 1/ℓ and σ_n².
@@ -332,6 +355,31 @@ mod tests {
             let weights = &x / x.norm_squared();
             let variance = weights.dot(&(covariance * &weights));
             assert!((variance * x.norm_squared() / noise - 1.0).abs() < 1e-9, "{kernel:?} {variance}");
+        }
+    }
+
+    #[test]
+    fn a_new_value_is_what_conditioning_makes_of_it() {
+        // A line with a prior as good as flat joined to the signal: one Gaussian of peaks and new value.
+        for kernel in ALL {
+            let process = process(kernel);
+            let (c, h, z) = matrices(&process, &point());
+            let settled = process.settle_mean(process.evaluate(point()).unwrap()).unwrap();
+            let [signal, inverse_length, noise] = scales(&point());
+            for time in [-0.3, 0.17, 1.0, 1.6] {
+                let flat = 1e4;
+                let new = DVector::from_vec(vec![1.0, 2.0 * time - 1.0]);
+                let k = process
+                    .times
+                    .map(|peak| signal * kernel.correlation((peak - time).abs() * inverse_length)[0]);
+                let inverse = (&c + &h * h.transpose() * flat).try_inverse().unwrap();
+                let across = k + &h * &new * flat;
+                let mean = across.dot(&(&inverse * &z));
+                let variance = signal + noise + flat * new.norm_squared() - across.dot(&(&inverse * &across));
+                let found = process.predict(&settled, time);
+                assert!((found.0 - mean).abs() < 1e-3, "{kernel:?} {time}: {found:?} {mean}");
+                assert!((found.1 / variance - 1.0).abs() < 1e-3, "{kernel:?} {time}: {found:?} {variance}");
+            }
         }
     }
 }

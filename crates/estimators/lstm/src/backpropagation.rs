@@ -13,7 +13,8 @@ use estimator::FitError;
 use nalgebra::{DMatrix, DVector};
 use neural::values;
 
-/// A gate at all times: its weights, and what it let through.
+/// A gate at all times: its weights, and what it let through. A matrix of units by entries holds the first
+/// entries of all sequences, then the second ones, and so on.
 struct Gate {
     /// Units by units.
     from_hidden: DMatrix<f64>,
@@ -49,11 +50,12 @@ impl Gate {
         Ok(Self { from_hidden, values: sums.map(activation), adjoint })
     }
 
-    /// Passes the derivatives with respect to the gate's values at an entry on to its sums, by the slope
-    /// of its activation, a function of the value.
-    fn pass(&mut self, at: usize, by_value: &DVector<f64>, slope: impl Fn(f64) -> f64) {
-        let by_sum = by_value.zip_map(&self.values.column(at), |by, value| by * slope(value));
-        self.adjoint.set_column(at, &by_sum);
+    /// Passes the derivatives with respect to the gate's values at the entries from column `first` on to
+    /// its sums, by the slope of its activation, a function of the value.
+    fn pass(&mut self, first: usize, by_value: &DMatrix<f64>, slope: impl Fn(f64) -> f64) {
+        let values = self.values.columns(first, by_value.ncols());
+        let by_sum = by_value.zip_map(&values, |by, value| by * slope(value));
+        self.adjoint.columns_mut(first, by_value.ncols()).copy_from(&by_sum);
     }
 
     /// The derivatives with respect to the gate's parameters in the order of the flat list: the input's
@@ -66,10 +68,10 @@ impl Gate {
 }
 
 /// Derivatives with respect to the LSTM's parameters, in the order of the flat list, of a result whose
-/// derivatives with respect to the last hidden state are `by_last`.
+/// derivatives with respect to the last hidden states are `by_last`, sequences × units.
 ///
-/// `inputs` of shape 1 × entries × features and `hidden`, all the hidden states that the LSTM gave for
-/// them, of shape 1 × entries × units. With i, f, o, g the gates' values and δ the adjoints,
+/// `inputs` of shape sequences × entries × features and `hidden`, all the hidden states that the LSTM gave
+/// for them, of shape sequences × entries × units. With i, f, o, g the gates' values and δ the adjoints,
 ///
 /// c = f·c₋ + i·g, h = o·tanh c, δc = δc₊·f₊ + δh·o·(1 − tanh²c), δh = Σ Uᵀδp₊.
 ///
@@ -79,13 +81,15 @@ pub(crate) fn backpropagate(
     lstm: &Lstm,
     inputs: Tensor<3>,
     hidden: Tensor<3>,
-    by_last: Vec<f64>,
+    by_last: Tensor<2>,
 ) -> Result<Vec<f64>, FitError> {
-    let [_, entries, features] = inputs.dims();
+    let [sequences, entries, features] = inputs.dims();
     let units = lstm.d_hidden;
-    let inputs = columns(inputs, features)?;
+    let inputs = columns(inputs.swap_dims(0, 1), features)?;
     // Before the first entry the state is zero.
-    let before = columns(hidden, units)?.insert_column(0, 0.0).remove_column(entries);
+    let before = columns(hidden.swap_dims(0, 1), units)?
+        .insert_columns(0, sequences, 0.0)
+        .remove_columns(sequences * entries, sequences);
     let sigmoid = |x: f64| 1.0 / (1.0 + (-x).exp());
     let gate = |gate, activation: fn(f64) -> f64| Gate::new(gate, &inputs, &before, activation);
     let Some(forget) = &lstm.forget_gate else {
@@ -96,29 +100,32 @@ pub(crate) fn backpropagate(
     let mut output = gate(&lstm.output_gate, sigmoid)?;
     let mut candidate = gate(&lstm.cell_gate, f64::tanh)?;
 
-    // The cell before each entry, and after the last one.
-    let mut cells = DMatrix::zeros(units, entries + 1);
+    // The cells before each entry, and after the last one.
+    let mut cells = DMatrix::zeros(units, sequences * (entries + 1));
     for at in 0..entries {
-        let kept = forget.values.column(at).component_mul(&cells.column(at));
-        let added = input.values.column(at).component_mul(&candidate.values.column(at));
-        cells.set_column(at + 1, &(kept + added));
+        let of = |matrix: &DMatrix<f64>| matrix.columns(at * sequences, sequences).into_owned();
+        let kept = of(&forget.values).component_mul(&of(&cells));
+        let added = of(&input.values).component_mul(&of(&candidate.values));
+        cells.columns_mut((at + 1) * sequences, sequences).copy_from(&(kept + added));
     }
 
-    let mut by_hidden = DVector::from_vec(by_last);
-    let mut by_cell = DVector::<f64>::zeros(units);
+    let mut by_hidden = columns(by_last, units)?;
+    let mut by_cell = DMatrix::<f64>::zeros(units, sequences);
     for at in (0..entries).rev() {
-        let squashed = cells.column(at + 1).map(f64::tanh);
-        let by_squashed = by_hidden.component_mul(&output.values.column(at));
+        let first = at * sequences;
+        let of = |matrix: &DMatrix<f64>| matrix.columns(first, sequences).into_owned();
+        let squashed = cells.columns(first + sequences, sequences).map(f64::tanh);
+        let by_squashed = by_hidden.component_mul(&of(&output.values));
         by_cell += by_squashed.zip_map(&squashed, |by, squashed| by * (1.0 - squashed * squashed));
         let sigmoid_slope = |value: f64| value * (1.0 - value);
-        output.pass(at, &by_hidden.component_mul(&squashed), sigmoid_slope);
-        input.pass(at, &by_cell.component_mul(&candidate.values.column(at)), sigmoid_slope);
-        forget.pass(at, &by_cell.component_mul(&cells.column(at)), sigmoid_slope);
-        candidate.pass(at, &by_cell.component_mul(&input.values.column(at)), |value| 1.0 - value * value);
-        by_cell.component_mul_assign(&forget.values.column(at));
+        output.pass(first, &by_hidden.component_mul(&squashed), sigmoid_slope);
+        input.pass(first, &by_cell.component_mul(&of(&candidate.values)), sigmoid_slope);
+        forget.pass(first, &by_cell.component_mul(&of(&cells)), sigmoid_slope);
+        candidate.pass(first, &by_cell.component_mul(&of(&input.values)), |value| 1.0 - value * value);
+        by_cell.component_mul_assign(&of(&forget.values));
         by_hidden.fill(0.0);
         for gate in [&input, &forget, &output, &candidate] {
-            by_hidden.gemv_tr(1.0, &gate.from_hidden, &gate.adjoint.column(at), 1.0);
+            by_hidden.gemm_tr(1.0, &gate.from_hidden, &gate.adjoint.columns(first, sequences), 1.0);
         }
     }
     let gates = [&input, &forget, &output, &candidate];
@@ -127,7 +134,7 @@ pub(crate) fn backpropagate(
 
 #[cfg(test)]
 mod tests {
-    use crate::network::Network;
+    use crate::network::{Network, Size};
     use burn::tensor::{Tensor, TensorData};
     use neural::{Encoder, device, flat_gradient, values, with_parameters};
     use rand::SeedableRng;
@@ -136,15 +143,17 @@ mod tests {
     #[test]
     fn it_gives_the_gradient_of_the_tape() {
         let recording = device().unwrap().autodiff();
-        for (entries, units) in [(1, 3), (7, 1), (40, 5)] {
-            let network = Network::zeros(units, &device().unwrap());
+        for (sequences, entries, units) in [(1, 1, 3), (1, 7, 1), (1, 40, 5), (2, 1, 1), (3, 8, 4)] {
+            let network = Network::zeros(Size { features: 2, units, says: 2 }, &device().unwrap());
             // Every parameter is something else, biases included.
             let start = network.draw(1.0, &mut StdRng::seed_from_u64(8)).unwrap();
             let start: Vec<f64> =
                 start.iter().enumerate().map(|(at, x)| x + 0.3 * (at as f64).sin()).collect();
             let network = with_parameters(network, &start, &recording).unwrap();
-            let features = (0..2 * entries).map(|at| (1.7 * at as f64).cos()).collect::<Vec<f64>>();
-            let input: Tensor<3> = Tensor::from_data(TensorData::new(features, [1, entries, 2]), &recording);
+            let count = 2 * sequences * entries;
+            let features = (0..count).map(|at| (1.7 * at as f64).cos()).collect::<Vec<f64>>();
+            let shape = [sequences, entries, 2];
+            let input: Tensor<3> = Tensor::from_data(TensorData::new(features, shape), &recording);
             let loss = |said: Tensor<2>| (said.clone() * said.clone() + said * 3.0).sum();
 
             let said = network.encode(input.clone());

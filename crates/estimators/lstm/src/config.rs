@@ -20,16 +20,29 @@ pub struct LstmConfig {
     pub initial_scale: f64,
 }
 
+/// Units of the hidden state.
+pub(crate) const HIDDEN_UNITS: Field = Field {
+    key: "hidden_units",
+    kind: Kind::Integer { min: 1, max: 256 },
+    default: Default::Integer(16),
+    unit: "",
+    meaning: "Units of the hidden state, and of the cell.",
+    source: "1 to 64 agree to rounding, 16 in the fewest steps or nearly",
+};
+
+/// Factor on the drawn start values.
+pub(crate) const INITIAL_SCALE: Field = Field {
+    key: "initial_scale",
+    kind: Kind::Float { min: 1e-3, max: 10.0 },
+    default: Default::Float(1.0),
+    unit: "",
+    meaning: "Factor on the drawn start values of the gates' weights.",
+    source: "Glorot, Bengio 2010",
+};
+
 /// The configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "hidden_units",
-        kind: Kind::Integer { min: 1, max: 256 },
-        default: Default::Integer(16),
-        unit: "",
-        meaning: "Units of the hidden state, and of the cell.",
-        source: "1 to 64 agree to rounding, 16 in the fewest steps or nearly",
-    },
+    HIDDEN_UNITS,
     Field {
         key: "longest_sequence",
         kind: Kind::Integer { min: 3, max: 10_000 },
@@ -62,12 +75,5 @@ pub(crate) const FIELDS: &[Field] = &[
         meaning: "Training has converged when the gradient has fallen to this share of its length at the start.",
         source: "a few roundings above what double precision leaves",
     },
-    Field {
-        key: "initial_scale",
-        kind: Kind::Float { min: 1e-3, max: 10.0 },
-        default: Default::Float(1.0),
-        unit: "",
-        meaning: "Factor on the drawn start values of the gates' weights.",
-        source: "Glorot, Bengio 2010",
-    },
+    INITIAL_SCALE,
 ];

@@ -9,7 +9,7 @@ use neural::{Reconstruction, device};
 impl Estimator for LstmConfig {
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         let device = device()?;
-        let network = Network::zeros(self.hidden_units, &device);
+        let network = Network::for_one_envelope(self.hidden_units, &device);
         let start = network.draw(self.initial_scale, &mut context.seed("initial weights").generator())?;
         let training = Reconstruction {
             longest_sequence: self.longest_sequence,
@@ -25,6 +25,7 @@ impl Estimator for LstmConfig {
 mod tests {
     use super::*;
     use crate::ENTRY;
+    use conformance::{Line, least_squares};
     use estimator::{Cancel, Observer, Reached, Silent, Step};
     use neural::from_safetensors;
     use rand::RngExt;
@@ -56,19 +57,7 @@ mod tests {
 
     /// An envelope that is no exponential: it bends and scatters.
     fn envelope() -> Envelope {
-        envelope_of(|at, t| -0.6 - 0.25 * t + 0.004 * t * t + 0.05 * scatter(at))
-    }
-
-    /// The slope of the least-squares line, and its standard error, from the textbook.
-    fn line(envelope: &Envelope) -> (f64, f64) {
-        let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
-        let n = t.len() as f64;
-        let (mt, my) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-        let sxx: f64 = t.iter().map(|t| (t - mt).powi(2)).sum();
-        let sxy: f64 = t.iter().zip(y).map(|(t, y)| (t - mt) * (y - my)).sum();
-        let slope = sxy / sxx;
-        let rss: f64 = t.iter().zip(y).map(|(t, y)| (y - my - slope * (t - mt)).powi(2)).sum();
-        (-slope, (rss / (n - 2.0) / sxx).sqrt())
+        conformance::bent().unwrap()
     }
 
     fn try_fit(envelope: &Envelope, seed: u64, max_steps: Option<u64>) -> Result<Estimate, FitError> {
@@ -84,7 +73,7 @@ mod tests {
     #[test]
     fn trained_it_agrees_with_the_line_and_its_error() {
         let envelope = envelope();
-        let (rate, std_error) = line(&envelope);
+        let Line { decay_rate: rate, std_error } = least_squares(&envelope);
         for seed in 0..10 {
             let estimate = fit(&envelope, seed, None);
             let off = (estimate.decay_rate / rate - 1.0).abs();
@@ -99,7 +88,7 @@ mod tests {
     #[test]
     fn untrained_it_is_wrong_on_every_seed() {
         let envelope = envelope();
-        let (rate, _) = line(&envelope);
+        let rate = least_squares(&envelope).decay_rate;
         for seed in 0..100 {
             let estimate = fit(&envelope, seed, Some(0));
             assert!((estimate.decay_rate / rate - 1.0).abs() > 0.01, "seed {seed}");
@@ -135,17 +124,16 @@ mod tests {
 
     #[test]
     fn it_follows_the_units() {
-        let [plain, louder, slower, steeper] = [
-            envelope(),
-            envelope_of(|at, _| 7.0 + envelope().log_amplitudes()[at]),
-            {
-                let plain = envelope();
-                let times = plain.times_s().iter().map(|t| 60.0 * t).collect();
-                Envelope::new(times, plain.log_amplitudes().to_vec(), 21.8).unwrap()
-            },
-            envelope_of(|at, t| envelope().log_amplitudes()[at] - 0.4 * t),
-        ]
-        .map(|envelope| fit(&envelope, 5, None));
+        let changed = |change: &dyn Fn(f64, f64) -> (f64, f64)| {
+            let plain = envelope();
+            let pairs = plain.times_s().iter().zip(plain.log_amplitudes());
+            let (times, logs) = pairs.map(|(&time, &log)| change(time, log)).unzip();
+            fit(&Envelope::new(times, logs, 21.8).unwrap(), 5, None)
+        };
+        let plain = fit(&envelope(), 5, None);
+        let louder = changed(&|time, log| (time, log + 7.0));
+        let slower = changed(&|time, log| (60.0 * time, log));
+        let steeper = changed(&|time, log| (time, log - 0.4 * time));
         let rate = plain.decay_rate;
         for (found, expected) in [
             (louder.decay_rate, rate),
@@ -157,6 +145,30 @@ mod tests {
         }
     }
 
+    /// s²·(1 + 1/n + (t − t̄)²/Σ(t − t̄)²), the textbook's variance of a new observation.
+    #[test]
+    fn it_predicts_a_peak_as_the_line_does() {
+        let (envelope, cancel) = (envelope(), Cancel::new());
+        let asked = [3.3, 0.0, 40.0];
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).predicting_at(&asked);
+        let estimate = config().fit(&envelope, &context).unwrap();
+        let times = envelope.times_s();
+        let n = times.len() as f64;
+        let middle = times.iter().sum::<f64>() / n;
+        let square: f64 = times.iter().map(|t| (t - middle).powi(2)).sum();
+        let variance = least_squares(&envelope).std_error.powi(2) * square;
+        assert_eq!(estimate.predictions.len(), 3);
+        for (prediction, t) in estimate.predictions.iter().zip(asked) {
+            let expected = estimate.log_amplitude - estimate.decay_rate * t;
+            assert!((prediction.log_amplitude - expected).abs() < 1e-12);
+            let expected = (variance * (1.0 + 1.0 / n + (t - middle).powi(2) / square)).sqrt();
+            assert!((prediction.std_error.unwrap() / expected - 1.0).abs() < 1e-9);
+        }
+        let untrained = FitContext::new(Seed::new(0), Some(0), &Silent, &cancel).predicting_at(&asked);
+        let estimate = config().fit(&envelope, &untrained).unwrap();
+        assert!(estimate.predictions.iter().all(|prediction| prediction.std_error.is_none()));
+    }
+
     #[test]
     fn an_envelope_longer_than_the_sequence_is_fitted_at_all_its_peaks() {
         let times: Vec<f64> = (0..3000).map(|at| 0.1 * at as f64).collect();
@@ -164,7 +176,10 @@ mod tests {
             times.iter().enumerate().map(|(at, t)| -0.02 * t + 1e-5 * t * t + scatter(at)).collect();
         let envelope = Envelope::new(times, logs, 60.0).unwrap();
         let estimate = fit(&envelope, 0, None);
-        assert!((estimate.decay_rate / line(&envelope).0 - 1.0).abs() < 1e-11, "{estimate:?}");
+        assert!(
+            (estimate.decay_rate / least_squares(&envelope).decay_rate - 1.0).abs() < 1e-11,
+            "{estimate:?}"
+        );
         assert_eq!(estimate.fitted_log_amplitudes.len(), 3000);
     }
 
@@ -188,7 +203,7 @@ mod tests {
     fn three_peaks_are_enough() {
         let envelope = Envelope::new(vec![0.0, 1.0, 2.5], vec![0.3, 0.1, -0.4], 6.0).unwrap();
         let estimate = fit(&envelope, 0, None);
-        assert!((estimate.decay_rate / line(&envelope).0 - 1.0).abs() < 1e-12);
+        assert!((estimate.decay_rate / least_squares(&envelope).decay_rate - 1.0).abs() < 1e-12);
     }
 
     #[test]

@@ -10,16 +10,21 @@
 //! a skill. Its minimum is the exponential that fits best in the sense of least squares, and there it
 //! arrives to the last digits.
 //!
+//! [`AMORTIZED_ENTRY`] is the same network with a skill instead: trained on simulated envelopes only, then
+//! shown one it never saw ([`neural::amortized`]).
+//!
 //! Reference: Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735; the forget gate: Gers,
 //! Schmidhuber, Cummins, Neural Computation 12 (2000) 2451.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod amortized;
 mod backpropagation;
 mod config;
 mod fit;
 mod network;
 
+pub use amortized::{AMORTIZED_ENTRY, AmortizedLstmConfig};
 pub use config::LstmConfig;
 
 use estimator::{Entry, Estimator, Tag};

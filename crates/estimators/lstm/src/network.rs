@@ -5,12 +5,24 @@ use burn::module::Module;
 use burn::nn::{Initializer, Linear, LinearConfig, Lstm, LstmConfig};
 use burn::tensor::{Device, Tensor, TensorData};
 use estimator::FitError;
-use neural::{Differentiated, Encoder, NamedTensor, Sequence, flat_gradient, named_parameters, values};
+use neural::{Differentiated, Encoder, NamedTensor, Sequence, flat_gradient, named_parameters};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-/// Features of an entry of the sequence.
+/// What a network is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Size {
+    /// Features of an entry of the sequence.
+    pub(crate) features: usize,
+    /// Units of the hidden state, and of the cell.
+    pub(crate) units: usize,
+    /// Numbers that it says.
+    pub(crate) says: usize,
+}
+
+/// Features of an entry, and numbers said, where a network is trained on the one envelope it reads.
 const FEATURES: usize = 2;
+const SAID: usize = 2;
 
 /// burn's LSTM and a linear head on its last hidden state.
 ///
@@ -23,16 +35,21 @@ pub(crate) struct Network {
 
 impl Network {
     /// A network of the given size, all of it zero.
-    pub(crate) fn zeros(hidden_units: usize, device: &Device) -> Self {
+    pub(crate) fn zeros(size: Size, device: &Device) -> Self {
         Self {
-            lstm: LstmConfig::new(FEATURES, hidden_units, true)
+            lstm: LstmConfig::new(size.features, size.units, true)
                 .with_initializer(Initializer::Zeros)
                 .init(device),
-            head: LinearConfig::new(hidden_units, 2)
+            head: LinearConfig::new(size.units, size.says)
                 .with_bias(false)
                 .with_initializer(Initializer::Zeros)
                 .init(device),
         }
+    }
+
+    /// A network that says a level and a rate of the one envelope it is trained on, all of it zero.
+    pub(crate) fn for_one_envelope(units: usize, device: &Device) -> Self {
+        Self::zeros(Size { features: FEATURES, units, says: SAID }, device)
     }
 
     /// Start values in the order of the flat list.
@@ -66,12 +83,16 @@ impl Network {
 
 impl Encoder for Network {
     /// (Δs, z): the time since the entry before in units of the mean interval, 0 for the first, and z.
-    fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3> {
-        let interval = sequence.mean_interval();
-        let before = sequence.times.first().into_iter().chain(&sequence.times);
-        let since = sequence.times.iter().zip(before).map(|(time, before)| (time - before) / interval);
-        let features = since.zip(&sequence.values).flat_map(|(since, &value)| [since, value]).collect();
-        Tensor::from_data(TensorData::new(features, [1, sequence.len(), FEATURES]), device)
+    fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        let entries = sequences.first().map_or(0, Sequence::len);
+        let features = |sequence: &Sequence| -> Vec<f64> {
+            let interval = sequence.mean_interval();
+            let before = sequence.times.first().into_iter().chain(&sequence.times);
+            let since = sequence.times.iter().zip(before).map(|(time, before)| (time - before) / interval);
+            since.zip(&sequence.values).flat_map(|(since, &value)| [since, value]).collect()
+        };
+        let features = sequences.iter().flat_map(features).collect();
+        Tensor::from_data(TensorData::new(features, [sequences.len(), entries, FEATURES]), device)
     }
 
     fn encode(&self, input: Tensor<3>) -> Tensor<2> {
@@ -92,7 +113,7 @@ impl Encoder for Network {
         let loss = loss(said.clone());
         let gradients = loss.backward();
         let none = || FitError::Backend { problem: "no gradient of the last hidden state".to_owned() };
-        let by_last = values(last.grad(&gradients).ok_or_else(none)?)?;
+        let by_last = last.grad(&gradients).ok_or_else(none)?;
         let mut gradient = backpropagate(&lstm, input, hidden, by_last)?;
         gradient.extend(flat_gradient(&self.head, &gradients)?);
         Ok(Differentiated { said, loss, gradient })
@@ -112,14 +133,14 @@ mod tests {
 
     fn network(units: usize) -> Network {
         let device = device().unwrap();
-        let network = Network::zeros(units, &device);
+        let network = Network::for_one_envelope(units, &device);
         let start = network.draw(1.0, &mut StdRng::seed_from_u64(4)).unwrap();
         with_parameters(network, &start, &device).unwrap()
     }
 
     #[test]
     fn it_reads_the_time_since_the_peak_before() {
-        let input = network(3).input(&sequence(), &device().unwrap());
+        let input = network(3).input(&[sequence()], &device().unwrap());
         // The mean interval is 2/3.
         let expected = [0.0, 1.3, 0.75, 0.5, 1.35, -0.6, 0.9, -1.2];
         for (found, expected) in values(input).unwrap().iter().zip(expected) {
@@ -153,7 +174,7 @@ mod tests {
             c = f * c + i * sum("cell_gate").tanh();
             h = o * f64::tanh(c);
         }
-        let said = values(network.encode(network.input(&sequence(), &device().unwrap()))).unwrap();
+        let said = values(network.encode(network.input(&[sequence()], &device().unwrap()))).unwrap();
         for (at, said) in said.iter().enumerate() {
             let expected = weight("head.weight", at) * h;
             assert!((said - expected).abs() < 1e-15, "{said} {expected}");
@@ -164,10 +185,10 @@ mod tests {
     fn untrained_it_says_little_and_remembers() {
         for seed in 0..100 {
             let device = device().unwrap();
-            let network = Network::zeros(16, &device);
+            let network = Network::for_one_envelope(16, &device);
             let start = network.draw(10.0, &mut StdRng::seed_from_u64(seed)).unwrap();
             let network = with_parameters(network, &start, &device).unwrap();
-            let said = values(network.encode(network.input(&sequence(), &device))).unwrap();
+            let said = values(network.encode(network.input(&[sequence()], &device))).unwrap();
             assert!(said.iter().all(|number| number.abs() < 0.5), "{said:?}");
         }
         for tensor in named_parameters(&network(2)).unwrap() {

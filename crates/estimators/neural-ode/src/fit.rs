@@ -2,12 +2,15 @@
 
 use crate::config::NeuralOdeConfig;
 use crate::field::VectorField;
-use crate::objective::Objective;
-use crate::scaling::Scaling;
+use crate::objective::{Objective, Reading};
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
-use nalgebra::{Cholesky, DMatrix, DVector};
-use neural::{LeastSquares, LevenbergMarquardt, Minimum, NamedTensor, StopReason, device, to_safetensors};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Scaling, Step, Uncertainty,
+};
+use nalgebra::DVector;
+use neural::{
+    Laplace, LeastSquares, LevenbergMarquardt, Linearized, Minimum, NamedTensor, device, to_safetensors,
+};
 use rand_distr::{Distribution, StandardNormal};
 use std::ops::ControlFlow;
 
@@ -25,7 +28,7 @@ impl Estimator for NeuralOdeConfig {
         }
         let scaling = Scaling::of(envelope)?;
         let device = device()?;
-        let (times, targets) = (scaling.scaled_times(envelope), scaling.scaled_logs(envelope));
+        let (times, targets) = (scaling.centered_times(envelope), scaling.scaled_logs(envelope));
         let objective = Objective::new(self, &device, &times, &targets);
         let method = LevenbergMarquardt {
             max_steps: context.step_limit(self.max_steps),
@@ -39,7 +42,7 @@ impl Estimator for NeuralOdeConfig {
                 || {
                     // This state has just been solved: nothing can fail that has not failed before.
                     let fitted = objective.fitted(state.parameters).unwrap_or_default();
-                    scaling.rate(-objective.projected_slope(&fitted))
+                    scaling.rate_per_centered_time(-objective.projected_slope(&fitted))
                 },
                 |(_, rate)| rate,
             );
@@ -56,7 +59,7 @@ impl Estimator for NeuralOdeConfig {
         if !minimum.loss.is_finite() {
             return Err(FitError::NotFinite { loss: minimum.loss });
         }
-        describe(&scaling, &objective, &minimum)
+        describe(&scaling, &objective, &minimum, context.query_times())
     }
 }
 
@@ -72,89 +75,71 @@ impl NeuralOdeConfig {
     }
 }
 
-fn stop(minimum: &Minimum) -> Stop {
-    let steps = minimum.steps;
-    let (reached, because) = match minimum.reason {
-        StopReason::Settled => (
-            Reached::Converged,
-            format!("the last step lowered the loss by {:.0e} of itself", minimum.last_gain),
-        ),
-        StopReason::Stationary => {
-            (Reached::Converged, "no step lowers the loss or its gradient any more".to_owned())
-        }
-        StopReason::StepsSpent => (
-            Reached::BudgetSpent,
-            format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
-        ),
-        StopReason::NotFinite => (
-            Reached::Diverged,
-            format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
-        ),
-        StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
-    };
-    Stop { reached, because }
-}
-
-fn describe(scaling: &Scaling, objective: &Objective<'_>, minimum: &Minimum) -> Result<Estimate, FitError> {
+fn describe(
+    scaling: &Scaling,
+    objective: &Objective<'_>,
+    minimum: &Minimum,
+    query_times: &[f64],
+) -> Result<Estimate, FitError> {
     let (field, initial) = objective.model(&minimum.parameters)?;
     let scaled = objective.fitted(&minimum.parameters)?;
     let fitted: Vec<f64> = scaled.iter().map(|&z| scaling.log_amplitude(z)).collect();
-    let decay_rate = scaling.rate(-objective.projected_slope(&scaled));
+    let decay_rate = scaling.rate_per_centered_time(-objective.projected_slope(&scaled));
+    let linearized = objective.linearize(&minimum.parameters)?;
+    let laplace = laplace(objective, &linearized);
+    let uncertainty = laplace.as_ref().and_then(|laplace| {
+        let error = laplace.deviation(&objective.slope_gradient(&linearized.jacobian));
+        let error = scaling.rate_per_centered_time(error);
+        Uncertainty::students_t(decay_rate, error, laplace.degrees_of_freedom())
+    });
     let mut tensors = field.named_tensors()?;
     tensors.push(NamedTensor { name: "initial_state".to_owned(), shape: vec![1], values: vec![initial] });
     Ok(Estimate {
         decay_rate,
         // The trajectory's own start: the envelope's time is zero at the first peak.
         log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
-        uncertainty: uncertainty(scaling, objective, minimum, decay_rate)?,
-        stop: stop(minimum),
+        uncertainty,
+        stop: LevenbergMarquardt::stop(minimum),
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,
-        predictions: Vec::new(),
+        predictions: predictions(scaling, objective, &minimum.parameters, laplace.as_ref(), query_times)?,
         equation: None,
         model: Some(ModelFile { name: "weights.safetensors".to_owned(), bytes: to_safetensors(&tensors)? }),
     })
 }
 
-/// Laplace approximation about the trained parameters for the projected slope: a Gaussian posterior
-/// whose precision A is the loss's Gauss–Newton matrix over the residual variance, the curvature and
-/// weight terms acting as a prior; the slope's variance is gᵀA⁻¹g with its gradient g.
+/// Laplace approximation about the trained parameters, the curvature and weight terms acting as a prior.
 ///
 /// The residual variance is the residual sum of squares over n − 2·tr H + tr H², with H = JA⁻¹Jᵀ the map
 /// from data to fitted values: the expectation of that sum for a linear smoother, so that a trajectory
-/// that bends pays for it. On a bent envelope the interval is narrower than a line's, which takes the bend
+/// that bends pays for it. On a bent envelope the interval of λ is narrower than a line's, which takes the bend
 /// for scatter: it is one for the slope of the line through the bent function. `None` where less than one
 /// degree of freedom is left.
 ///
-/// References: MacKay, Neural Computation 4 (1992) 448; Hastie, Tibshirani, Generalized Additive Models
-/// (Chapman and Hall 1990), section 3.5.
-fn uncertainty(
+/// Reference: Hastie, Tibshirani, Generalized Additive Models (Chapman and Hall 1990), section 3.5.
+fn laplace(objective: &Objective<'_>, linearized: &Linearized) -> Option<Laplace> {
+    Laplace::about(linearized, objective.peaks(), |peaks, hat| {
+        peaks - 2.0 * hat.trace() + (hat * hat).trace()
+    })
+}
+
+/// The field followed to the times asked about; NaN where they are too far off.
+fn predictions(
     scaling: &Scaling,
     objective: &Objective<'_>,
-    minimum: &Minimum,
-    decay_rate: f64,
-) -> Result<Option<Uncertainty>, FitError> {
-    let linearized = objective.linearize(&minimum.parameters)?;
-    let jacobian = &linearized.jacobian;
-    let all = jacobian.tr_mul(jacobian);
-    // Directions that neither data nor curvature see keep a wide prior.
-    let prior = DMatrix::from_diagonal_element(all.nrows(), all.ncols(), 1e-12 * all.diagonal().max());
-    let Some(factor) = Cholesky::new(all + prior) else {
-        return Ok(None);
-    };
-    let peaks = objective.peaks();
-    let data = jacobian.rows(0, peaks);
-    // tr H = tr A⁻¹JᵀJ: parameters by parameters, however many peaks there are.
-    let hat = factor.solve(&data.tr_mul(&data));
-    let degrees = peaks as f64 - 2.0 * hat.trace() + (&hat * &hat).trace();
-    if degrees < 1.0 {
-        return Ok(None);
+    parameters: &DVector<f64>,
+    laplace: Option<&Laplace>,
+    query_times: &[f64],
+) -> Result<Vec<Prediction>, FitError> {
+    if query_times.is_empty() {
+        return Ok(Vec::new());
     }
-    // The rows of peaks carry 1/√peaks each; undo it for a variance per peak.
-    let mean_square = linearized.residuals.rows(0, peaks).norm_squared();
-    let variance = mean_square * peaks as f64 / degrees;
-    let gradient = objective.slope_gradient(jacobian);
-    let slope_variance = gradient.dot(&factor.solve(&gradient)) * variance / peaks as f64;
-    Ok(Uncertainty::students_t(decay_rate, scaling.rate(slope_variance.sqrt()), degrees))
+    let times: Vec<f64> = query_times.iter().map(|&time| scaling.centered_time(time)).collect();
+    let predict = |reading: Option<Reading>| {
+        let Some(Reading { value, gradient }) = reading else { return Prediction::new(f64::NAN, None) };
+        let std_error = laplace.map(|laplace| scaling.deviation(laplace.predictive_deviation(&gradient)));
+        Prediction::new(scaling.log_amplitude(value), std_error)
+    };
+    Ok(objective.readings(parameters, &times)?.into_iter().map(predict).collect())
 }

@@ -24,6 +24,9 @@
 //! they leave out of the trajectory has no slope. The start knows nothing of that: an untrained field is
 //! wrong.
 //!
+//! Predictions go on with the field: beyond the last peak and before the first one, where nothing held it but
+//! weight decay. Their standard deviation is a Laplace approximation's.
+//!
 //! References: Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 31 (2018), equation 2 (the model); Kelly,
 //! Bettencourt, Johnson, Duvenaud, NeurIPS 33 (2020), section 3 (the derivative of order K as a
 //! regularizer; K = 2 here).
@@ -34,7 +37,6 @@ mod config;
 mod field;
 mod fit;
 mod objective;
-mod scaling;
 mod solver;
 #[cfg(test)]
 mod tests;

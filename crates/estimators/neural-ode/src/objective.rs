@@ -2,7 +2,7 @@
 
 use crate::config::NeuralOdeConfig;
 use crate::field::VectorField;
-use crate::solver::{Place, Stage, Trajectory, integrate};
+use crate::solver::{Place, START, Stage, Trajectory, integrate, march, steps_to};
 use burn::tensor::Device;
 use estimator::FitError;
 use nalgebra::{DMatrix, DVector};
@@ -26,6 +26,17 @@ pub(crate) struct Objective<'a> {
     /// accepted step asks for it three times.
     latest: RefCell<Option<(DVector<f64>, Rc<Trajectory>)>>,
 }
+
+/// The trained function at a time.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Reading {
+    pub(crate) value: f64,
+    /// Its derivatives by the parameters.
+    pub(crate) gradient: DVector<f64>,
+}
+
+/// How far the field is followed, in lengths of the record.
+pub(crate) const LONGEST: f64 = 100.0;
 
 impl<'a> Objective<'a> {
     /// The loss for peaks at scaled times with scaled logarithms.
@@ -84,6 +95,36 @@ impl<'a> Objective<'a> {
     fn at_peaks(&self, trajectory: &Trajectory) -> Vec<f64> {
         let nodes: Vec<Stage> = trajectory.nodes().copied().collect();
         self.places.iter().map(|place| place.value(&nodes)).collect()
+    }
+
+    /// The trained function and its derivatives by the parameters at scaled times in any order: the field
+    /// integrated with the steps of the record, on beyond its end and backward before its start. `None` for a
+    /// time farther than [`LONGEST`] records' lengths from the first peak.
+    pub(crate) fn readings(
+        &self,
+        parameters: &DVector<f64>,
+        times: &[f64],
+    ) -> Result<Vec<Option<Reading>>, FitError> {
+        let (field, initial) = self.model(parameters)?;
+        let evaluate = |state, time| field.at(state, time, self.device);
+        let mut found: Vec<Option<Reading>> = vec![None; times.len()];
+        for later in [true, false] {
+            let asked = |time: f64| (time >= START) == later && (time - START).abs() <= 2.0 * LONGEST;
+            let mine = times.iter().copied().filter(|time| asked(*time));
+            let farthest = mine.max_by(|one, other| (one - START).abs().total_cmp(&(other - START).abs()));
+            let Some(farthest) = farthest else { continue };
+            let (step, count) = steps_to(farthest, self.config.solver_steps);
+            let trajectory = march(evaluate, initial, step, count)?;
+            let nodes: Vec<Stage> = trajectory.nodes().copied().collect();
+            let stages: Vec<[f64; 2]> = trajectory.stages.iter().map(|at| [at.state, at.time]).collect();
+            let sensitivities = trajectory.sensitivities(&field.partials(&stages, self.device)?);
+            for (entry, &time) in found.iter_mut().zip(times).filter(|(_, time)| asked(**time)) {
+                let place = Place::on(time, step, count);
+                let gradient = place.sensitivity(&sensitivities);
+                *entry = gradient.map(|gradient| Reading { value: place.value(&nodes), gradient });
+            }
+        }
+        Ok(found)
     }
 
     /// The slope of the least-squares line through values at the peaks.

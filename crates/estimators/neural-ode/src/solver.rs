@@ -10,8 +10,8 @@
 use crate::field::Partials;
 use nalgebra::DVector;
 
-/// Where the time starts, scaled; it ends at 1.
-const START: f64 = -1.0;
+/// Where the time starts, scaled; the record ends at 1.
+pub(crate) const START: f64 = -1.0;
 
 /// A point where the solver asked for the vector field.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,10 +24,10 @@ pub(crate) struct Stage {
     pub(crate) slope: f64,
 }
 
-/// A solution on −1..1.
+/// A solution from −1 on.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Trajectory {
-    /// Length of a step.
+    /// Length of a step, negative backward in time.
     pub(crate) step: f64,
     /// The stages in the order of their computation: four for each step, then the last node.
     pub(crate) stages: Vec<Stage>,
@@ -50,17 +50,27 @@ fn step_length(steps: usize) -> f64 {
 
 /// Solves y′ = f(y, s) from y(−1) = `initial` to s = 1.
 pub(crate) fn integrate<E>(
-    mut field: impl FnMut(f64, f64) -> Result<f64, E>,
+    field: impl FnMut(f64, f64) -> Result<f64, E>,
     initial: f64,
     steps: usize,
 ) -> Result<Trajectory, E> {
-    let step = step_length(steps);
-    let mut stages = Vec::with_capacity(4 * steps + 1);
+    march(field, initial, step_length(steps), steps)
+}
+
+/// Solves y′ = f(y, s) from y(−1) = `initial` over a number of steps, which may go on beyond s = 1, or backward in
+/// time where `step` is negative.
+pub(crate) fn march<E>(
+    mut field: impl FnMut(f64, f64) -> Result<f64, E>,
+    initial: f64,
+    step: f64,
+    count: usize,
+) -> Result<Trajectory, E> {
+    let mut stages = Vec::with_capacity(4 * count + 1);
     let mut evaluate = |state: f64, time: f64| {
         field(state, time).inspect(|&slope| stages.push(Stage { time, state, slope }))
     };
     let mut state = initial;
-    for at in 0..steps {
+    for at in 0..count {
         let time = START + at as f64 * step;
         let one = evaluate(state, time)?;
         let two = evaluate(state + 0.5 * step * one, time + 0.5 * step)?;
@@ -68,8 +78,14 @@ pub(crate) fn integrate<E>(
         let four = evaluate(state + step * three, time + step)?;
         state += step / 6.0 * (one + 2.0 * two + 2.0 * three + four);
     }
-    evaluate(state, START + steps as f64 * step)?;
+    evaluate(state, START + count as f64 * step)?;
     Ok(Trajectory { step, stages })
+}
+
+/// The steps of a record's grid that lead from its start to a time: their signed length and how many.
+pub(crate) fn steps_to(time: f64, steps: usize) -> (f64, usize) {
+    let step = step_length(steps).copysign(time - START);
+    (step, ((time - START) / step).ceil().max(1.0) as usize)
 }
 
 impl Trajectory {
@@ -135,7 +151,11 @@ pub(crate) struct Place {
 impl Place {
     /// The place of a scaled time in −1..1 on a grid of `steps`.
     pub(crate) fn of(time: f64, steps: usize) -> Self {
-        let step = step_length(steps);
+        Self::on(time, step_length(steps), steps)
+    }
+
+    /// The place of a scaled time on a grid from −1 on, backward in time where `step` is negative.
+    pub(crate) fn on(time: f64, step: f64, steps: usize) -> Self {
         let along = (time - START) / step;
         let interval = (along.floor().max(0.0) as usize).min(steps.saturating_sub(1));
         let x = along - interval as f64;
@@ -176,7 +196,7 @@ impl Place {
 
 #[cfg(test)]
 mod tests {
-    use super::{Place, Stage, integrate};
+    use super::{Place, Stage, integrate, march, steps_to};
     use std::convert::Infallible;
 
     /// y′ = −(1 + s/2)·y²: y = 1/(1 + (s + 1) + (s² − 1)/4) from y(−1) = 1.
@@ -222,5 +242,17 @@ mod tests {
         assert_eq!(Place::of(-1.0, 7).value(&nodes), nodes[0].state);
         assert!((Place::of(1.0, 7).value(&nodes) - nodes[7].state).abs() < 1e-15);
         assert!((nodes[7].time - 1.0).abs() < 1e-15);
+    }
+
+    #[test]
+    fn beyond_both_ends_it_goes_on() {
+        let field = |y: f64, s: f64| Ok::<f64, Infallible>(-(1.0 + s / 2.0) * y * y);
+        for time in [-1.3, -1.0, 0.4, 1.0, 2.2] {
+            let (step, count) = steps_to(time, 200);
+            let trajectory = march(field, 1.0, step, count).unwrap();
+            let nodes: Vec<Stage> = trajectory.nodes().copied().collect();
+            let found = Place::on(time, step, count).value(&nodes);
+            assert!((found - truth(time)).abs() < 1e-8, "{time}: {found} {}", truth(time));
+        }
     }
 }

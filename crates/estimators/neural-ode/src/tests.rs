@@ -249,3 +249,62 @@ fn the_interval_holds_the_truth_as_often_as_it_says() {
     let share = held as f64 / replicates as f64;
     assert!((share - 0.95).abs() < 0.025, "{share}");
 }
+
+fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(seed).child("neural-ode"), None, &Silent, &cancel);
+    config().fit(envelope, &context.predicting_at(times)).unwrap()
+}
+
+#[test]
+fn at_the_peaks_predictions_are_the_fitted_function() {
+    let envelope = envelope();
+    // Beyond the record as well: the trajectory within stays what it is.
+    let times: Vec<f64> = envelope.times_s().iter().copied().chain([30.0, -4.0]).collect();
+    let estimate = fit_at(&envelope, 0, &times);
+    assert_eq!(estimate.predictions.len(), times.len());
+    for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+        assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
+    }
+    // Asking changes nothing else.
+    assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope, 0));
+}
+
+#[test]
+fn an_exponential_is_extrapolated() {
+    let envelope = scattered(69, |t| 1.3 - 0.2 * t, 0.0, 0);
+    let times = [-5.0, 3.3, 25.0, 40.0];
+    for (time, found) in times.iter().zip(fit_at(&envelope, 0, &times).predictions) {
+        let off = (found.log_amplitude - 1.3 + 0.2 * time).abs();
+        assert!(off < 1e-6, "{time}: {off:e} {found:?}");
+    }
+    let times = [1e5, -1e300, 2.0];
+    let estimate = fit_at(&envelope, 0, &times);
+    assert!(estimate.predictions[0].log_amplitude.is_nan() && estimate.predictions[1].std_error.is_none());
+    assert_eq!(estimate.first_without_prediction(&times), Some(-1e300));
+}
+
+#[test]
+fn predictive_intervals_hold_fresh_peaks() {
+    let (mut held, replicates) = (0, 15);
+    // From the first peak to a sixth of the record beyond the last.
+    let times: Vec<f64> = (0..20).map(|i| 0.5 * f64::from(i)).collect();
+    for replicate in 0..replicates {
+        let envelope = scattered(30, |t| -0.6 - 0.19 * t, 0.1, replicate);
+        let fresh = scattered(20, |_| 0.0, 0.1, 1000 + replicate);
+        let found = fit_at(&envelope, replicate, &times).predictions;
+        held += found
+            .iter()
+            .zip(times.iter().zip(fresh.log_amplitudes()))
+            .filter(|(found, (time, fresh))| {
+                let off = *fresh - 0.6 - 0.19 * *time - found.log_amplitude;
+                // Student's t with some 26 degrees of freedom.
+                off.abs() <= 2.0555 * found.std_error.unwrap()
+            })
+            .count();
+    }
+    let count = (20 * replicates) as f64;
+    let share = held as f64 / count;
+    // Four standard deviations of such a share.
+    assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
+}

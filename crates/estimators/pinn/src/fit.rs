@@ -2,13 +2,14 @@
 
 use crate::config::PinnConfig;
 use crate::objective::Objective;
-use crate::scaling::Scaling;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Step, Stop, Uncertainty};
-use nalgebra::{Cholesky, DMatrix, DVector};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Scaling, Step, Uncertainty,
+};
+use nalgebra::DVector;
 use neural::{
-    AffineSkipNetwork, LeastSquares, LevenbergMarquardt, Minimum, NamedTensor, StopReason, device, tensor,
-    to_safetensors, values,
+    AffineSkipNetwork, Laplace, LeastSquares, LevenbergMarquardt, Linearization, Minimum, NamedTensor,
+    device, tensor, to_safetensors, values,
 };
 use rand::RngExt;
 use std::ops::ControlFlow;
@@ -31,7 +32,7 @@ impl Estimator for PinnConfig {
         let objective = Objective {
             hidden: &self.hidden,
             device: &device,
-            times: &scaling.scaled_times(envelope),
+            times: &scaling.centered_times(envelope),
             targets: &scaling.scaled_logs(envelope),
             collocation: &collocation,
             physics_weight: self.physics_weight,
@@ -47,14 +48,14 @@ impl Estimator for PinnConfig {
                 planned: method.max_steps,
                 phase: phase.clone(),
                 loss: state.loss,
-                decay_rate: scaling.rate(rate_of(state.parameters)),
+                decay_rate: scaling.rate_per_centered_time(rate_of(state.parameters)),
             });
             if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         if !minimum.loss.is_finite() {
             return Err(FitError::NotFinite { loss: minimum.loss });
         }
-        describe(&scaling, &objective, &minimum)
+        describe(&scaling, &objective, &minimum, context.query_times())
     }
 }
 
@@ -88,95 +89,84 @@ fn rate_of(parameters: &DVector<f64>) -> f64 {
     parameters.iter().next_back().copied().unwrap_or(f64::NAN)
 }
 
-fn stop(minimum: &Minimum) -> Stop {
-    let steps = minimum.steps;
-    let (reached, because) = match minimum.reason {
-        StopReason::Settled => (
-            Reached::Converged,
-            format!("the last step lowered the loss by {:.0e} of itself", minimum.last_gain),
-        ),
-        StopReason::Stationary => {
-            (Reached::Converged, "no step lowers the loss or its gradient any more".to_owned())
-        }
-        StopReason::StepsSpent => (
-            Reached::BudgetSpent,
-            format!("the budget of {steps} steps ended; raise estimator.max_steps or fit.max_steps"),
-        ),
-        StopReason::NotFinite => (
-            Reached::Diverged,
-            format!("the loss is not finite after {steps} steps; lower estimator.initial_scale"),
-        ),
-        StopReason::Interrupted => (Reached::Interrupted, format!("interrupted after {steps} steps")),
-    };
-    Stop { reached, because }
-}
-
-fn describe(scaling: &Scaling, objective: &Objective<'_>, minimum: &Minimum) -> Result<Estimate, FitError> {
+fn describe(
+    scaling: &Scaling,
+    objective: &Objective<'_>,
+    minimum: &Minimum,
+    query_times: &[f64],
+) -> Result<Estimate, FitError> {
     let (network, rate) = objective.model(&minimum.parameters)?;
     let column = tensor(objective.times.to_vec(), [objective.times.len(), 1], objective.device);
     let fitted: Vec<f64> =
         values(network.forward(&column))?.into_iter().map(|z| scaling.log_amplitude(z)).collect();
     let mut tensors = network.named_tensors()?;
     tensors.push(NamedTensor { name: "decay_rate".to_owned(), shape: vec![1], values: vec![rate] });
+    let laplace = laplace(objective, &minimum.parameters)?;
+    let uncertainty = laplace.as_ref().and_then(|laplace| {
+        let error = laplace.deviation(&of_rate(minimum.parameters.len()));
+        let error = scaling.rate_per_centered_time(error);
+        Uncertainty::students_t(scaling.rate_per_centered_time(rate), error, laplace.degrees_of_freedom())
+    });
     Ok(Estimate {
-        decay_rate: scaling.rate(rate),
+        decay_rate: scaling.rate_per_centered_time(rate),
         // The network's own value at the first peak, where the envelope's time is zero.
         log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
-        uncertainty: uncertainty(scaling, objective, &minimum.parameters)?,
-        stop: stop(minimum),
+        uncertainty,
+        stop: LevenbergMarquardt::stop(minimum),
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,
-        predictions: Vec::new(),
+        predictions: predictions(scaling, objective, &network, laplace.as_ref(), query_times)?,
         equation: None,
         model: Some(ModelFile { name: "weights.safetensors".to_owned(), bytes: to_safetensors(&tensors)? }),
     })
 }
 
-/// Laplace approximation about the trained parameters: a Gaussian posterior whose precision is the
-/// loss's Gauss–Newton matrix over the residual variance, the physics term acting as a prior.
+/// Laplace approximation about the trained parameters, the physics term acting as a prior.
 ///
 /// The degrees of freedom are the peaks minus the trace of the map from data to fitted values, so that
 /// a network that bends pays for it. `None` where the peaks leave no degree of freedom.
-///
-/// Reference: MacKay, Neural Computation 4 (1992) 448.
-fn uncertainty(
+fn laplace(objective: &Objective<'_>, parameters: &DVector<f64>) -> Result<Option<Laplace>, FitError> {
+    let linearized = objective.linearize(parameters)?;
+    Ok(Laplace::about(&linearized, objective.times.len(), |peaks, hat| peaks - hat.trace()))
+}
+
+/// The derivatives of λ by the parameters, whose last it is.
+fn of_rate(parameters: usize) -> DVector<f64> {
+    DVector::from_fn(parameters, |at, _| if at + 1 == parameters { 1.0 } else { 0.0 })
+}
+
+/// The network at the times asked about. The physics was asked for within the record only: beyond, its
+/// predictive deviation grows as fast as its weights may move there.
+fn predictions(
     scaling: &Scaling,
     objective: &Objective<'_>,
-    parameters: &DVector<f64>,
-) -> Result<Option<Uncertainty>, FitError> {
-    let linearized = objective.linearize(parameters)?;
-    let jacobian = &linearized.jacobian;
-    let seen = jacobian.tr_mul(jacobian);
-    // Directions that neither data nor physics see keep a wide prior.
-    let prior = DMatrix::from_diagonal_element(seen.nrows(), seen.ncols(), 1e-12 * seen.diagonal().max());
-    let Some(factor) = Cholesky::new(seen + prior) else {
-        return Ok(None);
-    };
-    let peaks = objective.times.len();
-    // The trace of D·A⁻¹·Dᵀ, D the data rows, as that of A⁻¹·DᵀD: parameters by parameters.
-    let data = jacobian.rows(0, peaks);
-    let effective = factor.solve(&data.tr_mul(&data)).trace();
-    let degrees = peaks as f64 - effective;
-    if degrees < 1.0 {
-        return Ok(None);
+    network: &AffineSkipNetwork,
+    laplace: Option<&Laplace>,
+    query_times: &[f64],
+) -> Result<Vec<Prediction>, FitError> {
+    if query_times.is_empty() {
+        return Ok(Vec::new());
     }
-    // The data rows carry 1/√peaks each; undo it for a variance per peak.
-    let mean_square: f64 = linearized.residuals.iter().take(peaks).map(|r| r * r).sum();
-    let variance = mean_square * peaks as f64 / degrees;
-    // λ is the last parameter: its variance is the last entry of the inverse's last column.
-    let weights = parameters.len() - 1;
-    let unit = DVector::from_fn(parameters.len(), |at, _| if at == weights { 1.0 } else { 0.0 });
-    let rate_variance = rate_of(&factor.solve(&unit)) * variance / peaks as f64;
-    let decay_rate = scaling.rate(rate_of(parameters));
-    Ok(Uncertainty::students_t(decay_rate, scaling.rate(rate_variance.sqrt()), degrees))
+    let times: Vec<f64> = query_times.iter().map(|&time| scaling.centered_time(time)).collect();
+    let Linearization { values, jacobian } = network.linearize_values(&times, objective.device)?;
+    let predict = |(at, value): (usize, f64)| {
+        let std_error = laplace.map(|laplace| {
+            // λ has no part in the network's values.
+            let own = jacobian.row(at).transpose();
+            let gradient = own.push(0.0);
+            scaling.deviation(laplace.predictive_deviation(&gradient))
+        });
+        Prediction::new(scaling.log_amplitude(value), std_error)
+    };
+    Ok(values.into_iter().enumerate().map(predict).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::ENTRY;
-    use estimator::{Cancel, Observer, Silent};
+    use estimator::{Cancel, Observer, Reached, Silent};
     use seed::Seed;
     use settings::{Document, Resolved, Section};
     use std::cell::RefCell;
@@ -189,11 +179,7 @@ mod tests {
 
     /// An envelope that is no exponential: it bends and scatters.
     fn envelope() -> Envelope {
-        let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
-        let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
-        let logs =
-            times.iter().enumerate().map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i)).collect();
-        Envelope::new(times, logs, 21.8).unwrap()
+        conformance::bent().unwrap()
     }
 
     /// The slope of the least-squares line, and its standard error, from the textbook.
@@ -272,5 +258,68 @@ mod tests {
         let cancel = Cancel::new();
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
         assert!(matches!(config().fit(&flat, &context), Err(FitError::NoSpread { .. })));
+    }
+
+    fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+        let cancel = Cancel::new();
+        let context = FitContext::new(Seed::new(seed).child("pinn"), None, &Silent, &cancel);
+        config().fit(envelope, &context.predicting_at(times)).unwrap()
+    }
+
+    #[test]
+    fn at_the_peaks_predictions_are_the_fitted_function() {
+        let estimate = fit_at(&envelope(), 0, envelope().times_s());
+        assert_eq!(estimate.predictions.len(), 69);
+        for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+            assert!((prediction.log_amplitude - fitted).abs() < 1e-9);
+        }
+        // Asking changes nothing else.
+        assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(0, None, &Silent));
+    }
+
+    #[test]
+    fn an_exponential_is_extrapolated_and_less_is_known_the_farther_off() {
+        let times = [-3.0, 10.0, 25.0, 40.0, 80.0];
+        let envelope = conformance::scattered(69, 0.2, 0.05, &Seed::new(1)).unwrap();
+        let estimate = fit_at(&envelope, 0, &times);
+        for (time, found) in times.iter().zip(&estimate.predictions) {
+            let off = (found.log_amplitude + 0.6 + 0.2 * time).abs();
+            assert!(off < 3.0 * found.std_error.unwrap(), "{time}: {off} {found:?}");
+        }
+        let errors: Vec<f64> = estimate.predictions.iter().map(|found| found.std_error.unwrap()).collect();
+        // Near the record a straight line's error; four lengths off the weights may do much.
+        assert!(errors[2] < 1.1 * errors[1] && errors[4] > 10.0 * errors[1], "{errors:?}");
+        let pure = fit_at(&conformance::exponential(69, -0.6, 0.2).unwrap(), 0, &times[..3]);
+        for (time, found) in times.iter().zip(&pure.predictions) {
+            let off = (found.log_amplitude + 0.6 + 0.2 * time).abs();
+            assert!(off < 1e-5, "{time}: {off:e}");
+        }
+    }
+
+    #[test]
+    fn predictive_intervals_hold_fresh_peaks() {
+        let (mut held, replicates) = (0, 8);
+        // From the first peak to a third of the record beyond the last.
+        let times: Vec<f64> = (0..20).map(|i| 0.55 * f64::from(i)).collect();
+        for replicate in 0..replicates {
+            let seed = Seed::new(replicate).child("fresh");
+            let envelope = conformance::scattered(30, 0.2, 0.1, &seed.child("peaks")).unwrap();
+            // Scatter about no decay, to be moved to where it is asked for.
+            let fresh = conformance::scattered(20, 0.0, 0.1, &seed.child("new")).unwrap();
+            let found = fit_at(&envelope, replicate, &times).predictions;
+            held += found
+                .iter()
+                .zip(times.iter().zip(fresh.log_amplitudes()))
+                .filter(|(found, (time, fresh))| {
+                    let off = *fresh - 0.2 * *time - found.log_amplitude;
+                    // Student's t with 28 degrees of freedom.
+                    off.abs() <= 2.0484 * found.std_error.unwrap()
+                })
+                .count();
+        }
+        let count = (20 * replicates) as f64;
+        let share = held as f64 / count;
+        // Four standard deviations of such a share.
+        assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / count).sqrt(), "{share}");
     }
 }

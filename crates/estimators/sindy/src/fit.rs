@@ -2,10 +2,13 @@
 
 use crate::config::SindyConfig;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Stop, Uncertainty,
+};
 use nalgebra::{DMatrix, DVector};
 use sparse::{
-    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, running_integral, solve,
+    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, predictions, running_integral,
+    solve,
 };
 
 /// Passes after which a law that has not settled will not.
@@ -16,7 +19,7 @@ impl Estimator for SindyConfig {
         let scaled = Scaled::of(envelope)?;
         let mut progress = Progress::new(context, self.max_steps, &scaled);
         let path = self.path(&scaled, &mut progress);
-        Ok(self.describe(&scaled, &path, progress.steps()))
+        Ok(self.describe(&scaled, &path, progress.steps(), context.query_times()))
     }
 }
 
@@ -68,7 +71,7 @@ impl SindyConfig {
         Ok(false)
     }
 
-    fn describe(&self, scaled: &Scaled, path: &Path, steps: u64) -> Estimate {
+    fn describe(&self, scaled: &Scaled, path: &Path, steps: u64, query_times: &[f64]) -> Estimate {
         let chosen = choose(&path.laws, scaled, self.evidence);
         let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
         let equation = law.equation(scaled);
@@ -91,15 +94,24 @@ impl SindyConfig {
                 bytes: model_text(scaled, law, path, criteria, "").into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
-            predictions: Vec::new(),
-            equation: None,
+            predictions: predicted(scaled, law, steps, query_times),
+            equation: Some(equation),
         }
     }
 }
 
-/// One regression of x on 1, s and the integrals of the terms, evaluated along a law's trajectory, or at
-/// the measured peaks. `None` where a number overflows.
-fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<Law> {
+/// The law at the times asked about. Its regression left residuals orthogonal to its own regressors; before
+/// the first regression there is no error to state.
+fn predicted(scaled: &Scaled, law: &Law, steps: u64, query_times: &[f64]) -> Vec<Prediction> {
+    let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
+    let instruments = || regressors(&columns, Some(law), scaled);
+    let asked = steps > 0 && !query_times.is_empty();
+    predictions(law, scaled, asked.then(instruments), query_times)
+}
+
+/// The regressors 1, s and the integrals of the terms, evaluated along a law's trajectory, or at the measured
+/// peaks: peaks by parameters.
+fn regressors(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> DMatrix<f64> {
     let points = along.map_or(&scaled.logs, |along| &along.trajectory);
     // Measured peaks have no derivative that could be trusted.
     let slopes: Option<Vec<f64>> = along.map(|along| {
@@ -116,7 +128,13 @@ fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<L
     };
     let ones = std::iter::repeat_n(1.0, scaled.peaks());
     let entries = ones.chain(scaled.times.iter().copied()).chain(columns.iter().flat_map(integral));
-    let matrix = DMatrix::from_iterator(scaled.peaks(), 2 + columns.len(), entries);
+    DMatrix::from_iterator(scaled.peaks(), 2 + columns.len(), entries)
+}
+
+/// One regression of x on the regressors along a law's trajectory, or at the measured peaks. `None` where a
+/// number overflows.
+fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<Law> {
+    let matrix = regressors(columns, along, scaled);
     let solution = solve(matrix.clone(), DVector::from_column_slice(&scaled.logs))?;
     let trajectory: Vec<f64> = (matrix * &solution).iter().copied().collect();
     let constant = solution.get(1).copied()?;

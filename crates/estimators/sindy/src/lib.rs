@@ -33,6 +33,13 @@
 //! Student's t on the scatter about the chosen law, peaks minus parameters degrees of freedom. It holds for
 //! scatter that is independent from peak to peak and is conditional on the choice.
 //!
+//! # Predictions
+//!
+//! The law itself: its trajectory between the peaks, integrated on beyond them and backward before them. A law
+//! with dry friction comes to rest in a finite time, and ln A is −∞ from there on. The standard deviation of a
+//! measured peak is that of the scatter and of what it does to the initial value and the coefficients, by the
+//! delta method ([`sparse::predictions`]); like the interval it is conditional on the choice of terms.
+//!
 //! References: Brunton, Proctor, Kutz, PNAS 113 (2016) 3932 (sequential thresholding); Schaeffer, McCalla,
 //! Physical Review E 96 (2017) 023302 (integral form); Boninsegna, Nüske, Clementi, Journal of Chemical
 //! Physics 148 (2018) 241723 (one term at a time); Mangan et al., Proceedings of the Royal Society A 473

@@ -4,15 +4,20 @@
 const DEPENDENT: f64 = 1e-7;
 
 /// An orthonormal basis of the space of the derivatives by the constants.
-#[derive(Debug, Clone, Default, PartialEq)]
+///
+/// Columns may go on beyond the peaks, to times that were not measured: those entries follow the
+/// combinations that make the basis, but have no say in them.
+#[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TangentSpace {
     basis: Vec<Vec<f64>>,
+    peaks: usize,
 }
 
 impl TangentSpace {
-    /// Gram–Schmidt, each column twice ("twice is enough": Giraud, Langou, Rozložník 2005).
-    pub(crate) fn of<'a>(columns: impl IntoIterator<Item = &'a [f64]>) -> Self {
-        let mut space = Self::default();
+    /// Gram–Schmidt over the first `peaks` entries, each column twice ("twice is enough": Giraud, Langou,
+    /// Rozložník 2005).
+    pub(crate) fn of<'a>(peaks: usize, columns: impl IntoIterator<Item = &'a [f64]>) -> Self {
+        let mut space = Self { basis: Vec::new(), peaks };
         for column in columns {
             space.extend(column);
         }
@@ -26,18 +31,19 @@ impl TangentSpace {
 
     /// Adds a column; whether it lay outside of the space before.
     pub(crate) fn extend(&mut self, column: &[f64]) -> bool {
-        let length = norm(column);
+        let length = self.norm(column);
         if !length.is_normal() {
             return false;
         }
         let mut rest: Vec<f64> = column.iter().map(|entry| entry / length).collect();
         for _ in 0..2 {
             for direction in &self.basis {
-                let along: f64 = direction.iter().zip(&rest).map(|(a, b)| a * b).sum();
+                let pairs = self.measured(direction).iter().zip(self.measured(&rest));
+                let along: f64 = pairs.map(|(a, b)| a * b).sum();
                 rest.iter_mut().zip(direction).for_each(|(rest, entry)| *rest -= along * entry);
             }
         }
-        let left = norm(&rest);
+        let left = self.norm(&rest);
         if left <= DEPENDENT {
             return false;
         }
@@ -46,7 +52,9 @@ impl TangentSpace {
         true
     }
 
-    /// The leverage of each of `points` points: by how much its fitted value follows its measured one.
+    /// The leverage of each of `points` points: by how much its fitted value follows its measured one, and
+    /// what the scatter of the peaks makes of the value at a time that was not measured, as a share of
+    /// their variance.
     pub(crate) fn leverages(&self, points: usize) -> Vec<f64> {
         let mut leverages = vec![0.0; points];
         for direction in &self.basis {
@@ -54,10 +62,14 @@ impl TangentSpace {
         }
         leverages
     }
-}
 
-fn norm(column: &[f64]) -> f64 {
-    column.iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+    fn norm(&self, column: &[f64]) -> f64 {
+        self.measured(column).iter().map(|entry| entry * entry).sum::<f64>().sqrt()
+    }
+
+    fn measured<'a>(&self, column: &'a [f64]) -> &'a [f64] {
+        column.get(..self.peaks).unwrap_or(column)
+    }
 }
 
 #[cfg(test)]
@@ -67,7 +79,7 @@ mod tests {
     #[test]
     fn a_line_has_the_leverages_of_the_textbook() {
         let times = [0.0, 0.1, 0.5, 0.6, 1.0];
-        let mut space = TangentSpace::of([&[3.0; 5][..], &times]);
+        let mut space = TangentSpace::of(5, [&[3.0; 5][..], &times]);
         assert_eq!(space.rank(), 2);
         let mean = 0.44;
         let scatter: f64 = times.iter().map(|time: &f64| (time - mean).powi(2)).sum();
@@ -77,5 +89,15 @@ mod tests {
         let line: Vec<f64> = times.iter().map(|time| 2.0 - 7.0 * time).collect();
         assert!(!space.extend(&line));
         assert!(space.extend(&times.map(|time| time * time)));
+    }
+
+    #[test]
+    fn a_time_that_was_not_measured_has_the_textbook_s_variance_and_no_say() {
+        let times = [0.0, 0.1, 0.5, 0.6, 1.0, 3.0];
+        let space = TangentSpace::of(5, [&[3.0; 6][..], &times]);
+        let (mean, scatter) = (0.44, 0.652);
+        let leverages = space.leverages(6);
+        assert!((leverages[5] - 0.2 - (3.0_f64 - mean).powi(2) / scatter).abs() < 1e-13, "{leverages:?}");
+        assert!((leverages[..5].iter().sum::<f64>() - 2.0).abs() < 1e-14);
     }
 }

@@ -204,7 +204,7 @@ pub(crate) fn held_out(expression: &Expression, data: &Data, workspace: &mut Wor
 /// The space of the derivatives by the constants.
 pub(crate) fn tangent_space(expression: &Expression, data: &Data, workspace: &mut Workspace) -> TangentSpace {
     workspace.values(expression, &data.times);
-    TangentSpace::of(workspace.derivatives(expression, data.len()))
+    TangentSpace::of(data.len(), workspace.derivatives(expression, data.len()))
 }
 
 #[cfg(test)]

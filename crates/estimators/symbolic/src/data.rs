@@ -1,37 +1,20 @@
 //! The measured envelope in the coordinates that expressions work in.
 
 use envelope::Envelope;
-use estimator::FitError;
+use estimator::{FitError, Scaling};
 
-/// x = t/T in 0..1 with T the record's length, and z = (ln A − mean)/spread: a range, a mean and a standard
-/// deviation, no line.
+/// The peaks in scaled units: τ in 0..1 and z.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Data {
-    pub(crate) duration_s: f64,
-    pub(crate) mean: f64,
-    pub(crate) spread: f64,
+    pub(crate) scaling: Scaling,
     pub(crate) times: Vec<f64>,
     pub(crate) targets: Vec<f64>,
 }
 
 impl Data {
     pub(crate) fn new(envelope: &Envelope) -> Result<Self, FitError> {
-        let duration_s = envelope.times_s().last().copied().unwrap_or_default();
-        let logs = envelope.log_amplitudes();
-        let count = logs.len() as f64;
-        let mean = logs.iter().sum::<f64>() / count;
-        let spread = (logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / count).sqrt();
-        // Below this the logarithms differ by their rounding only.
-        if !spread.is_finite() || spread <= 1e-13 * mean.abs().max(1.0) {
-            return Err(FitError::NoSpread { spread });
-        }
-        Ok(Self {
-            duration_s,
-            mean,
-            spread,
-            times: envelope.times_s().iter().map(|time| time / duration_s).collect(),
-            targets: logs.iter().map(|log| (log - mean) / spread).collect(),
-        })
+        let scaling = Scaling::of(envelope)?;
+        Ok(Self { scaling, times: scaling.unit_times(envelope), targets: scaling.scaled_logs(envelope) })
     }
 
     pub(crate) fn len(&self) -> usize {
@@ -50,19 +33,9 @@ impl Data {
         Self { times: chosen(&self.times), targets: chosen(&self.targets), ..self.clone() }
     }
 
-    /// ln A of a scaled value.
-    pub(crate) fn log_amplitude(&self, scaled: f64) -> f64 {
-        self.mean + self.spread * scaled
-    }
-
-    /// A rate in 1/s from one in scaled units.
-    pub(crate) fn rate(&self, scaled: f64) -> f64 {
-        scaled * self.spread / self.duration_s
-    }
-
     /// The mean square that rounding alone leaves of a perfect fit.
     pub(crate) fn rounding(&self) -> f64 {
-        let digit = 16.0 * f64::EPSILON * (1.0 + (self.mean / self.spread).abs());
+        let digit = 16.0 * f64::EPSILON * (1.0 + (self.scaling.mean() / self.scaling.spread()).abs());
         digit * digit
     }
 

@@ -34,7 +34,9 @@ impl Equation {
             let mut pop = || stack.pop().unwrap_or(Self::constant(f64::NAN));
             let equation = match node {
                 Node::Constant(value) => Self::constant(*value),
-                Node::Time => Self { offset: 0.0, terms: vec![(1.0 / data.duration_s, Core::Power(1))] },
+                Node::Time => {
+                    Self { offset: 0.0, terms: vec![(1.0 / data.scaling.duration(), Core::Power(1))] }
+                }
                 Node::Unary(operator) => pop().called(*operator),
                 Node::Binary(operator) => {
                     let right = pop();
@@ -50,7 +52,7 @@ impl Equation {
             stack.push(equation);
         }
         let scaled = stack.pop().unwrap_or(Self::constant(f64::NAN));
-        scaled.times_factor(data.spread).plus(Self::constant(data.mean))
+        scaled.times_factor(data.scaling.spread()).plus(Self::constant(data.scaling.mean()))
     }
 
     fn constant(offset: f64) -> Self {
@@ -329,8 +331,8 @@ mod tests {
             let expression = grammar.ramped(index, &mut generator);
             let equation = Equation::new(&expression, &data);
             for x in [0.2, 0.7] {
-                let direct = data.log_amplitude(Workspace::default().values(&expression, &[x])[0]);
-                let found = equation.value(x * data.duration_s);
+                let direct = data.scaling.log_amplitude(Workspace::default().values(&expression, &[x])[0]);
+                let found = equation.value(x * data.scaling.duration());
                 if direct.is_finite() && direct.abs() < 1e6 && found.is_finite() {
                     assert!(
                         (found - direct).abs() < 1e-6 * (1.0 + direct.abs()),
@@ -354,7 +356,8 @@ mod tests {
         let nothing = Expression::binary(Binary::Subtract, square.clone(), &square);
         let one = Expression::binary(Binary::Divide, time.clone(), &time);
         let sum = Expression::binary(Binary::Add, Expression::binary(Binary::Add, scaled, &nothing), &one);
-        let (offset, slope) = (data.mean + 5.0 * data.spread, 2.0 * data.spread / 4.0);
+        let (offset, slope) =
+            (data.scaling.mean() + 5.0 * data.scaling.spread(), 2.0 * data.scaling.spread() / 4.0);
         let text = Equation::new(&sum, &data).to_string();
         assert_eq!(text, format!("{} - {}*t", number(offset), number(slope)));
     }

@@ -122,7 +122,7 @@ impl Evolution<'_> {
 
     fn observe(&mut self, individual: &Individual, step: u64, planned: u64, context: &FitContext<'_>) {
         let values = self.workspace.values(&individual.expression, &self.data.times);
-        let decay_rate = self.data.rate(-self.data.projected_slope(values));
+        let decay_rate = self.data.scaling.rate_per_unit_time(-self.data.projected_slope(values));
         let phase = "evolution".to_owned();
         context.observe(&Step { step, planned, phase, loss: individual.loss, decay_rate });
     }

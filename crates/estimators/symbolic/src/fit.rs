@@ -10,7 +10,9 @@ use crate::expression::{Expression, Workspace};
 use crate::front::{Front, Member};
 use crate::operators::Binary;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Stop, Uncertainty,
+};
 use std::fmt::Write;
 
 /// Fewest peaks: two parameters and a degree of freedom.
@@ -29,7 +31,7 @@ impl Estimator for SymbolicConfig {
         let mut workspace = Workspace::default();
         let evolved = evolve(self, &data.thinned(self.search_peaks), context);
         if evolved.generations == 0 {
-            return Ok(untrained(&data, &evolved, &mut workspace));
+            return Ok(untrained(&data, &evolved, context.query_times(), &mut workspace));
         }
         let front = whole_front(&evolved.front, &data, &mut workspace);
         // Where the line makes the constants run away, the next expression is asked.
@@ -38,7 +40,7 @@ impl Estimator for SymbolicConfig {
             Some((member, joined))
         });
         let Some((chosen, joined)) = settled else {
-            return Ok(untrained(&data, &evolved, &mut workspace));
+            return Ok(untrained(&data, &evolved, context.query_times(), &mut workspace));
         };
         let rank = tangent_space(&joined, &data, &mut workspace).rank();
         let report = report(&front, chosen, &joined, &data);
@@ -46,6 +48,8 @@ impl Estimator for SymbolicConfig {
         let mut estimate = describe(&joined, &data, stop, &mut workspace);
         estimate.steps = evolved.generations;
         estimate.uncertainty = uncertainty(&estimate, &joined, rank, &data, &mut workspace);
+        let query_times = context.query_times();
+        estimate.predictions = predictions(&joined, &data, Scatter::Fitted, query_times, &mut workspace);
         estimate.model = Some(ModelFile { name: "equation.txt".to_owned(), bytes: report.into_bytes() });
         Ok(estimate)
     }
@@ -85,9 +89,11 @@ fn with_line(chosen: &Member, data: &Data, workspace: &mut Workspace) -> Option<
     (fitted.settled && fitted.loss.is_finite()).then_some(joined)
 }
 
-fn untrained(data: &Data, evolved: &Evolved, workspace: &mut Workspace) -> Estimate {
-    let equation = Equation::new(&evolved.drawn.expression, data);
-    describe(&evolved.drawn.expression, data, stop(evolved, &equation), workspace)
+fn untrained(data: &Data, evolved: &Evolved, query_times: &[f64], workspace: &mut Workspace) -> Estimate {
+    let drawn = &evolved.drawn.expression;
+    let stop = stop(evolved, &Equation::new(drawn, data));
+    let predictions = predictions(drawn, data, Scatter::Unknown, query_times, workspace);
+    Estimate { predictions, ..describe(drawn, data, stop, workspace) }
 }
 
 fn stop(evolved: &Evolved, equation: &Equation) -> Stop {
@@ -104,19 +110,60 @@ fn stop(evolved: &Evolved, equation: &Equation) -> Stop {
 
 fn describe(expression: &Expression, data: &Data, stop: Stop, workspace: &mut Workspace) -> Estimate {
     let values = workspace.values(expression, &data.times);
-    let fitted: Vec<f64> = values.iter().map(|&z| data.log_amplitude(z)).collect();
+    let fitted: Vec<f64> = values.iter().map(|&z| data.scaling.log_amplitude(z)).collect();
     Estimate {
-        decay_rate: data.rate(-data.projected_slope(values)),
-        log_amplitude: fitted.first().copied().unwrap_or(data.mean),
+        decay_rate: data.scaling.rate_per_unit_time(-data.projected_slope(values)),
+        log_amplitude: fitted.first().copied().unwrap_or(data.scaling.mean()),
         uncertainty: None,
         stop,
         steps: 0,
         parameters: expression.constants().count(),
         fitted_log_amplitudes: fitted,
         predictions: Vec::new(),
-        equation: None,
+        equation: Some(format!("ln A = {}", Equation::new(expression, data))),
         model: None,
     }
+}
+
+/// Whether the residuals of an expression tell of the scatter of the peaks.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Scatter {
+    /// Its constants were fitted.
+    Fitted,
+    /// They are as drawn.
+    Unknown,
+}
+
+/// The expression at the times asked about: what its arithmetic gives there, infinite or not a number where
+/// that overflows or leaves a domain, and the other branch beyond a pole.
+///
+/// The variance of a measured ln A is s²·(1 + gᵀ(JᵀJ)⁻¹g), g the derivatives by the constants that matter at
+/// that time and J those at the peaks: to first order, for the expression at hand.
+fn predictions(
+    expression: &Expression,
+    data: &Data,
+    scatter: Scatter,
+    query_times: &[f64],
+    workspace: &mut Workspace,
+) -> Vec<Prediction> {
+    if query_times.is_empty() {
+        return Vec::new();
+    }
+    let asked = query_times.iter().map(|&time| data.scaling.unit_time(time));
+    let points: Vec<f64> = data.times.iter().copied().chain(asked).collect();
+    let values = workspace.values(expression, &points).to_vec();
+    let space = TangentSpace::of(data.len(), workspace.derivatives(expression, points.len()));
+    let leverages = space.leverages(points.len());
+    let pairs = values.iter().zip(&data.targets);
+    let squares: f64 = pairs.map(|(value, target)| (value - target).powi(2)).sum();
+    let degrees = data.len().saturating_sub(space.rank());
+    let known = scatter == Scatter::Fitted && degrees > 0;
+    let predict = |(value, leverage): (&f64, f64)| {
+        let std_error = || (squares / degrees as f64 * (1.0 + leverage)).sqrt();
+        let std_error = known.then(|| data.scaling.deviation(std_error()));
+        Prediction::new(data.scaling.log_amplitude(*value), std_error)
+    };
+    values.iter().zip(leverages).skip(data.len()).map(predict).collect()
 }
 
 /// The standard error of the projected slope, s/√Σ(x − x̄)², and Student's t on the peaks minus the
@@ -134,7 +181,7 @@ fn uncertainty(
     let degrees = data.len().checked_sub(rank).filter(|degrees| *degrees > 0)? as f64;
     let squares = loss(expression, data, workspace) * data.len() as f64;
     let std_error = (squares / degrees / data.time_scatter()).sqrt();
-    Uncertainty::students_t(estimate.decay_rate, data.rate(std_error), degrees)
+    Uncertainty::students_t(estimate.decay_rate, data.scaling.rate_per_unit_time(std_error), degrees)
 }
 
 /// The front as a text.
@@ -164,16 +211,44 @@ fn report(front: &Front, chosen: &Member, joined: &Expression, data: &Data) -> S
     line(format_args!("# nodes  error (rms of ln A)  held-out error  held-out mean square +-  ln A"));
     for member in front.members() {
         let mark = if member == chosen { '>' } else { ' ' };
-        let variance = data.spread * data.spread;
+        let spread = data.scaling.spread();
         line(format_args!(
             "#{mark}{:5}  {:19.4e}  {:14.4e}  {:11.4e} {:11.4e}  {}",
             member.expression.complexity(),
-            data.spread * member.loss.sqrt(),
-            data.spread * member.held_out.mean.sqrt(),
-            variance * member.held_out.mean,
-            variance * member.held_out.std_error,
+            spread * member.loss.sqrt(),
+            spread * member.held_out.mean.sqrt(),
+            spread * spread * member.held_out.mean,
+            spread * spread * member.held_out.std_error,
             Equation::new(&member.expression, data),
         ));
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Scatter, predictions};
+    use crate::data::Data;
+    use crate::expression::{Expression, Workspace};
+    use crate::operators::{Binary, Unary};
+    use envelope::Envelope;
+
+    #[test]
+    fn where_an_expression_leaves_its_domain_or_overflows_it_says_so() {
+        let times: Vec<f64> = (0..20).map(f64::from).collect();
+        let logs = times.iter().map(|t| 1.0 - 0.1 * t).collect();
+        let data = Data::new(&Envelope::new(times, logs, 6.0).unwrap()).unwrap();
+        let rest = Expression::binary(Binary::Subtract, Expression::constant(1.5), &Expression::time());
+        let root = Expression::unary(Unary::SquareRoot, rest.clone());
+        let at = |expression: &Expression, times: &[f64]| {
+            predictions(expression, &data, Scatter::Fitted, times, &mut Workspace::default())
+        };
+        let found = at(&root, &[19.0, 38.0]);
+        let expected = data.scaling.log_amplitude(0.5_f64.sqrt());
+        assert!((found[0].log_amplitude - expected).abs() < 1e-14 && found[0].std_error.is_some());
+        assert!(found[1].log_amplitude.is_nan() && found[1].std_error.is_none());
+        let found = at(&Expression::unary(Unary::Exp, rest), &[19.0, -19e3]);
+        assert!(found[0].std_error.is_some());
+        assert_eq!((found[1].log_amplitude, found[1].std_error), (f64::INFINITY, None));
+    }
 }

@@ -11,7 +11,8 @@
 //! error (each peak left out in turn) is within one standard error of the least. λ is minus the slope of
 //! that expression, projected on a straight line over the peak times. So that this reads the data and
 //! not what the shape leaves over, the straight line that a bent expression lacks is joined to it and
-//! fitted with it; a line needs nothing and gives its own slope.
+//! fitted with it; a line needs nothing and gives its own slope. Fitted values, predictions and the
+//! equation stated are those of the expression with its line.
 //!
 //! Reference: Koza, Genetic Programming (MIT Press 1992); Kommenda, Burlacu, Kronberger, Affenzeller, Genetic
 //! Programming and Evolvable Machines 21 (2020) 471, for the fitted constants.

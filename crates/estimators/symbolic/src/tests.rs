@@ -52,6 +52,12 @@ fn fit(envelope: &Envelope, seed: u64) -> Estimate {
     try_fit(envelope, seed, None).unwrap()
 }
 
+fn fit_at(envelope: &Envelope, seed: u64, times: &[f64]) -> Estimate {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(seed).child("symbolic"), None, &Silent, &cancel);
+    config().fit(envelope, &context.predicting_at(times)).unwrap()
+}
+
 fn rms(estimate: &Estimate, envelope: &Envelope) -> f64 {
     let pairs = estimate.fitted_log_amplitudes.iter().zip(envelope.log_amplitudes());
     (pairs.map(|(one, other)| (one - other).powi(2)).sum::<f64>() / envelope.len() as f64).sqrt()
@@ -213,4 +219,69 @@ fn every_step_is_told_once_and_a_request_to_stop_is_heard() {
     cancel.request();
     let stopped = config().fit(&envelope(), &FitContext::new(Seed::new(0), None, &steps, &cancel)).unwrap();
     assert_eq!((stopped.stop.reached, stopped.steps), (Reached::Interrupted, 0));
+}
+
+#[test]
+fn at_the_peaks_predictions_are_the_fitted_function() {
+    let envelope = envelope();
+    let estimate = fit_at(&envelope, 3, envelope.times_s());
+    assert_eq!(estimate.predictions.len(), envelope.len());
+    for (prediction, fitted) in estimate.predictions.iter().zip(&estimate.fitted_log_amplitudes) {
+        assert!((prediction.log_amplitude - fitted).abs() < 1e-12);
+    }
+    // Asking changes nothing else.
+    assert_eq!(Estimate { predictions: Vec::new(), ..estimate }, fit(&envelope, 3));
+}
+
+#[test]
+fn a_line_is_extrapolated_with_the_textbook_s_error() {
+    let envelope = around(|t| 0.3 - 0.19 * t, 0.3);
+    let times = [-5.0, 0.0, 8.0, 60.0];
+    let estimate = fit_at(&envelope, 0, &times);
+    let (rate, std_error) = line(&envelope);
+    let t = envelope.times_s();
+    let mean = t.iter().sum::<f64>() / 69.0;
+    let level = envelope.log_amplitudes().iter().sum::<f64>() / 69.0;
+    let spread: f64 = t.iter().map(|t| (t - mean).powi(2)).sum();
+    for (time, prediction) in times.iter().zip(&estimate.predictions) {
+        assert!((prediction.log_amplitude - level + rate * (time - mean)).abs() < 1e-10, "{time}");
+        let variance = std_error.powi(2) * (spread * (1.0 + 1.0 / 69.0) + (time - mean).powi(2));
+        assert!((prediction.std_error.unwrap() / variance.sqrt() - 1.0).abs() < 1e-9, "{time}");
+    }
+    assert!(estimate.equation.unwrap().ends_with("*t"));
+}
+
+#[test]
+fn not_evolved_it_predicts_without_an_error() {
+    let cancel = Cancel::new();
+    let context = FitContext::new(Seed::new(0), Some(0), &Silent, &cancel).predicting_at(&[3.0, 0.0]);
+    let estimate = config().fit(&envelope(), &context).unwrap();
+    assert_eq!(estimate.predictions.len(), 2);
+    assert!(estimate.predictions.iter().all(|found| found.std_error.is_none()));
+    assert_eq!(estimate.predictions[1].log_amplitude, estimate.log_amplitude);
+    assert!(estimate.equation.unwrap().starts_with("ln A = "));
+}
+
+#[test]
+fn predictive_intervals_hold_fresh_peaks() {
+    let mut generator = Seed::new(6).generator();
+    let mut scatter = || 0.2 * ((0..12).map(|_| generator.random::<f64>()).sum::<f64>() - 6.0);
+    let truth = |time: f64| -0.6 - 0.19 * time;
+    let trials: u32 = 120;
+    let held = (0..trials)
+        .filter(|&trial| {
+            let times: Vec<f64> = (0..60).map(|i| 0.3 * f64::from(i)).collect();
+            let logs = times.iter().map(|&t| truth(t) + scatter()).collect();
+            // From the first peak to a quarter of the record beyond the last.
+            let asked = 22.0 * f64::from(trial) / f64::from(trials);
+            let envelope = Envelope::new(times, logs, 21.8).unwrap();
+            let prediction = fit_at(&envelope, u64::from(trial), &[asked]).predictions[0];
+            let off = truth(asked) + scatter() - prediction.log_amplitude;
+            // Student's t with 58 degrees of freedom.
+            off.abs() <= 2.0017 * prediction.std_error.unwrap()
+        })
+        .count();
+    let share = held as f64 / f64::from(trials);
+    // Four standard deviations of such a share.
+    assert!((share - 0.95).abs() < 4.0 * (0.95 * 0.05 / f64::from(trials)).sqrt(), "{share}");
 }

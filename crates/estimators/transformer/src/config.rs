@@ -1,5 +1,6 @@
 //! The settings.
 
+use crate::network::{FEATURES, SAID, Size};
 use serde::Deserialize;
 use settings::{Default, Field, Kind};
 
@@ -26,40 +27,76 @@ pub struct TransformerConfig {
     pub initial_scale: f64,
 }
 
+impl TransformerConfig {
+    /// The network that is trained on the one envelope it reads.
+    pub(crate) fn size(&self) -> Size {
+        Size {
+            features: FEATURES,
+            layers: self.layers,
+            heads: self.heads,
+            head_width: self.head_width,
+            feed_forward_width: self.feed_forward_width,
+            says: SAID,
+        }
+    }
+}
+
+/// Layers, each of self-attention and feed-forward, each followed by a layer norm.
+pub(crate) const LAYERS: Field = Field {
+    key: "layers",
+    kind: Kind::Integer { min: 1, max: 8 },
+    default: Default::Integer(1),
+    unit: "",
+    meaning: "Layers, each of self-attention and feed-forward, each followed by a layer norm.",
+    source: "1 to 4 agree to rounding; one trains fastest",
+};
+
+/// Heads of the attention.
+pub(crate) const HEADS: Field = Field {
+    key: "heads",
+    kind: Kind::Integer { min: 1, max: 16 },
+    default: Default::Integer(4),
+    unit: "",
+    meaning: "Heads of the attention.",
+    source: "a small transformer for a short sequence",
+};
+
+/// Width of a head; the network's own width is heads times this.
+pub(crate) const HEAD_WIDTH: Field = Field {
+    key: "head_width",
+    kind: Kind::Integer { min: 1, max: 64 },
+    default: Default::Integer(4),
+    unit: "",
+    meaning: "Width of a head; the network's own width is heads times this.",
+    source: "a small transformer for a short sequence",
+};
+
+/// Width between the two linear maps of the feed-forward part, with tanh there.
+pub(crate) const FEED_FORWARD_WIDTH: Field = Field {
+    key: "feed_forward_width",
+    kind: Kind::Integer { min: 1, max: 1024 },
+    default: Default::Integer(32),
+    unit: "",
+    meaning: "Width between the two linear maps of the feed-forward part, with tanh there.",
+    source: "twice the network's width",
+};
+
+/// Factor on the drawn start values of the weights before the head.
+pub(crate) const INITIAL_SCALE: Field = Field {
+    key: "initial_scale",
+    kind: Kind::Float { min: 1e-3, max: 10.0 },
+    default: Default::Float(1.0),
+    unit: "",
+    meaning: "Factor on the drawn start values of the weights before the head.",
+    source: "Glorot, Bengio 2010",
+};
+
 /// The configuration keys.
 pub(crate) const FIELDS: &[Field] = &[
-    Field {
-        key: "layers",
-        kind: Kind::Integer { min: 1, max: 8 },
-        default: Default::Integer(1),
-        unit: "",
-        meaning: "Layers, each of self-attention and feed-forward, each followed by a layer norm.",
-        source: "1 to 4 agree to rounding; one trains fastest",
-    },
-    Field {
-        key: "heads",
-        kind: Kind::Integer { min: 1, max: 16 },
-        default: Default::Integer(4),
-        unit: "",
-        meaning: "Heads of the attention.",
-        source: "a small transformer for a short sequence",
-    },
-    Field {
-        key: "head_width",
-        kind: Kind::Integer { min: 1, max: 64 },
-        default: Default::Integer(4),
-        unit: "",
-        meaning: "Width of a head; the network's own width is heads times this.",
-        source: "a small transformer for a short sequence",
-    },
-    Field {
-        key: "feed_forward_width",
-        kind: Kind::Integer { min: 1, max: 1024 },
-        default: Default::Integer(32),
-        unit: "",
-        meaning: "Width between the two linear maps of the feed-forward part, with tanh there.",
-        source: "twice the network's width",
-    },
+    LAYERS,
+    HEADS,
+    HEAD_WIDTH,
+    FEED_FORWARD_WIDTH,
     Field {
         key: "longest_sequence",
         kind: Kind::Integer { min: 3, max: 1000 },
@@ -92,12 +129,5 @@ pub(crate) const FIELDS: &[Field] = &[
         meaning: "Training has converged when the gradient has fallen to this share of its length at the start.",
         source: "a few roundings above what double precision leaves",
     },
-    Field {
-        key: "initial_scale",
-        kind: Kind::Float { min: 1e-3, max: 10.0 },
-        default: Default::Float(1.0),
-        unit: "",
-        meaning: "Factor on the drawn start values of the weights before the head.",
-        source: "Glorot, Bengio 2010",
-    },
+    INITIAL_SCALE,
 ];

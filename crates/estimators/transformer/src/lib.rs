@@ -13,14 +13,19 @@
 //! a skill. Its minimum is the exponential that fits best in the sense of least squares, and there it
 //! arrives to the last digits.
 //!
+//! [`AMORTIZED_ENTRY`] is the same network with a skill instead: trained on simulated envelopes only, then
+//! shown one it never saw ([`neural::amortized`]).
+//!
 //! Reference: Vaswani et al., Attention is all you need, NeurIPS 30 (2017).
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod amortized;
 mod config;
 mod fit;
 mod network;
 
+pub use amortized::{AMORTIZED_ENTRY, AmortizedTransformerConfig};
 pub use config::TransformerConfig;
 
 use estimator::{Entry, Estimator, Tag};

@@ -10,7 +10,23 @@ use neural::{Encoder, NamedTensor, Sequence, named_parameters};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
-use crate::config::TransformerConfig;
+/// What a network is built for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Size {
+    /// Numbers that describe an entry, besides its time.
+    pub(crate) features: usize,
+    pub(crate) layers: usize,
+    pub(crate) heads: usize,
+    pub(crate) head_width: usize,
+    pub(crate) feed_forward_width: usize,
+    /// Numbers that the network says.
+    pub(crate) says: usize,
+}
+
+/// Numbers that describe an entry, and numbers said, where a network is trained on the one envelope it
+/// reads.
+pub(crate) const FEATURES: usize = 1;
+pub(crate) const SAID: usize = 2;
 
 /// burn's transformer encoder over the entries of the sequence, the mean of what it gives, and a linear
 /// head.
@@ -28,24 +44,19 @@ impl Network {
     ///
     /// The activation is tanh, smooth as a quasi-Newton method wants it; burn's error function, hence its
     /// GELU, has five digits only. Nothing is dropped out: the loss has to be a function.
-    pub(crate) fn zeros(config: &TransformerConfig, device: &Device) -> Self {
-        let width = config.heads * config.head_width;
+    pub(crate) fn zeros(size: Size, device: &Device) -> Self {
+        let width = size.heads * size.head_width;
         let linear = |inputs, outputs| {
             LinearConfig::new(inputs, outputs).with_bias(false).with_initializer(Initializer::Zeros)
         };
         Self {
-            embedding: linear(1, width).init(device),
-            encoder: TransformerEncoderConfig::new(
-                width,
-                config.feed_forward_width,
-                config.heads,
-                config.layers,
-            )
-            .with_dropout(0.0)
-            .with_activation(ActivationConfig::Tanh)
-            .with_initializer(Initializer::Zeros)
-            .init(device),
-            head: linear(width, 2).init(device),
+            embedding: linear(size.features, width).init(device),
+            encoder: TransformerEncoderConfig::new(width, size.feed_forward_width, size.heads, size.layers)
+                .with_dropout(0.0)
+                .with_activation(ActivationConfig::Tanh)
+                .with_initializer(Initializer::Zeros)
+                .init(device),
+            head: linear(width, size.says).init(device),
         }
     }
 
@@ -74,19 +85,20 @@ impl Network {
         Ok(drawn)
     }
 
-    fn width(&self) -> usize {
+    /// Length of an entry's vector, and of the encoding of its time.
+    pub(crate) fn width(&self) -> usize {
         self.encoder.d_model
     }
 }
 
-/// Sines and cosines of a time in units of the mean interval: of `width` numbers the pair k is
+/// Sines and cosines of a time, in units of the mean interval where that is the unit: of `width` numbers the pair k is
 /// sin(time·ω), cos(time·ω) with ω = 10,000^(−2k/width).
 ///
 /// For peaks at even times it is the encoding of the position in the sequence, as published; for uneven
 /// ones it follows the clock.
 ///
 /// Reference: Vaswani et al., NeurIPS 30 (2017), section 3.5.
-fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64> {
+pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64> {
     (0..width).map(move |at| {
         let pair = (at / 2 * 2) as f64;
         let angle = time * 10_000_f64.powf(-pair / width as f64);
@@ -96,21 +108,27 @@ fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64> {
 
 impl Encoder for Network {
     /// z, then the encoding of the entry's time since the first.
-    fn input(&self, sequence: &Sequence, device: &Device) -> Tensor<3> {
-        let (first, interval) = (sequence.times.first().copied().unwrap_or(0.0), sequence.mean_interval());
-        let entries = sequence.times.iter().zip(&sequence.values);
-        let features = entries
-            .flat_map(|(time, value)| {
+    fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        let entries = sequences.first().map_or(0, Sequence::len);
+        let features = |sequence: &Sequence| -> Vec<f64> {
+            let (first, interval) =
+                (sequence.times.first().copied().unwrap_or(0.0), sequence.mean_interval());
+            let entries = sequence.times.iter().zip(&sequence.values);
+            let features = entries.flat_map(|(time, value)| {
                 std::iter::once(*value).chain(time_encoding((time - first) / interval, self.width()))
-            })
-            .collect();
-        Tensor::from_data(TensorData::new(features, [1, sequence.len(), 1 + self.width()]), device)
+            });
+            features.collect()
+        };
+        let features = sequences.iter().flat_map(features).collect();
+        let shape = [sequences.len(), entries, FEATURES + self.width()];
+        Tensor::from_data(TensorData::new(features, shape), device)
     }
 
     fn encode(&self, input: Tensor<3>) -> Tensor<2> {
-        let value = input.clone().narrow(2, 0, 1);
-        let encoding = input.narrow(2, 1, self.width());
-        let entries = self.embedding.forward(value) + encoding;
+        let features = input.dims()[2] - self.width();
+        let described = input.clone().narrow(2, 0, features);
+        let encoding = input.narrow(2, features, self.width());
+        let entries = self.embedding.forward(described) + encoding;
         let read = self.encoder.forward(TransformerEncoderInput::new(entries));
         self.head.forward(read.mean_dim(1).squeeze_dim::<2>(1))
     }
@@ -118,35 +136,23 @@ impl Encoder for Network {
 
 #[cfg(test)]
 mod tests {
-    use super::{Network, time_encoding};
-    use crate::config::TransformerConfig;
+    use super::{Network, Size, time_encoding};
     use neural::{Encoder, Sequence, device, values, with_parameters};
     use rand::SeedableRng;
     use rand::rngs::StdRng;
 
-    fn config() -> TransformerConfig {
-        TransformerConfig {
-            layers: 2,
-            heads: 4,
-            head_width: 4,
-            feed_forward_width: 32,
-            longest_sequence: 256,
-            max_steps: 200,
-            memory: 10,
-            gradient_tolerance: 1e-13,
-            initial_scale: 1.0,
-        }
-    }
+    const SIZE: Size =
+        Size { features: 1, layers: 2, heads: 4, head_width: 4, feed_forward_width: 32, says: 2 };
 
     fn network(seed: u64, scale: f64) -> Network {
         let device = device().unwrap();
-        let network = Network::zeros(&config(), &device);
+        let network = Network::zeros(SIZE, &device);
         let start = network.draw(scale, &mut StdRng::seed_from_u64(seed)).unwrap();
         with_parameters(network, &start, &device).unwrap()
     }
 
     fn said(network: &Network, sequence: &Sequence) -> Vec<f64> {
-        values(network.encode(network.input(sequence, &device().unwrap()))).unwrap()
+        values(network.encode(network.input(std::slice::from_ref(sequence), &device().unwrap()))).unwrap()
     }
 
     fn sequence() -> Sequence {
@@ -162,7 +168,7 @@ mod tests {
         }
         // The third of these four times is not two mean intervals (2/3 each) after the first.
         let network = network(0, 1.0);
-        let input = values(network.input(&sequence(), &device().unwrap())).unwrap();
+        let input = values(network.input(&[sequence()], &device().unwrap())).unwrap();
         let third = &input[2 * 17..3 * 17];
         assert_eq!(third[0], -0.6);
         assert!((third[1] - (1.4_f64 * 1.5).sin()).abs() < 1e-15, "{}", third[1]);
@@ -171,7 +177,7 @@ mod tests {
     #[test]
     fn the_order_of_the_entries_tells_it_nothing() {
         let network = network(3, 1.0);
-        let input = network.input(&sequence(), &device().unwrap());
+        let input = network.input(&[sequence()], &device().unwrap());
         let rows = |order: [usize; 4]| {
             let rows = order.iter().map(|&at| input.clone().narrow(1, at, 1)).collect();
             values(network.encode(burn::tensor::Tensor::cat(rows, 1))).unwrap()
@@ -191,7 +197,7 @@ mod tests {
         let network = network(3, 1.0);
         let changed = Sequence { values: vec![1.3, 0.5, -0.6, 2.0], ..sequence() };
         let read = |sequence: &Sequence| {
-            let input = network.input(sequence, &device().unwrap());
+            let input = network.input(std::slice::from_ref(sequence), &device().unwrap());
             let entries = network.embedding.forward(input.clone().narrow(2, 0, 1)) + input.narrow(2, 1, 16);
             let input = burn::nn::transformer::TransformerEncoderInput::new(entries);
             values(network.encoder.forward(input).narrow(1, 0, 1)).unwrap()

@@ -4,10 +4,13 @@ use crate::config::{TermsAlong, WeakSindyConfig};
 use crate::sloped::Sloped;
 use crate::test_functions::TestFunctions;
 use envelope::Envelope;
-use estimator::{Estimate, Estimator, FitContext, FitError, ModelFile, Reached, Stop, Uncertainty};
+use estimator::{
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Stop, Uncertainty,
+};
 use nalgebra::DVector;
 use sparse::{
-    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, running_integral, solve,
+    Column, Halt, Law, Path, Progress, Scaled, because, choose, model_text, predictions, running_integral,
+    solve,
 };
 
 /// Passes after which a law that has not settled will not.
@@ -29,7 +32,7 @@ impl Estimator for WeakSindyConfig {
         };
         let columns = self.terms().filter_map(|term| Column::over(term, &scaled)).collect();
         let path = problem.path(columns, &mut progress);
-        Ok(self.describe(&problem, &path, progress.steps()))
+        Ok(self.describe(&problem, &path, progress.steps(), context.query_times()))
     }
 }
 
@@ -191,7 +194,7 @@ impl Problem<'_> {
 }
 
 impl WeakSindyConfig {
-    fn describe(&self, problem: &Problem<'_>, path: &Path, steps: u64) -> Estimate {
+    fn describe(&self, problem: &Problem<'_>, path: &Path, steps: u64, query_times: &[f64]) -> Estimate {
         let scaled = problem.scaled;
         let chosen = choose(&path.laws, scaled, self.evidence);
         let law = chosen.as_ref().map_or(&path.latest, |(law, _)| law);
@@ -216,10 +219,17 @@ impl WeakSindyConfig {
                 bytes: model_text(scaled, law, path, criteria, &method).into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
-            predictions: Vec::new(),
-            equation: None,
+            predictions: predicted(problem, law, steps, query_times),
+            equation: Some(equation),
         }
     }
+}
+
+/// The law at the times asked about; before the first regression there is no error to state.
+fn predicted(problem: &Problem<'_>, law: &Law, steps: u64, query_times: &[f64]) -> Vec<Prediction> {
+    let instruments = || problem.functions.instruments(law, problem.scaled);
+    let asked = steps > 0 && !query_times.is_empty();
+    predictions(law, problem.scaled, asked.then(instruments), query_times)
 }
 
 fn largest_difference(one: &[f64], other: &[f64]) -> f64 {

@@ -42,6 +42,13 @@
 //! the weighted regression of a constant rate. It holds for scatter that is independent from peak to peak and
 //! is conditional on the choice.
 //!
+//! # Predictions
+//!
+//! The law itself: its trajectory between the peaks, integrated on beyond them and backward before them. A law
+//! with dry friction comes to rest in a finite time, and ln A is −∞ from there on. The standard deviation of a
+//! measured peak is that of the scatter and of what it does to the initial value and the coefficients, by the
+//! delta method ([`sparse::predictions`]); like the interval it is conditional on the choice of terms.
+//!
 //! References: Messenger, Bortz, Multiscale Modeling & Simulation 19 (2021) 1474 (weak form); Bortz,
 //! Messenger, Dukic, Bulletin of Mathematical Biology 85 (2023) 110 (covariance); Boninsegna, Nüske, Clementi,
 //! Journal of Chemical Physics 148 (2018) 241723 (one term at a time); Mangan et al., Proceedings of the Royal

@@ -216,6 +216,27 @@ impl TestFunctions {
         Some(whitening)
     }
 
+    /// What the weighted regression along a law's trajectory asks of the residuals r at the peaks, Zᵀr = 0:
+    /// a column of ones for the initial value, and Z = MᵀC⁻¹G with the measured side's rows M, their
+    /// covariance C = MMᵀ and the terms' integrals G. Peaks by parameters.
+    pub(crate) fn instruments(&self, law: &Law, scaled: &Scaled) -> DMatrix<f64> {
+        let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
+        let slopes =
+            law.trajectory.iter().zip(&scaled.times).map(|(&log, &time)| law.rate(log, time)).collect();
+        let (_, integrals) = self.along(&Sloped { law: law.clone(), slopes }, &columns, scaled);
+        let weights = self.whitening.unapply_all(&self.whitening.apply_all(&integrals));
+        let mut instruments = DMatrix::zeros(scaled.peaks(), law.parameters());
+        instruments.column_mut(0).fill(1.0);
+        for (mut column, weights) in instruments.column_iter_mut().skip(1).zip(weights.column_iter()) {
+            let mut sum = vec![0.0; scaled.peaks()];
+            for (function, weight) in self.functions.iter().zip(weights.iter()) {
+                function.measured.add_to(*weight, &mut sum);
+            }
+            column.iter_mut().zip(sum).for_each(|(entry, sum)| *entry = sum);
+        }
+        instruments
+    }
+
     /// The information on a constant law's rate, dx/ds: the squared length of its whitened column, per
     /// variance of the scatter.
     pub(crate) fn information(&self, scaled: &Scaled) -> f64 {

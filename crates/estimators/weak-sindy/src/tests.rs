@@ -1,301 +1,35 @@
-//! Tests of whole fits.
+//! Tests of whole fits: those that every method of laws has to pass, and this method's own.
 
-use crate::{ENTRY, WeakSindyConfig};
-use envelope::Envelope;
-use estimator::{Cancel, Estimate, Estimator, FitContext, FitError, Observer, Reached, Silent, Step};
-use rand_distr::{Distribution, StandardNormal};
+#[path = "../../../sparse/testing/laws.rs"]
+mod laws;
+
+use estimator::{Cancel, FitContext, Reached, Silent};
+use laws::{damped, estimator, line};
 use seed::Seed;
-use settings::{Document, Resolved, Section};
-use std::cell::RefCell;
 
-fn resolved(overrides: &[&str]) -> Resolved {
-    let mut document = Document::default();
-    for argument in overrides {
-        document.apply_override(argument).unwrap();
-    }
-    Resolved::new(&document, &[Section { name: "estimator", fields: ENTRY.fields }]).unwrap()
-}
+/// What is left is the quadrature between the peaks.
+const AGREEMENT: f64 = 1e-7;
 
-fn config() -> WeakSindyConfig {
-    WeakSindyConfig::read(&resolved(&[])).unwrap()
-}
+/// Another law may be chosen then, with a quadrature error of its own.
+const ADDED: f64 = 1e-5;
 
-/// An envelope that is no exponential: it bends and scatters.
-fn bent() -> Envelope {
-    let times: Vec<f64> = (0..69).map(|i| 0.288 * f64::from(i)).collect();
-    let scatter = |i: usize| ((i * 7919 % 101) as f64 / 101.0 - 0.5) * 0.05;
-    let logs = times.iter().enumerate().map(|(i, t)| -0.6 - 0.25 * t + 0.004 * t * t + scatter(i)).collect();
-    Envelope::new(times, logs, 21.8).unwrap()
-}
-
-/// A noise-free exponential, peaks a second apart.
-fn exponential(peaks: usize, rate: f64, start: f64) -> Envelope {
-    let times: Vec<f64> = (0..peaks).map(|i| i as f64).collect();
-    let logs = times.iter().map(|t| start - rate * t).collect();
-    Envelope::new(times, logs, 6.0).unwrap()
-}
-
-/// Peaks of dA/dt = −viscous·A − dry − drag·A², A(0) = 0.5, by small Runge-Kutta steps.
-fn damped(peaks: usize, span: f64, [viscous, dry, drag]: [f64; 3], scatter: f64, seed: u64) -> Envelope {
-    let rate = |amplitude: f64| -viscous * amplitude - dry - drag * amplitude * amplitude;
-    let mut generator = Seed::new(seed).child("scatter").generator();
-    let step = span / (peaks - 1) as f64 / 64.0;
-    let mut amplitude = 0.5_f64;
-    let mut logs = Vec::new();
-    for _ in 0..peaks {
-        let draw: f64 = StandardNormal.sample(&mut generator);
-        logs.push(amplitude.ln() + scatter * draw);
-        for _ in 0..64 {
-            let one = rate(amplitude);
-            let two = rate(amplitude + step / 2.0 * one);
-            let three = rate(amplitude + step / 2.0 * two);
-            let four = rate(amplitude + step * three);
-            amplitude += step / 6.0 * (one + 2.0 * two + 2.0 * three + four);
-        }
-    }
-    let times = (0..peaks).map(|i| span * i as f64 / (peaks - 1) as f64).collect();
-    Envelope::new(times, logs, 21.8).unwrap()
-}
-
-/// Minus the slope of the least-squares line, and its standard error, from the textbook.
-fn line(envelope: &Envelope) -> (f64, f64) {
-    let (t, y) = (envelope.times_s(), envelope.log_amplitudes());
-    let n = t.len() as f64;
-    let (mt, my) = (t.iter().sum::<f64>() / n, y.iter().sum::<f64>() / n);
-    let sxx: f64 = t.iter().map(|t| (t - mt).powi(2)).sum();
-    let sxy: f64 = t.iter().zip(y).map(|(t, y)| (t - mt) * (y - my)).sum();
-    let slope = sxy / sxx;
-    let rss: f64 = t.iter().zip(y).map(|(t, y)| (y - my - slope * (t - mt)).powi(2)).sum();
-    (-slope, (rss / (n - 2.0) / sxx).sqrt())
-}
-
-fn fit_with(envelope: &Envelope, seed: u64, max_steps: Option<u64>, observer: &dyn Observer) -> Estimate {
-    let cancel = Cancel::new();
-    let context = FitContext::new(Seed::new(seed).child("weak-sindy"), max_steps, observer, &cancel);
-    config().fit(envelope, &context).unwrap()
-}
-
-fn fit(envelope: &Envelope) -> Estimate {
-    fit_with(envelope, 0, None, &Silent)
-}
-
-fn changed(envelope: &Envelope, change: impl Fn(f64, f64) -> (f64, f64)) -> Envelope {
-    let pairs = envelope.times_s().iter().zip(envelope.log_amplitudes());
-    let (times, logs) = pairs.map(|(&time, &log)| change(time, log)).unzip();
-    Envelope::new(times, logs, envelope.omega_rad_s()).unwrap()
-}
-
-/// The equation of a fit and its coefficients, in the order written.
-fn law(estimate: &Estimate) -> (String, Vec<f64>) {
-    let text = String::from_utf8(estimate.model.clone().unwrap().bytes).unwrap();
-    let equation = text.lines().next().unwrap().to_owned();
-    let right = equation.split_once('=').unwrap().1.replace("- ", "-").replace("+ ", "");
-    let numbers =
-        right.split_whitespace().filter_map(|word| word.split('/').next().unwrap().parse().ok()).collect();
-    (equation, numbers)
-}
-
-#[test]
-fn it_agrees_with_the_line_on_a_bent_envelope() {
-    let estimate = fit(&bent());
-    let (rate, _) = line(&bent());
-    assert_eq!(estimate.stop.reached, Reached::Converged, "{:?}", estimate.stop);
-    assert!(estimate.stop.because.contains("below that of an exponential"), "{}", estimate.stop.because);
-    let off = (estimate.decay_rate / rate - 1.0).abs();
-    // What is left is the quadrature between the peaks.
-    assert!(off < 1e-7, "{off:e}");
-}
-
-#[test]
-fn a_pure_exponential_needs_no_other_term() {
-    for (peaks, rate) in [(3, 0.2), (12, 1.5), (69, 0.191), (200, -0.01)] {
-        let estimate = fit(&exponential(peaks, rate, -0.6));
-        let (equation, numbers) = law(&estimate);
-        assert_eq!(numbers.len(), 1, "{equation}");
-        assert!((estimate.decay_rate / rate - 1.0).abs() < 1e-9, "{equation}");
-    }
-}
-
-#[test]
-fn the_law_is_recovered_without_scatter() {
-    for [viscous, dry, drag] in [[0.13, 0.0035, 0.0], [0.1, 0.0, 0.3], [0.05, 0.0035, 0.3], [0.0, 0.01, 0.0]]
-    {
-        let estimate = fit(&damped(69, 20.0, [viscous, dry, drag], 0.0, 0));
-        let (equation, numbers) = law(&estimate);
-        let expected: Vec<f64> = [viscous, dry, drag]
-            .into_iter()
-            .enumerate()
-            .filter(|(at, c)| *at == 0 || *c > 0.0)
-            .map(|(_, c)| -c)
-            .collect();
-        assert_eq!(numbers.len(), expected.len(), "{equation}");
-        for (found, expected) in numbers.iter().zip(&expected) {
-            assert!((found - expected).abs() < 2e-5, "{equation} for {expected}");
-        }
-    }
-}
-
-#[test]
-fn the_law_is_found_in_scatter() {
-    let mut found = [0; 3];
-    for seed in 0..40 {
-        let laws = [[0.2, 0.0, 0.0], [0.13, 0.0035, 0.0], [0.1, 0.0, 0.3]];
-        for ((damping, ending), found) in laws.into_iter().zip(["", "/A", " A"]).zip(&mut found) {
-            let (equation, numbers) = law(&fit(&damped(69, 20.0, damping, 0.05, seed)));
-            let right = numbers.len() == if ending.is_empty() { 1 } else { 2 } && equation.ends_with(ending);
-            *found += i32::from(right);
-        }
-    }
-    assert!(found.iter().all(|found| *found >= 36), "{found:?}");
-}
-
-#[test]
-fn intervals_cover() {
-    let rate = 0.2;
-    for peaks in [20, 60] {
-        let draws = 1500;
-        let covered = (0..draws)
-            .filter(|&seed| {
-                let known = fit(&damped(peaks, 20.0, [rate, 0.0, 0.0], 0.1, seed)).uncertainty.unwrap();
-                (known.interval_95[0]..=known.interval_95[1]).contains(&rate)
-            })
-            .count();
-        let share = covered as f64 / draws as f64;
-        // Within what 1500 draws tell.
-        assert!((0.935..=0.965).contains(&share), "{peaks} peaks: {share}");
-    }
-}
-
-#[test]
-fn on_an_exponential_the_interval_is_that_of_the_line() {
-    let envelope = damped(69, 20.0, [0.2, 0.0, 0.0], 0.1, 3);
-    let (rate, std_error) = line(&envelope);
-    let estimate = fit(&envelope);
-    assert!((estimate.decay_rate / rate - 1.0).abs() < 1e-12);
-    assert!((estimate.uncertainty.unwrap().std_error / std_error - 1.0).abs() < 1e-9);
-}
-
-#[test]
-fn without_a_step_it_is_wrong() {
-    let estimate = fit_with(&bent(), 0, Some(0), &Silent);
-    assert_eq!((estimate.stop.reached, estimate.steps), (Reached::BudgetSpent, 0));
-    assert!(estimate.decay_rate.abs() < 1e-15 && estimate.uncertainty.is_none());
-}
-
-#[test]
-fn a_short_budget_gives_the_best_so_far() {
-    let whole = fit(&bent());
-    for budget in 1..whole.steps {
-        let estimate = fit_with(&bent(), 0, Some(budget), &Silent);
-        assert_eq!((estimate.stop.reached, estimate.steps), (Reached::BudgetSpent, budget));
-        assert!((estimate.decay_rate / whole.decay_rate - 1.0).abs() < 0.1, "{}", estimate.decay_rate);
-    }
-}
-
-#[test]
-fn every_seed_gives_the_same_bits() {
-    assert_eq!(fit_with(&bent(), 1, None, &Silent), fit_with(&bent(), 2, None, &Silent));
-}
-
-#[test]
-fn it_is_equivariant() {
-    for envelope in [bent(), damped(40, 20.0, [0.13, 0.0035, 0.0], 0.03, 5)] {
-        let rate = fit(&envelope).decay_rate;
-        let close = |found: f64, expected: f64, bar: f64| {
-            assert!((found / expected - 1.0).abs() < bar, "{found} for {expected}");
-        };
-        close(fit(&changed(&envelope, |t, y| (t, y + 2.5))).decay_rate, rate, 1e-10);
-        close(fit(&changed(&envelope, |t, y| (3.0 * t, y))).decay_rate, rate / 3.0, 1e-10);
-        // Another law may be chosen then, with a quadrature error of its own.
-        close(fit(&changed(&envelope, |t, y| (t, y - 0.1 * t))).decay_rate, rate + 0.1, 1e-5);
-    }
-}
-
-#[test]
-fn every_step_is_told_once() {
-    struct Steps(RefCell<Vec<u64>>);
-    impl Observer for Steps {
-        fn observe(&self, step: &Step) {
-            self.0.borrow_mut().push(step.step);
-        }
-    }
-    let steps = Steps(RefCell::default());
-    let estimate = fit_with(&bent(), 0, None, &steps);
-    assert_eq!(*steps.0.borrow(), (0..=estimate.steps).collect::<Vec<_>>());
-}
-
-#[test]
-fn a_request_to_stop_is_heard() {
-    let cancel = Cancel::new();
-    cancel.request();
-    let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
-    let estimate = config().fit(&bent(), &context).unwrap();
-    assert_eq!((estimate.stop.reached, estimate.steps), (Reached::Interrupted, 0));
-}
-
-#[test]
-fn a_constant_envelope_is_refused() {
-    let flat = Envelope::new(vec![0.0, 1.0, 2.0, 3.0], vec![0.3; 4], 6.0).unwrap();
-    let cancel = Cancel::new();
-    let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
-    assert!(matches!(config().fit(&flat, &context), Err(FitError::NoSpread { .. })));
-}
-
-#[test]
-fn odd_envelopes_give_numbers() {
-    let noise = changed(&damped(40, 20.0, [0.2, 0.0, 0.0], 1.0, 9), |t, y| (t, y + 0.2 * t));
-    let crowded =
-        Envelope::new(vec![0.0, 1e-9, 2e-9, 3e-9, 1.0], vec![0.0, 0.1, -0.1, 0.0, -1.0], 1.0).unwrap();
-    // Dry friction that all but stops the motion within the record.
-    let stopping = damped(60, 20.0, [0.0, 0.0249, 0.0], 0.3, 1);
-    let envelopes = [
-        exponential(3, 0.2, 0.0),
-        exponential(4, 0.2, 0.0),
-        exponential(30, 50.0, 0.0),
-        exponential(50, 1e-9, 0.0),
-        exponential(50, 0.2, 600.0),
-        exponential(50, 0.2, -600.0),
-        exponential(50, -40.0, 0.0),
-        exponential(100_000, 1e-4, 0.0),
-        noise,
-        crowded,
-        stopping,
-    ];
-    for (at, envelope) in envelopes.iter().enumerate() {
-        let estimate = fit(envelope);
-        let finite = estimate.fitted_log_amplitudes.iter().all(|log| log.is_finite());
-        assert!(finite && estimate.decay_rate.is_finite() && estimate.log_amplitude.is_finite(), "{at}");
-        assert!(estimate.uncertainty.unwrap().std_error.is_finite(), "{at}");
-        assert_eq!(estimate.stop.reached, Reached::Converged, "{at}: {:?}", estimate.stop);
-        // Test functions cannot tell peaks from each other that are crowded into 1e-9 of the record, and the
-        // quadrature is coarse where a law ends.
-        let off = (estimate.decay_rate - line(envelope).0).abs();
-        let bar = [9, 10].iter().position(|odd| *odd == at).map_or(1e-5, |odd| [0.1, 0.01][odd]);
-        assert!(off < bar * estimate.decay_rate.abs().max(1e-9), "{at}: off by {off:e}");
-    }
-}
-
-#[test]
-fn every_term_can_be_asked_for() {
-    let library = r#"estimator.library=["1","1/A","A","A^2","ln A","(ln A)^2","t"]"#;
-    let config = WeakSindyConfig::read(&resolved(&[library])).unwrap();
-    let cancel = Cancel::new();
-    let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
-    let estimate = config.fit(&bent(), &context).unwrap();
-    let (rate, _) = line(&bent());
-    assert!((estimate.decay_rate / rate - 1.0).abs() < 1e-9, "{}", estimate.decay_rate);
+/// Test functions cannot tell peaks from each other that are crowded into 1e-9 of the record, and the quadrature
+/// is coarse where a law ends.
+fn odd_bar(at: usize, rate: f64) -> f64 {
+    let bar = [9, 10].iter().position(|odd| *odd == at).map_or(1e-5, |odd| [0.1, 0.01][odd]);
+    bar * rate.abs().max(1e-9)
 }
 
 #[test]
 fn terms_at_the_peaks_leave_a_bias_that_terms_along_the_trajectory_do_not() {
     let rates = |along: &str| {
-        let config = WeakSindyConfig::read(&resolved(&[along])).unwrap();
+        let estimator = estimator(&[along]);
         let cancel = Cancel::new();
         let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
         (0..10)
             .map(|seed| {
                 let envelope = damped(69, 20.0, [0.13, 0.0035, 0.0], 0.1, seed);
-                let estimate = config.fit(&envelope, &context).unwrap();
+                let estimate = estimator.fit(&envelope, &context).unwrap();
                 assert_eq!(estimate.stop.reached, Reached::Converged);
                 (estimate.decay_rate / line(&envelope).0 - 1.0).abs()
             })
@@ -312,8 +46,8 @@ fn fewer_test_functions_know_less_and_say_so() {
     let cancel = Cancel::new();
     let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
     let errors = [3, 30, 200].map(|most| {
-        let config = WeakSindyConfig { test_functions: most, ..config() };
-        let estimate = config.fit(&envelope, &context).unwrap();
+        let estimator = estimator(&[&format!("estimator.test_functions={most}")]);
+        let estimate = estimator.fit(&envelope, &context).unwrap();
         let (rate, std_error) = line(&envelope);
         let known = estimate.uncertainty.unwrap().std_error;
         assert!(
@@ -322,13 +56,4 @@ fn fewer_test_functions_know_less_and_say_so() {
         known
     });
     assert!(errors[0] > errors[1] && errors[1] > errors[2], "{errors:?}");
-}
-
-#[test]
-fn an_unknown_term_names_those_known() {
-    let error = WeakSindyConfig::read(&resolved(&["estimator.library=[\"1\",\"A^3\"]"])).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "command line: `estimator.library=[\"1\",\"A^3\"]`: unknown library term \"A^3\"; did you mean `A^2`?"
-    );
 }

@@ -32,6 +32,12 @@ impl Row {
         self.values.iter().zip(full.iter().skip(self.first)).map(|(one, other)| one * other).sum()
     }
 
+    /// Adds a multiple of this row to a full one.
+    pub(crate) fn add_to(&self, factor: f64, full: &mut [f64]) {
+        let pairs = full.iter_mut().skip(self.first).zip(&self.values);
+        pairs.for_each(|(entry, value)| *entry += factor * value);
+    }
+
     /// The inner product with another row.
     pub(crate) fn dot(&self, other: &Self) -> f64 {
         let from = self.first.max(other.first);
@@ -79,9 +85,28 @@ impl Whitening {
         solution
     }
 
+    /// L⁻ᵀ times a vector.
+    fn backward(&self, mut rest: Vec<f64>) -> Vec<f64> {
+        for (at, row) in self.rows.iter().enumerate().rev() {
+            let Some((diagonal, before)) = row.split_last() else { continue };
+            let Some((entry, above)) = rest.get_mut(..=at).and_then(<[f64]>::split_last_mut) else {
+                continue;
+            };
+            *entry /= diagonal;
+            above.iter_mut().zip(before).for_each(|(above, factor)| *above -= factor * *entry);
+        }
+        rest
+    }
+
     /// L⁻¹ times a vector.
     pub(crate) fn apply(&self, vector: &DVector<f64>) -> DVector<f64> {
         DVector::from_vec(self.forward(vector.iter().copied()))
+    }
+
+    /// L⁻ᵀ times a matrix: after [`apply_all`](Self::apply_all), the covariance's inverse.
+    pub(crate) fn unapply_all(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
+        let entries = matrix.column_iter().flat_map(|column| self.backward(column.iter().copied().collect()));
+        DMatrix::from_iterator(self.rows.len(), matrix.ncols(), entries)
     }
 
     /// L⁻¹ times a matrix.
@@ -107,6 +132,9 @@ mod tests {
         assert!((one.of(&[9.0, 1.0, 1.0, 1.0, 9.0]) - 6.0).abs() < 1e-15);
         let difference = one.minus_weighted(&row(1, &[1.0, 1.0, 1.0]), &[0.0, 1.0, 2.0, 3.0]);
         assert_eq!(difference, row(1, &[0.0, 0.0, 0.0]));
+        let mut full = [1.0; 5];
+        one.add_to(2.0, &mut full);
+        assert_eq!(full, [1.0, 3.0, 5.0, 7.0, 1.0]);
     }
 
     #[test]
@@ -120,6 +148,8 @@ mod tests {
         let half = whitening.apply_all(&matrix);
         let white = whitening.apply_all(&half.transpose());
         assert!((white - DMatrix::identity(3, 3)).norm() < 1e-14);
+        let back = whitening.unapply_all(&half);
+        assert!((back - DMatrix::identity(3, 3)).norm() < 1e-14);
     }
 
     #[test]

@@ -11,6 +11,7 @@ mod linear;
 mod local;
 #[cfg(test)]
 mod nist;
+mod prediction;
 mod problem;
 mod reflection;
 #[cfg(test)]
@@ -32,6 +33,7 @@ pub mod weighted_regression;
 use crate::error::OracleError;
 use envelope::Envelope;
 pub use linear::LinearSolution;
+pub use prediction::LinePrediction;
 pub use problem::{LeastSquaresProblem, LeastSquaresSolution, Limits, Minimum, SmoothFunction};
 use seed::Seed;
 

@@ -103,7 +103,17 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
                        least squares. How close they come tells how well they solve the fit, and nothing \
                        about the oscillator."
         .to_owned();
-    Some(Figure { id: "errors", title, explanation, notes, legend, wide, narrow, csv, rows })
+    Some(Figure {
+        id: "errors".into(),
+        title: title.into(),
+        explanation,
+        notes,
+        legend,
+        wide,
+        narrow,
+        csv,
+        rows,
+    })
 }
 
 fn dot_row(row: &MethodRow) -> DotRow {

@@ -103,7 +103,7 @@ fn pipelines(rows: &[PipelineView<'_>]) -> String {
 }
 
 /// A table; of each column its title, and whether it is aligned to the right.
-fn grid(columns: &[(&str, bool)], rows: impl Iterator<Item = Vec<String>>) -> String {
+pub(crate) fn grid(columns: &[(&str, bool)], rows: impl Iterator<Item = Vec<String>>) -> String {
     let line = |cells: &[String]| format!("| {} |", cells.join(" | "));
     let titles: Vec<String> = columns.iter().map(|(title, _)| escape(title)).collect();
     let rule: Vec<String> =
@@ -113,13 +113,13 @@ fn grid(columns: &[(&str, bool)], rows: impl Iterator<Item = Vec<String>>) -> St
     lines.join("\n")
 }
 
-fn list(items: impl Iterator<Item = String>) -> String {
+pub(crate) fn list(items: impl Iterator<Item = String>) -> String {
     items.map(|item| format!("- {item}")).collect::<Vec<_>>().join("\n")
 }
 
 /// Text that stands in Markdown as itself, on one line. The caller sees to it that no line begins
 /// with it.
-fn escape(text: &str) -> String {
+pub(crate) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -2,7 +2,7 @@
 
 mod figures;
 mod guidelines;
-mod markdown;
+pub(crate) mod markdown;
 mod methods;
 mod oscillation;
 mod verdict;

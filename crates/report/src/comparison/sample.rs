@@ -170,6 +170,7 @@ impl Folder {
             result: &serde_json::to_string_pretty(&self.result).unwrap(),
             trace: "",
             envelope: &table(&self.run.envelope),
+            predictions: "",
             environment: &self.run.environment,
         })
     }

@@ -149,6 +149,7 @@ fn the_task_chooses_the_page() {
         result: &comparison,
         trace: "step,phase,loss,decay_rate\n",
         envelope,
+        predictions: "",
         environment: "",
     };
     assert_eq!(render(&texts).unwrap(), render_comparison(&texts).unwrap());

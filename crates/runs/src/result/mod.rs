@@ -5,8 +5,16 @@
 //! is not.
 
 mod comparison;
+mod prediction;
+mod simulation;
 
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
+pub use prediction::{
+    Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
+    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
+    SplitSummary,
+};
+pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 
 use serde::{Deserialize, Deserializer, Serialize};
 

@@ -1,0 +1,404 @@
+//! `task = "predict"`: many methods on several problems, scored on peaks that they did not see.
+
+use crate::experiment::{DataSettings, EnvelopeSettings, Pipeline, Top, pipelines};
+use crate::schema::{DATA, PAPER, PLAIN, RECOMMENDED, TOP};
+use estimator::Entry;
+use serde::Deserialize;
+use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
+
+/// The name of the task.
+const TASK: &str = "predict";
+
+/// A study of held-out prediction with every key checked.
+pub struct PredictionStudy {
+    /// Start of the run folder's name.
+    pub name: String,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// How peaks are held out and how often.
+    pub settings: PredictionSettings,
+    /// The problems to study, in the order written.
+    pub problems: Vec<Problem>,
+    /// Settings of the pipelines.
+    pub envelope: EnvelopeSettings,
+    /// Every value in force.
+    pub resolved: Resolved,
+}
+
+/// The section `predict`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PredictionSettings {
+    /// Names of the methods, each known; `None` for all there are.
+    pub methods: Option<Vec<String>>,
+    problems: Option<Vec<String>>,
+    /// Draws of a simulated problem.
+    pub draws: usize,
+    /// Draws for methods that draw random numbers of their own, at most `draws`.
+    pub draws_seeded: usize,
+    /// Interpolation: successive peaks in a block.
+    pub block_peaks: usize,
+    /// Interpolation: of so many successive blocks one is held out.
+    pub every: usize,
+    /// Extrapolation: the share of the peaks at the end that is held out.
+    pub last_share: f64,
+    /// Level that adjusted p-values are held to.
+    pub significance: f64,
+    /// Cap on the training steps.
+    pub max_steps: Option<u64>,
+}
+
+/// A section `problem.NAME`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Problem {
+    /// NAME.
+    pub id: String,
+    /// Title in words.
+    pub title: String,
+    /// Where its envelope comes from.
+    pub source: ProblemSource,
+}
+
+/// Where a problem's envelope comes from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum ProblemSource {
+    /// A law with scatter.
+    Simulated(SimulatedProblem),
+    /// A record file.
+    Record {
+        /// The record.
+        data: Box<DataSettings>,
+        /// The way to its envelope.
+        pipeline: Pipeline,
+    },
+}
+
+/// A simulated problem. Amplitudes are angles, in rad.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct SimulatedProblem {
+    /// The law.
+    pub kind: Law,
+    /// Amplitude of the first peak, in rad.
+    pub amplitude: f64,
+    /// Period, in seconds.
+    pub period_s: f64,
+    /// Peaks, two a period.
+    pub peaks: usize,
+    /// λ of the viscous part, in 1/s.
+    pub decay_rate: f64,
+    /// Half-width of the dead zone, in rad; 0 where the law has none.
+    #[serde(default)]
+    pub dead_zone: f64,
+    /// q, in 1/(s rad); 0 where the law has none.
+    #[serde(default)]
+    pub quadratic_rate: f64,
+    /// What the scatter is added to.
+    pub scatter: ScatterKind,
+    /// Its standard deviation: in rad on the amplitude, a number on ln A.
+    pub scatter_size: f64,
+}
+
+/// A law of decay.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Law {
+    /// Viscous damping alone.
+    Exponential,
+    /// Dry friction and viscous damping.
+    CoulombViscous,
+    /// Viscous and quadratic damping.
+    ViscousQuadratic,
+}
+
+/// What scatter is added to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ScatterKind {
+    /// The amplitude, as a sensor's noise.
+    Amplitude,
+    /// ln A.
+    Logarithm,
+}
+
+const KINDS: &[&str] = &["exponential", "coulomb-viscous", "viscous-quadratic", "record"];
+
+const PREDICT: &[Field] = &[
+    Field {
+        key: "methods",
+        kind: Kind::Texts { at_least: 1, at_most: 1000 },
+        meaning: "Which methods, classical and learned, by name; left open, all there are.",
+        ..PLAIN
+    },
+    Field {
+        key: "problems",
+        kind: Kind::Texts { at_least: 1, at_most: 1000 },
+        meaning: "Which problems, by name; left open, every section problem.NAME.",
+        ..PLAIN
+    },
+    Field {
+        key: "draws",
+        kind: Kind::Integer { min: 1, max: 100_000 },
+        default: Default::Integer(200),
+        meaning: "Draws of the scatter on a simulated problem, each with a fit of its own.",
+        source: "a share of 0.95 is then known to 0.03 (Clopper, Pearson 1934)",
+        ..PLAIN
+    },
+    Field {
+        key: "draws_seeded",
+        kind: Kind::Integer { min: 1, max: 100_000 },
+        default: Default::Integer(20),
+        meaning: "Draws for methods with random numbers of their own, the slow ones: the first ones of those.",
+        source: "what a minute on two cores allows",
+        ..PLAIN
+    },
+    Field {
+        key: "block_peaks",
+        kind: Kind::Integer { min: 1, max: 10_000 },
+        default: Default::Integer(3),
+        unit: "peaks",
+        meaning: "Interpolation: successive peaks held out together.",
+        source: "more than one, so that a neighbor's scatter is no help",
+    },
+    Field {
+        key: "every",
+        kind: Kind::Integer { min: 2, max: 1000 },
+        default: Default::Integer(4),
+        unit: "blocks",
+        meaning: "Interpolation: one block of so many is held out; the first and the last block never.",
+        source: "fits keep three quarters of the peaks",
+    },
+    Field {
+        key: "last_share",
+        kind: Kind::Float { min: 0.05, max: 0.8 },
+        default: Default::Float(1.0 / 3.0),
+        meaning: "Extrapolation: share of the peaks at the end that is held out.",
+        ..PLAIN
+    },
+    Field {
+        key: "significance",
+        kind: Kind::Float { min: 1e-9, max: 0.5 },
+        default: Default::Float(0.05),
+        meaning: "Largest adjusted p-value that counts as more than chance.",
+        source: "convention",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        meaning: "Cap on the training steps, whatever a method's own; 0 leaves it untrained.",
+        ..PLAIN
+    },
+];
+
+const KIND: Field = Field {
+    key: "kind",
+    kind: Kind::Choice(KINDS),
+    default: Default::Required,
+    meaning: "Where the envelope comes from: a law of decay, or a record file.",
+    ..PLAIN
+};
+
+const TITLE: Field =
+    Field { key: "title", meaning: "Title in tables and reports; left open, the section's name.", ..PLAIN };
+
+const PIPELINE: Field = Field {
+    key: "pipeline",
+    kind: Kind::Choice(&["paper", "recommended"]),
+    default: Default::Text("recommended"),
+    meaning: "How peaks are found: as the paper did, or as we would.",
+    ..PLAIN
+};
+
+/// What every simulated problem has.
+const SIMULATED: &[Field] = &[
+    Field {
+        key: "amplitude",
+        kind: Kind::Float { min: 1e-9, max: 1e9 },
+        default: Default::Float(0.5),
+        unit: "rad",
+        meaning: "Amplitude of the first peak.",
+        ..PLAIN
+    },
+    Field {
+        key: "period_s",
+        kind: Kind::Float { min: 1e-9, max: 1e9 },
+        default: Default::Float(0.288),
+        unit: "s",
+        meaning: "Period; peaks of both sides lie half of it apart.",
+        source: "the paper's pendulum",
+    },
+    Field {
+        key: "peaks",
+        kind: Kind::Integer { min: 12, max: 10_000 },
+        default: Default::Integer(72),
+        meaning: "Peaks of the envelope.",
+        source: "the paper's record has 69",
+        ..PLAIN
+    },
+    Field {
+        key: "decay_rate",
+        kind: Kind::Float { min: 0.0, max: 1e9 },
+        default: Default::Required,
+        unit: "1/s",
+        meaning: "Decay rate of the viscous part.",
+        ..PLAIN
+    },
+    Field {
+        key: "scatter",
+        kind: Kind::Choice(&["amplitude", "logarithm"]),
+        default: Default::Text("amplitude"),
+        meaning: "What Gaussian scatter is added to: the amplitude, as a sensor's noise, or ln A.",
+        ..PLAIN
+    },
+    Field {
+        key: "scatter_size",
+        kind: Kind::Float { min: 0.0, max: 1e9 },
+        default: Default::Required,
+        unit: "rad on the amplitude, a number on ln A",
+        meaning: "Standard deviation of the scatter.",
+        ..PLAIN
+    },
+];
+
+const DEAD_ZONE: Field = Field {
+    key: "dead_zone",
+    kind: Kind::Float { min: 0.0, max: 1e9 },
+    default: Default::Required,
+    unit: "rad",
+    meaning: "Half-width of the dead zone: dry friction over stiffness.",
+    ..PLAIN
+};
+
+const QUADRATIC_RATE: Field = Field {
+    key: "quadratic_rate",
+    kind: Kind::Float { min: 0.0, max: 1e9 },
+    default: Default::Required,
+    unit: "1/(s rad)",
+    meaning: "Rate q of quadratic damping: the rate at amplitude A is decay_rate + q A.",
+    ..PLAIN
+};
+
+/// Whether a document asks for this task.
+#[must_use]
+pub fn is_prediction(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(TASK))
+}
+
+/// Checks a document with `task = "predict"`, overrides applied, against the schema and what there is to
+/// choose from, as [`crate::resolve`] does the others.
+///
+/// # Errors
+/// [`SettingsError`], with file, line and column or the override that caused it.
+pub fn resolve_prediction(
+    document: &Document,
+    registry: &[Entry],
+    classical: &[&str],
+) -> Result<PredictionStudy, SettingsError> {
+    let ids = document.tables_below("problem");
+    if ids.is_empty() {
+        return Err(SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: "problem.NAME".to_owned(),
+            meaning: "A study needs problems.".to_owned(),
+            expected: "a section [problem.NAME] with a kind for each, as in configs/beyond.toml".to_owned(),
+        });
+    }
+    let names: Vec<String> = ids.iter().map(|id| format!("problem.{id}")).collect();
+    let fields: Vec<Vec<Field>> = names.iter().map(|name| fields(document, name)).collect();
+    let own = names.iter().zip(&fields).map(|(name, fields)| Section { name, fields });
+    let sections: Vec<Section<'_>> = [
+        Section { name: "", fields: TOP },
+        Section { name: "predict", fields: PREDICT },
+        Section { name: "envelope.paper", fields: PAPER },
+        Section { name: "envelope.recommended", fields: RECOMMENDED },
+    ]
+    .into_iter()
+    .chain(own)
+    .collect();
+    let resolved = Resolved::new(document, &sections)?;
+
+    let top: Top = resolved.section("")?;
+    let settings: PredictionSettings = resolved.section("predict")?;
+    let learned = registry.iter().map(|entry| entry.id);
+    let methods: Vec<String> = classical.iter().copied().chain(learned).map(str::to_owned).collect();
+    all_known(document, "predict.methods", "method", settings.methods.as_deref(), &methods)?;
+    all_known(document, "predict.problems", "problem", settings.problems.as_deref(), &ids)?;
+    let wanted =
+        |id: &str| settings.problems.as_ref().is_none_or(|names| names.iter().any(|name| name == id));
+    let problems = ids
+        .iter()
+        .zip(&names)
+        .filter(|(id, _)| wanted(id))
+        .map(|(id, section)| problem(&resolved, id, section))
+        .collect::<Result<_, _>>()?;
+    Ok(PredictionStudy {
+        name: top.name.unwrap_or(top.task),
+        seed: top.seed,
+        envelope: pipelines(&resolved, Pipeline::Recommended)?,
+        settings,
+        problems,
+        resolved,
+    })
+}
+
+/// The keys that a problem may have depend on its kind.
+fn fields(document: &Document, section: &str) -> Vec<Field> {
+    let kind = document.get(&format!("{section}.kind")).and_then(|leaf| leaf.value.as_str());
+    let common = [KIND, TITLE];
+    let own: Vec<Field> = match kind {
+        Some("record") => {
+            DATA.iter()
+                // The shipped record is no default here: each problem says which record it is about.
+                .map(|field| {
+                    if field.key == "path" { Field { default: Default::Required, ..*field } } else { *field }
+                })
+                .chain([PIPELINE])
+                .collect()
+        }
+        Some("exponential") => SIMULATED.to_vec(),
+        Some("coulomb-viscous") => SIMULATED.iter().copied().chain([DEAD_ZONE]).collect(),
+        Some("viscous-quadratic") => SIMULATED.iter().copied().chain([QUADRATIC_RATE]).collect(),
+        // A kind that is missing or wrong is what the message is to be about, not the keys that go with it.
+        _ => SIMULATED.iter().chain(DATA).copied().chain([PIPELINE, DEAD_ZONE, QUADRATIC_RATE]).collect(),
+    };
+    common.into_iter().chain(own).collect()
+}
+
+#[derive(Deserialize)]
+struct Head {
+    kind: String,
+    title: Option<String>,
+}
+
+#[derive(Deserialize)]
+struct RecordProblem {
+    pipeline: Pipeline,
+    #[serde(flatten)]
+    data: DataSettings,
+}
+
+fn problem(resolved: &Resolved, id: &str, section: &str) -> Result<Problem, SettingsError> {
+    let head: Head = resolved.section(section)?;
+    let source = if head.kind == "record" {
+        let RecordProblem { pipeline, data } = resolved.section(section)?;
+        ProblemSource::Record { data: Box::new(data), pipeline }
+    } else {
+        ProblemSource::Simulated(resolved.section(section)?)
+    };
+    Ok(Problem { id: id.to_owned(), title: head.title.unwrap_or_else(|| id.to_owned()), source })
+}
+
+/// Refuses a name that is not known.
+fn all_known(
+    document: &Document,
+    key: &str,
+    what: &str,
+    names: Option<&[String]>,
+    known: &[String],
+) -> Result<(), SettingsError> {
+    let origin = || document.get(key).map_or(Origin::Default, |leaf| leaf.origin.clone());
+    match names.into_iter().flatten().find(|name| !known.contains(name)) {
+        Some(name) => Err(SettingsError::unknown_name(origin(), what, name, known.to_vec())),
+        None => Ok(()),
+    }
+}

@@ -1,0 +1,52 @@
+//! Reading a sequence forward and backward.
+//!
+//! Told backward, an envelope grows as fast as it decays. A network need not learn this: it reads both ways
+//! and says the mean, so that a curve that bends evenly about its middle has no rate to it, exactly.
+
+use super::training::SAID;
+use crate::sequence::Sequence;
+use burn::tensor::Tensor;
+
+/// The sequences, then each of them backward.
+pub(super) fn both_ways<'a>(sequences: impl Iterator<Item = &'a Sequence> + Clone) -> Vec<Sequence> {
+    sequences.clone().cloned().chain(sequences.map(backward)).collect()
+}
+
+fn backward(sequence: &Sequence) -> Sequence {
+    Sequence {
+        times: sequence.times.iter().rev().map(|time| -time).collect(),
+        values: sequence.values.iter().rev().copied().collect(),
+    }
+}
+
+/// What is said of sequences, from what is said of them [`both_ways`]: the means, the rates' with the
+/// backward one's sign changed.
+pub(super) fn agreed(said: Tensor<2>) -> Tensor<2> {
+    let sequences = said.dims()[0] / 2;
+    let forward = said.clone().narrow(0, 0, sequences);
+    let backward = said.narrow(0, sequences, sequences);
+    let rate = forward.clone().narrow(1, 1, 1) - backward.clone().narrow(1, 1, 1);
+    let sum = forward + backward;
+    let (level, variances) = (sum.clone().narrow(1, 0, 1), sum.narrow(1, 2, SAID - 2));
+    Tensor::cat(vec![level, rate, variances], 1) / 2.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{agreed, both_ways};
+    use crate::device::{device, tensor, values};
+    use crate::sequence::Sequence;
+
+    #[test]
+    fn backward_is_the_same_line_growing() {
+        // z = 1 − 2s and its mirror image 1 + 2s.
+        let sequence = Sequence { times: vec![-1.0, 0.5, 1.0], values: vec![3.0, 0.0, -1.0] };
+        let [forward, backward] = both_ways([&sequence].into_iter()).try_into().unwrap();
+        assert_eq!(forward, sequence);
+        assert_eq!(backward, Sequence { times: vec![-1.0, -0.5, 1.0], values: vec![-1.0, 0.0, 3.0] });
+        // Two sequences: said forward, forward, backward, backward.
+        let said = vec![1.0, 2.0, 3.0, 4.0, 0.0, 0.0, 0.0, 0.0, 1.0, -4.0, 5.0, 4.0, 0.0, 0.0, 0.0, 6.0];
+        let agreed = agreed(tensor(said, [4, 4], &device().unwrap()));
+        assert_eq!(values(agreed).unwrap(), [1.0, 3.0, 4.0, 4.0, 0.0, 0.0, 0.0, 3.0]);
+    }
+}

@@ -1,0 +1,216 @@
+//! Training on simulated envelopes.
+
+use super::bank::{Example, Prior};
+use super::calibration::Calibration;
+use super::mirror::{agreed, both_ways};
+use crate::adam::Adam;
+use crate::decay::{Differentiated, Encoder};
+use crate::device::{tensor, values};
+use crate::flat::with_parameters;
+use burn::tensor::{Device, Tensor};
+use estimator::{FitContext, FitError, Reached, Step};
+use serde::Deserialize;
+
+/// How an amortized network is trained, and how it reads. Ranges and defaults are in
+/// [`fields`](super::fields).
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Training {
+    /// Most entries the network reads; longer envelopes are read as means over runs of neighbors.
+    pub longest_sequence: usize,
+    /// Most looks at an envelope.
+    pub most_looks: usize,
+    /// Steps of the training, each on envelopes of its own.
+    pub max_steps: u64,
+    /// Envelopes of a step.
+    pub batch: usize,
+    /// Largest rate of Adam.
+    pub learning_rate: f64,
+    /// Envelopes that show, after the training, how far stated errors are to be believed.
+    pub calibration: usize,
+}
+
+/// Numbers a network says of a sequence: level, rate, and the logarithms of their variances times the
+/// number of entries.
+pub(super) const SAID: usize = 4;
+
+/// Largest length of a gradient: longer ones are cut to it (Pascanu, Mikolov, Bengio, ICML 2013).
+const LONGEST_GRADIENT: f64 = 1.0;
+
+/// Share of the steps over which the rate rises to its largest.
+const RISE: f64 = 0.05;
+
+/// What a training gives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Skill {
+    pub(super) parameters: Vec<f64>,
+    pub(super) calibration: Calibration,
+    pub(super) steps: u64,
+    pub(super) reached: Reached,
+}
+
+impl Training {
+    /// Trains an encoder from start values. `rate_of` gives the λ that parameters read from whatever is
+    /// watched.
+    pub(super) fn train<E: Encoder>(
+        &self,
+        prior: &Prior,
+        encoder: &E,
+        start: Vec<f64>,
+        context: &FitContext<'_>,
+        device: &Device,
+        rate_of: impl Fn(&[f64]) -> Result<f64, FitError>,
+    ) -> Result<Skill, FitError> {
+        let recording = device.clone().autodiff();
+        let mut generator = context.seed("bank").generator();
+        let mut adam = Adam::new(start.len());
+        let (mut parameters, mut before) = (start.clone(), start);
+        let limit = context.step_limit(self.max_steps);
+        let mut steps = 0;
+        let reached = loop {
+            let examples = prior.examples(self.batch, self.longest_sequence, &mut generator);
+            let (loss, mut gradient) = loss_and_gradient(encoder, &parameters, &examples, &recording)?;
+            let length = gradient.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
+            if !(loss.is_finite() && length.is_finite()) {
+                if steps == 0 {
+                    return Err(FitError::NotFinite { loss });
+                }
+                (parameters, steps) = (before, steps - 1);
+                break Reached::Diverged;
+            }
+            context.observe(&Step {
+                step: steps,
+                planned: limit,
+                phase: "Adam, simulated envelopes".to_owned(),
+                loss,
+                decay_rate: rate_of(&parameters)?,
+            });
+            let reached = match () {
+                () if context.is_cancelled() => Some(Reached::Interrupted),
+                () if steps >= self.max_steps && steps > 0 => Some(Reached::Converged),
+                () if steps >= limit => Some(Reached::BudgetSpent),
+                () => None,
+            };
+            if let Some(reached) = reached {
+                break reached;
+            }
+            let cut = (LONGEST_GRADIENT / length).min(1.0);
+            gradient.iter_mut().for_each(|slope| *slope *= cut);
+            before.clone_from(&parameters);
+            adam.step(&mut parameters, &gradient, self.rate(steps));
+            steps += 1;
+        };
+        let calibration = match reached {
+            Reached::Converged => {
+                let encoder = with_parameters(encoder.clone(), &parameters, device)?;
+                let mut generator = context.seed("calibration").generator();
+                self.calibrate(prior, &encoder, &mut generator, device)?
+            }
+            // Nothing is said of errors then.
+            _ => Calibration::NONE,
+        };
+        Ok(Skill { parameters, calibration, steps, reached })
+    }
+
+    /// The learning rate of a step: it rises linearly and falls with a cosine to zero.
+    ///
+    /// Reference: Loshchilov, Hutter, SGDR, ICLR 2017, equation 5.
+    fn rate(&self, step: u64) -> f64 {
+        let done = (step as f64 + 0.5) / self.max_steps as f64;
+        let share = if done < RISE {
+            done / RISE
+        } else {
+            (1.0 + (std::f64::consts::PI * (done - RISE) / (1.0 - RISE)).cos()) / 2.0
+        };
+        self.learning_rate * share
+    }
+}
+
+/// The mean over the examples of Σ ½·(v + (target − said)²/eᵛ), level and rate, v the logarithm of the
+/// variance that the network states; and its gradient.
+///
+/// Reference: Nix, Weigend 1994, equation 2.
+fn loss_and_gradient<E: Encoder>(
+    encoder: &E,
+    parameters: &[f64],
+    examples: &[Example],
+    recording: &Device,
+) -> Result<(f64, Vec<f64>), FitError> {
+    let encoder = with_parameters(encoder.clone(), parameters, recording)?;
+    let targets = examples.iter().flat_map(|example| example.line).collect();
+    let targets = tensor(targets, [examples.len(), 2], recording);
+    let entries = examples.first().map_or(1, |example| example.sequence.len());
+    let sequences = both_ways(examples.iter().map(|example| &example.sequence));
+    let input = encoder.input(&sequences, recording);
+    let Differentiated { loss, gradient, .. } =
+        encoder.differentiate(input, |said| negative_log_likelihood(agreed(said), targets, entries))?;
+    Ok((values(loss)?.first().copied().unwrap_or(f64::NAN), gradient))
+}
+
+fn negative_log_likelihood(said: Tensor<2>, targets: Tensor<2>, entries: usize) -> Tensor<1> {
+    let examples = said.dims()[0] as f64;
+    let missed = said.clone().narrow(1, 0, 2) - targets;
+    let log_variance = said.narrow(1, 2, 2) - (entries as f64).ln();
+    let weighted = missed.clone() * missed * (-log_variance.clone()).exp();
+    (log_variance + weighted).sum() / (2.0 * examples)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SAID, loss_and_gradient, negative_log_likelihood};
+    use crate::amortized::estimator::Skilled;
+    use crate::amortized::tiny::{estimator, prior};
+    use crate::device::{device, tensor, values};
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    #[test]
+    fn the_loss_is_the_normal_likelihoods() {
+        let device = device().unwrap();
+        let said = vec![0.5, -1.0, 0.3, 0.7];
+        let loss = negative_log_likelihood(
+            tensor(said, [1, 4], &device),
+            tensor(vec![0.1, -1.2], [1, 2], &device),
+            10,
+        );
+        // Without the constant ½·ln 2π of each.
+        let term = |missed: f64, log: f64| {
+            let variance = log.exp() / 10.0;
+            0.5 * (variance.ln() + missed * missed / variance)
+        };
+        let expected = term(0.4, 0.3) + term(0.2, 0.7);
+        assert!((values(loss).unwrap()[0] - expected).abs() < 1e-14);
+    }
+
+    #[test]
+    fn its_gradient_is_that_of_finite_differences() {
+        let device = device().unwrap();
+        let encoder = estimator().network.encoder(SAID, &device);
+        let recording = device.autodiff();
+        let examples = prior().examples(6, 24, &mut StdRng::seed_from_u64(1));
+        let parameters = [0.1, -0.3, 0.2, 0.4, -0.1, 0.3, 0.5, -0.2];
+        let of = |parameters: &[f64]| loss_and_gradient(&encoder, parameters, &examples, &recording).unwrap();
+        let (_, gradient) = of(&parameters);
+        assert_eq!(gradient.len(), parameters.len());
+        for at in 0..parameters.len() {
+            let h = 1e-5;
+            let moved = |by: f64| {
+                let mut moved = parameters;
+                moved[at] += by;
+                of(&moved).0
+            };
+            let difference = (moved(h) - moved(-h)) / (2.0 * h);
+            let off = (gradient[at] - difference).abs();
+            assert!(off < 1e-6 * difference.abs().max(1.0), "{at}: {} {difference}", gradient[at]);
+        }
+    }
+
+    #[test]
+    fn the_rate_rises_and_falls_to_nothing() {
+        let training = estimator().training;
+        let rates: Vec<f64> = (0..300).map(|step| training.rate(step)).collect();
+        // A twentieth of 300 steps up, the rest down.
+        assert!(rates[..15].windows(2).all(|pair| pair[0] < pair[1]));
+        assert!(rates[15..].windows(2).all(|pair| pair[0] > pair[1]));
+        assert!((rates[14] - 0.1).abs() < 4e-3 && rates[299] < 1e-5 && rates[0] < 4e-3, "{rates:?}");
+    }
+}

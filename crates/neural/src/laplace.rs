@@ -1,0 +1,100 @@
+//! Laplace approximation about trained parameters.
+//!
+//! Reference: MacKay, Neural Computation 4 (1992) 448.
+
+use crate::levenberg_marquardt::Linearized;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+
+/// A Gaussian posterior about parameters that minimize a mean square over the peaks plus terms that act as a
+/// prior: its precision is the loss's Gauss–Newton matrix A over the residual variance.
+#[derive(Debug, Clone)]
+pub struct Laplace {
+    factor: Cholesky<f64, Dyn>,
+    peaks: f64,
+    /// The residual variance of a peak, in the residuals' units.
+    variance: f64,
+    degrees_of_freedom: f64,
+}
+
+impl Laplace {
+    /// The approximation at a point.
+    ///
+    /// The first `peaks` rows of the residuals are those of the peaks, each divided by √peaks; the others are
+    /// the prior's. `degrees_of_freedom` gives the residuals' degrees of freedom from the number of
+    /// peaks and the matrix A⁻¹JᵀJ, J the peaks' rows, whose trace is the number of parameters that the
+    /// peaks determine. `None` where less than one is left, or A is not positive to rounding.
+    #[must_use]
+    pub fn about(
+        linearized: &Linearized,
+        peaks: usize,
+        degrees_of_freedom: impl FnOnce(f64, &DMatrix<f64>) -> f64,
+    ) -> Option<Self> {
+        let jacobian = &linearized.jacobian;
+        let seen = jacobian.tr_mul(jacobian);
+        // Directions that neither peaks nor prior see keep a wide prior.
+        let wide = DMatrix::from_diagonal_element(seen.nrows(), seen.ncols(), 1e-12 * seen.diagonal().max());
+        let factor = Cholesky::new(seen + wide)?;
+        let data = jacobian.rows(0, peaks);
+        // Parameters by parameters, however many peaks there are.
+        let hat = factor.solve(&data.tr_mul(&data));
+        let count = peaks as f64;
+        let degrees = degrees_of_freedom(count, &hat);
+        // The rows of peaks carry 1/√peaks each; undo it for a variance per peak.
+        let mean_square = linearized.residuals.rows(0, peaks).norm_squared();
+        let variance = mean_square * count / degrees;
+        (degrees >= 1.0).then_some(Self { factor, peaks: count, variance, degrees_of_freedom: degrees })
+    }
+
+    /// Degrees of freedom of the residual variance, at least 1.
+    #[must_use]
+    pub fn degrees_of_freedom(&self) -> f64 {
+        self.degrees_of_freedom
+    }
+
+    /// Standard deviation of a quantity with the given derivatives by the parameters.
+    #[must_use]
+    pub fn deviation(&self, gradient: &DVector<f64>) -> f64 {
+        self.spread(gradient).sqrt()
+    }
+
+    /// Standard deviation of a measured value about a function with the given derivatives by the parameters:
+    /// the scatter of a peak, and the function's own.
+    #[must_use]
+    pub fn predictive_deviation(&self, gradient: &DVector<f64>) -> f64 {
+        (self.variance + self.spread(gradient)).sqrt()
+    }
+
+    fn spread(&self, gradient: &DVector<f64>) -> f64 {
+        gradient.dot(&self.factor.solve(gradient)) * self.variance / self.peaks
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Laplace;
+    use crate::levenberg_marquardt::Linearized;
+    use nalgebra::{DMatrix, DVector};
+
+    #[test]
+    fn of_a_line_it_is_the_textbook_s() {
+        let times = [0.0, 0.1, 0.5, 0.6, 1.0];
+        let residuals = [0.3, -0.4, 0.1, 0.05, -0.05];
+        let scale = 1.0 / 5.0_f64.sqrt();
+        let linearized = Linearized {
+            residuals: DVector::from_iterator(5, residuals.iter().map(|r| r * scale)),
+            jacobian: DMatrix::from_fn(5, 2, |row, column| scale * [1.0, times[row]][column]),
+        };
+        let laplace = Laplace::about(&linearized, 5, |peaks, hat| peaks - hat.trace()).unwrap();
+        assert!((laplace.degrees_of_freedom() - 3.0).abs() < 1e-9);
+        let variance = residuals.iter().map(|r| r * r).sum::<f64>() / 3.0;
+        let (mean, scatter) = (0.44, 0.652);
+        let slope = laplace.deviation(&DVector::from_vec(vec![0.0, 1.0]));
+        assert!((slope - (variance / scatter).sqrt()).abs() < 1e-9);
+        for time in [-1.0, 0.3, 2.0] {
+            let new = laplace.predictive_deviation(&DVector::from_vec(vec![1.0, time]));
+            let expected = (variance * (1.2 + (time - mean) * (time - mean) / scatter)).sqrt();
+            assert!((new - expected).abs() < 1e-9, "{time}: {new} {expected}");
+        }
+        assert!(Laplace::about(&linearized, 5, |_, _| 0.5).is_none());
+    }
+}

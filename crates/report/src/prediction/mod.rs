@@ -1,0 +1,234 @@
+//! The page on methods scored on peaks that they did not see, and its tables as Markdown.
+
+mod figures;
+mod markdown;
+mod scores;
+
+#[cfg(test)]
+mod sample;
+#[cfg(test)]
+mod tests;
+
+use askama::Template;
+use runs::result::{
+    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
+    ProblemStudy, SplitSummary,
+};
+
+use crate::figures::Figure;
+use crate::frame::Frame;
+use crate::parse::Prediction;
+use crate::plot::Hue;
+use crate::tables::{Fact, fact, whole};
+use crate::verdict::{self, Origin, Tone, Verdict};
+use crate::{ReportError, RunTexts, format};
+
+pub(crate) use markdown::markdown;
+use scores::ScoreTable;
+
+/// One problem as it stands on the page.
+struct ProblemView<'a> {
+    /// Name of its anchor in the page.
+    id: String,
+    title: &'a str,
+    origin: Origin,
+    /// Why there is nothing else; empty where there is.
+    absent: &'a str,
+    facts: Vec<Fact>,
+    verdict: &'a [String],
+    table: Option<ScoreTable>,
+    laws: Vec<String>,
+    figures: Vec<Figure>,
+}
+
+#[derive(Template)]
+#[template(path = "prediction.html")]
+struct PredictionPage<'a> {
+    frame: Frame<'a>,
+    held_out: String,
+    reading: [&'static str; 4],
+    problems: Vec<ProblemView<'a>>,
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, prediction: &Prediction) -> Result<String, ReportError> {
+    let result = &prediction.result;
+    let page = PredictionPage {
+        frame: Frame {
+            hues: &Hue::ALL,
+            name: texts.name,
+            kicker: "many methods on peaks they did not see",
+            verdict: headline(result),
+            origin: origin(result),
+            warnings: absences(result),
+            pipelines: Vec::new(),
+            data: Vec::new(),
+            findings: &[],
+            files: [
+                ("Resolved configuration (config.toml)", texts.config),
+                ("Environment (environment.json)", texts.environment),
+                ("Every number, unrounded (result.json)", texts.result),
+            ],
+        },
+        held_out: held_out(&result.splits),
+        reading: scores::READING,
+        problems: result.problems.iter().map(|row| view(row, prediction)).collect(),
+    };
+    Ok(page.render()?)
+}
+
+fn view<'a>(row: &'a ProblemRow, prediction: &Prediction) -> ProblemView<'a> {
+    let mut view = ProblemView {
+        id: format!("problem-{}", anchor(&row.id)),
+        title: &row.title,
+        origin: verdict::origin(&row.origin),
+        absent: "",
+        facts: Vec::new(),
+        verdict: &[],
+        table: None,
+        laws: Vec::new(),
+        figures: Vec::new(),
+    };
+    match &row.outcome {
+        ProblemOutcome::Absent { reason } => view.absent = reason,
+        ProblemOutcome::Studied(study) => {
+            view.facts = facts(study);
+            view.verdict = &study.verdict;
+            view.table = Some(scores::table(study));
+            view.laws = laws(study);
+            view.figures = figures::figures(&view.id, row, study, &prediction.rows);
+        }
+    }
+    view
+}
+
+/// What the problem is, in symbols or by its file.
+fn facts(study: &ProblemStudy) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    if let Some(law) = &study.law {
+        facts.extend([
+            fact("Law", law.equation.clone()),
+            fact("Parameters", law.parameters.clone()),
+            fact("Closed form", law.exactness.clone()),
+            fact("Scatter", law.scatter.clone()),
+            fact("λ of the viscous part", format::quantity(&format::significant(law.viscous_rate, 6), "1/s")),
+            fact(
+                "Projected slope of the noise-free ln A",
+                format::quantity(&format::significant(law.projected_slope, 6), "1/s"),
+            ),
+            fact(
+                "Draws",
+                format!(
+                    "{}, for methods with random numbers of their own the first {}; errors and densities are of \
+                     the first {1} for all, coverage and sign tests of all that a method has",
+                    law.draws[0], law.draws[1]
+                ),
+            ),
+        ]);
+    }
+    if let Some(data) = &study.data {
+        facts.extend([
+            fact("File", data.path.clone()),
+            fact("Clock", format!("{}: {}", data.clock, data.clock_reason)),
+        ]);
+    }
+    facts.extend([
+        fact("Peaks", whole(study.peaks)),
+        fact("From first to last", format::quantity(&format::significant(study.duration_s, 4), "s")),
+    ]);
+    facts
+}
+
+/// The laws that methods discovered, in sentences.
+fn laws(study: &ProblemStudy) -> Vec<String> {
+    let law = |row: &PredictionRow| {
+        let scores = scored(row)?;
+        let equation = scores.equation.as_ref()?;
+        let common = match &scores.commonest_form {
+            Some((form, count)) if scores.draws > 1 => {
+                format!(" on the first draw; {count} of {} draws give {form}", scores.draws)
+            }
+            Some((form, count)) if scores.draws == 1 && *count > 1 => {
+                format!(" on the first fold; {count} folds give {form}")
+            }
+            _ => String::new(),
+        };
+        Some(format!("{}: {equation}{common}", row.title))
+    };
+    study.methods.iter().filter_map(law).collect()
+}
+
+fn scored(row: &PredictionRow) -> Option<&MethodScores> {
+    match &row.outcome {
+        PredictionOutcome::Scored(scores) => Some(scores),
+        PredictionOutcome::Failed { .. } => None,
+    }
+}
+
+fn held_out(splits: &SplitSummary) -> String {
+    format!(
+        "Inside: of every {} blocks of {} successive peaks one is kept from the fit, never the first or the \
+         last block; a record is fitted once for each such choice, a draw of a simulation with the next one in \
+         turn. Beyond: the last {} % of the peaks are kept from the fit.",
+        splits.every,
+        splits.block_peaks,
+        format::fixed(100.0 * splits.last_share, 0)
+    )
+}
+
+fn studied(result: &PredictionResult) -> impl Iterator<Item = &ProblemRow> {
+    result.problems.iter().filter(|row| matches!(row.outcome, ProblemOutcome::Studied(_)))
+}
+
+/// The page's verdict counts; what the numbers carry, each problem's own sentences say.
+fn headline(result: &PredictionResult) -> Verdict {
+    let of = |origin: &str| studied(result).filter(|row| row.origin == origin).count();
+    let (simulated, measured) = (of("simulated"), of("measured"));
+    let all = studied(result).count();
+    let other = all - simulated - measured;
+    let mut kinds = vec![format!("{simulated} simulated"), format!("{measured} measured")];
+    if other > 0 {
+        kinds.push(format!("{other} of unstated origin"));
+    }
+    let absent = result.problems.len() - all;
+    let (tone, label) = match (all, absent) {
+        (0, _) => (Tone::Bad, "Nothing studied"),
+        (_, 0) => (Tone::Good, "Every problem studied"),
+        _ => (Tone::Caution, "Some records are absent"),
+    };
+    Verdict {
+        tone,
+        label,
+        sentence: format!(
+            "Methods were scored on held-out peaks of {all} problems ({}). Each section says what its numbers \
+             carry; agreement with least squares is no virtue where the envelope is no exponential.",
+            kinds.join(", ")
+        ),
+    }
+}
+
+fn origin(result: &PredictionResult) -> Origin {
+    let mut origins: Vec<&str> = studied(result).map(|row| row.origin.as_str()).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    match origins[..] {
+        [one] => verdict::origin(one),
+        _ => Origin {
+            class: "simulated",
+            label: "Simulated and measured",
+            note: "Each section says which of the two its problem is.",
+        },
+    }
+}
+
+fn absences(result: &PredictionResult) -> Vec<String> {
+    let absence = |row: &ProblemRow| match &row.outcome {
+        ProblemOutcome::Absent { reason } => Some(format!("{} is absent: {reason}.", row.title)),
+        ProblemOutcome::Studied(_) => None,
+    };
+    result.problems.iter().filter_map(absence).collect()
+}
+
+/// A name as an anchor may have it.
+fn anchor(name: &str) -> String {
+    name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
+}

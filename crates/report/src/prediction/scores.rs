@@ -1,0 +1,163 @@
+//! The table of a problem: a row for each method.
+
+use runs::result::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+
+use crate::format::{count, duration, fixed, significant};
+use crate::tables::whole;
+
+/// How to read these tables.
+pub(super) const READING: [&str; 4] = [
+    "Errors are root mean squares of predicted less observed ln A over the held-out peaks, of a simulation the \
+     median over the draws that all methods were fitted on; Â/A is the same as a relative error of the amplitude, where a motion predicted to \
+     be at rest misses by 100 %. “To truth” is the error against the noise-free ln A. Rows stand in the order \
+     of the error beyond.",
+    "ln p is the mean logarithm of the density that a method states for a held-out ln A, Gaussian with its own \
+     standard deviation: higher is better, and a difference of 0.1 is 10 % of density a peak. “In 95 %” is the \
+     share of held-out peaks within 1.96 stated standard deviations, with a 95 % interval of that share by \
+     Korn and Graubard, peaks of one draw or block counting as one cluster.",
+    "“Projected slope in λ’s interval” counts the draws in which the stated 95 % interval of λ holds minus the \
+     least-squares slope of the noise-free ln A over the peaks fitted, “viscous λ” those in which it holds λ of \
+     the law’s viscous part. On an envelope that is no exponential these are different quantities, and an \
+     interval can be right about one of them only. Intervals of these shares are by Clopper and Pearson.",
+    "“Against exponential” counts draws, or blocks of peaks, in which a method’s mean square error is smaller \
+     than that of the best exponential (closed-form least squares on the same peaks), and in which it is \
+     larger; ties to six digits are left out. p is of the two-sided sign test, adjusted by Holm’s method for \
+     all comparisons of the problem. Blocks of one record share most of their fitted peaks and are not quite \
+     independent.",
+];
+
+/// The table of a problem.
+pub(super) struct ScoreTable {
+    pub(super) columns: Vec<&'static str>,
+    pub(super) rows: Vec<ScoreView>,
+}
+
+/// One method as it stands in the table.
+pub(super) struct ScoreView {
+    pub(super) title: String,
+    /// One cell for each column but the first; none where there is a reason instead.
+    pub(super) cells: Vec<String>,
+    /// Why there are no scores; empty where there are.
+    pub(super) reason: String,
+    /// Whether this is the best exponential, which the others are compared with.
+    pub(super) is_reference: bool,
+}
+
+pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
+    let has_truth = study.law.is_some();
+    let mut columns = vec!["method", "error inside", "error beyond", "Â/A beyond, %"];
+    if has_truth {
+        columns.extend(["to truth inside", "to truth beyond"]);
+    }
+    columns.extend(["ln p inside", "ln p beyond", "in 95 % inside, %", "in 95 % beyond, %"]);
+    if has_truth {
+        columns.extend(["projected slope in λ’s interval, %", "viscous λ in it, %"]);
+    }
+    columns.push("against exponential inside");
+    if has_truth {
+        columns.push("against exponential beyond");
+        columns.push("draws");
+    }
+    columns.extend(["fits converged", "time"]);
+
+    let exponential = &study.exponential;
+    let mut cells = held_out(Some(&exponential.interpolation), Some(&exponential.extrapolation), has_truth);
+    cells.resize(columns.len() - 1, String::new());
+    let reference =
+        ScoreView { title: "Best exponential".to_owned(), cells, reason: String::new(), is_reference: true };
+    let place = study.methods.iter().position(|row| error(row) >= exponential.extrapolation.rms_log_error);
+    let mut rows: Vec<ScoreView> = study.methods.iter().map(|row| view(row, has_truth)).collect();
+    rows.insert(place.unwrap_or(rows.len()), reference);
+    ScoreTable { columns, rows }
+}
+
+/// What rows stand in the order of.
+pub(super) fn error(row: &PredictionRow) -> f64 {
+    let score = super::scored(row).and_then(|scores| scores.extrapolation.as_ref());
+    // Without a score, or with one that is not finite, a row stands last.
+    score.map(|score| score.rms_log_error).filter(|error| !error.is_nan()).unwrap_or(f64::INFINITY)
+}
+
+fn view(row: &PredictionRow, has_truth: bool) -> ScoreView {
+    let title = match row.number {
+        Some(number) => format!("{number} {}", row.title),
+        None => row.title.clone(),
+    };
+    let silent = |title, reason| ScoreView { title, cells: Vec::new(), reason, is_reference: false };
+    let scores = match &row.outcome {
+        PredictionOutcome::Scored(scores) => scores,
+        PredictionOutcome::Failed { reason } => return silent(title, format!("no fit: {reason}")),
+    };
+    let (inside, beyond) = (scores.interpolation.as_ref(), scores.extrapolation.as_ref());
+    if inside.is_none() && beyond.is_none() {
+        return silent(title, "no prediction: the method gives a decay rate only".to_owned());
+    }
+    let mut cells = held_out(inside, beyond, has_truth);
+    if has_truth {
+        cells.push(share(scores.covers_projected_slope.as_ref()));
+        cells.push(share(scores.covers_viscous_rate.as_ref()));
+    }
+    cells.push(against(inside));
+    if has_truth {
+        cells.push(against(beyond));
+        cells.push(match scores.failed_fits {
+            0 => whole(scores.draws),
+            failed => format!("{}; {} fits failed", whole(scores.draws), whole(failed)),
+        });
+    }
+    let percent = 100.0 * scores.converged as f64 / scores.fits.max(1) as f64;
+    cells.push(format!("{} %", fixed(percent, 0)));
+    cells.push(duration(scores.seconds));
+    ScoreView { title, cells, reason: String::new(), is_reference: false }
+}
+
+fn held_out(inside: Option<&HeldOutScore>, beyond: Option<&HeldOutScore>, has_truth: bool) -> Vec<String> {
+    let number = |score: Option<&HeldOutScore>, of: fn(&HeldOutScore) -> Option<f64>, digits| {
+        score.and_then(of).map_or_else(dash, |value| significant(value, digits))
+    };
+    let rms = |score| number(score, |score| Some(score.rms_log_error), 3);
+    let mut cells =
+        vec![rms(inside), rms(beyond), number(beyond, |score| Some(score.amplitude_error_percent), 3)];
+    if has_truth {
+        cells.push(number(inside, |score| score.truth_rms_log_error, 3));
+        cells.push(number(beyond, |score| score.truth_rms_log_error, 3));
+    }
+    let density = |score: Option<&HeldOutScore>| {
+        score.and_then(|score| score.mean_log_density).map_or_else(dash, |density| fixed(density, 2))
+    };
+    cells.extend([density(inside), density(beyond)]);
+    let coverage = |score: Option<&HeldOutScore>| share(score.and_then(|score| score.coverage.as_ref()));
+    cells.extend([coverage(inside), coverage(beyond)]);
+    cells
+}
+
+/// A share in percent with its interval, or as a count where there is none.
+fn share(coverage: Option<&Coverage>) -> String {
+    let Some(coverage) = coverage else { return dash() };
+    match coverage.interval_95 {
+        Some([low, high]) => format!(
+            "{} [{}, {}]",
+            fixed(100.0 * coverage.held as f64 / coverage.of.max(1) as f64, 1),
+            fixed(100.0 * low, 1),
+            fixed(100.0 * high, 1)
+        ),
+        None => format!("{} of {}", whole(coverage.held), whole(coverage.of)),
+    }
+}
+
+fn against(score: Option<&HeldOutScore>) -> String {
+    let Some(pair) = score.and_then(|score| score.against_exponential.as_ref()) else { return dash() };
+    if pair.better + pair.worse == 0 {
+        return "the same".to_owned();
+    }
+    let counts = format!("{} : {}", count(pair.better as u64), count(pair.worse as u64));
+    format!("{counts}, p {}", probability(pair.adjusted_p_value))
+}
+
+fn probability(value: f64) -> String {
+    if value < 1e-3 { format!("{value:.0e}") } else { fixed(value, 3) }
+}
+
+fn dash() -> String {
+    "–".to_owned()
+}

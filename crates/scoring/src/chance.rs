@@ -1,0 +1,163 @@
+//! What chance alone would give: intervals of shares, and tests of "better more often than not".
+
+use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, StudentsT};
+
+/// The 95 % interval of a share by Clopper and Pearson: `successes` of `trials` independent trials.
+///
+/// Both may be fractions of trials, as an effective number of trials is. `[0, 1]` for no trials.
+///
+/// # Reference
+/// C. J. Clopper, E. S. Pearson, Biometrika 26 (1934) 404–413.
+#[must_use]
+pub fn binomial_interval(successes: f64, trials: f64) -> [f64; 2] {
+    let failures = trials - successes;
+    let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map(|beta| beta.inverse_cdf(p)).ok();
+    let low = quantile(successes, failures + 1.0, 0.025).unwrap_or(0.0);
+    let high = quantile(successes + 1.0, failures, 0.975).unwrap_or(1.0);
+    [low, high]
+}
+
+/// The 95 % interval of a share whose trials come in clusters, of which only the clusters are independent:
+/// `(successes, trials)` of each. `None` for fewer than five clusters.
+///
+/// Clopper and Pearson's with as many trials as independent ones would need for the same variance,
+/// p(1 − p)/v with v of the ratio over clusters, corrected for its degrees of freedom; where every trial
+/// succeeds, or none, v is 0 and a cluster counts as one trial.
+///
+/// # Reference
+/// E. L. Korn, B. I. Graubard, Survey Methodology 24 (1998) 193–201.
+#[must_use]
+pub fn clustered_interval(clusters: &[(usize, usize)]) -> Option<[f64; 2]> {
+    const FEWEST: usize = 5;
+    let filled: Vec<(f64, f64)> =
+        clusters.iter().filter(|(_, of)| *of > 0).map(|&(held, of)| (held as f64, of as f64)).collect();
+    if filled.len() < FEWEST {
+        return None;
+    }
+    let count = filled.len() as f64;
+    let trials: f64 = filled.iter().map(|(_, of)| of).sum();
+    let share = filled.iter().map(|(held, _)| held).sum::<f64>() / trials;
+    let squares: f64 = filled.iter().map(|(held, of)| (held - share * of).powi(2)).sum();
+    let variance = count / (count - 1.0) * squares / trials.powi(2);
+    let quantile = |degrees: f64| StudentsT::new(0.0, 1.0, degrees).map(|t| t.inverse_cdf(0.975)).ok();
+    let effective = if share > 0.0 && share < 1.0 && variance > 0.0 {
+        let ratio = quantile(trials - 1.0)? / quantile(count - 1.0)?;
+        (share * (1.0 - share) / variance * ratio.powi(2)).min(trials)
+    } else {
+        count
+    };
+    Some(binomial_interval(share * effective, effective))
+}
+
+/// The two-sided p-value of the sign test: how often chance gives a split at least as uneven as `wins`
+/// against `losses`. Ties are left out beforehand; 1 for no trials.
+///
+/// # Reference
+/// W. J. Dixon, A. M. Mood, J. Amer. Statist. Assoc. 41 (1946) 557–566.
+#[must_use]
+pub fn sign_test(wins: usize, losses: usize) -> f64 {
+    let trials = (wins + losses) as u64;
+    let fewer = wins.min(losses) as u64;
+    if trials == 0 {
+        return 1.0;
+    }
+    Binomial::new(0.5, trials).map_or(f64::NAN, |binomial| (2.0 * binomial.cdf(fewer)).min(1.0))
+}
+
+/// p-values adjusted for their number by Holm's method: the chance that any of the true hypotheses among
+/// them is rejected stays below the level that the adjusted ones are held to. Of what is no number, none
+/// is made.
+///
+/// # Reference
+/// S. Holm, Scand. J. Statist. 6 (1979) 65–70.
+#[must_use]
+pub fn holm(p_values: &[f64]) -> Vec<f64> {
+    let mut order: Vec<(usize, f64)> =
+        p_values.iter().copied().enumerate().filter(|(_, p)| !p.is_nan()).collect();
+    order.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let count = order.len();
+    let mut adjusted = vec![f64::NAN; p_values.len()];
+    let mut largest: f64 = 0.0;
+    for (rank, (index, p)) in order.into_iter().enumerate() {
+        largest = largest.max(((count - rank) as f64 * p).min(1.0));
+        if let Some(place) = adjusted.get_mut(index) {
+            *place = largest;
+        }
+    }
+    adjusted
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, clippy::indexing_slicing)]
+mod tests {
+    use super::{binomial_interval, clustered_interval, holm, sign_test};
+
+    #[test]
+    fn shares_of_independent_trials() {
+        // Clopper and Pearson's table for 10 trials, and the rule of three's exact form.
+        let [low, high] = binomial_interval(3.0, 10.0);
+        assert!((low - 0.066_739_5).abs() < 1e-6 && (high - 0.652_452_9).abs() < 1e-6, "{low} {high}");
+        let [low, high] = binomial_interval(200.0, 200.0);
+        assert!((low - 0.025_f64.powf(1.0 / 200.0)).abs() < 1e-9 && high >= 1.0, "{low} {high}");
+        assert_eq!(binomial_interval(0.0, 0.0), [0.0, 1.0]);
+    }
+
+    #[test]
+    fn shares_of_clusters() {
+        assert_eq!(clustered_interval(&[(1, 2); 4]), None);
+        // Clusters that are all held or all missed are worth one trial each, less the variance's own
+        // uncertainty: about n·(1.972/1.985)².
+        let torn: Vec<(usize, usize)> = (0..100).map(|i| if i < 90 { (20, 20) } else { (0, 20) }).collect();
+        let [low, high] = clustered_interval(&torn).unwrap();
+        let [lone_low, lone_high] = binomial_interval(90.0, 100.0);
+        assert!((low - lone_low).abs() < 0.003 && (high - lone_high).abs() < 0.003, "{low} {high}");
+        // Where all clusters have the same share, all trials count.
+        let almost: Vec<(usize, usize)> = (0..100).map(|i| (19 - i % 2, 20)).collect();
+        assert_eq!(clustered_interval(&almost), Some(binomial_interval(1850.0, 2000.0)));
+        // None missed: one trial a cluster.
+        assert_eq!(clustered_interval(&[(20, 20); 60]), Some(binomial_interval(60.0, 60.0)));
+    }
+
+    /// Of many samples of clustered trials about 95 % hold the true share.
+    #[test]
+    fn clustered_intervals_hold_the_share_as_often_as_they_say() {
+        use rand::RngExt;
+        let mut generator = seed::Seed::new(5).generator();
+        let samples = 2000;
+        let held = (0..samples)
+            .filter(|_| {
+                let clusters: Vec<(usize, usize)> = (0..60)
+                    .map(|_| {
+                        // Half of the clusters' trials are copies of one draw.
+                        let shared = generator.random::<f64>() < 0.9;
+                        let own = (0..10).filter(|_| generator.random::<f64>() < 0.9).count();
+                        (own + if shared { 10 } else { 0 }, 20)
+                    })
+                    .collect();
+                let [low, high] = clustered_interval(&clusters).unwrap();
+                (low..=high).contains(&0.9)
+            })
+            .count() as f64
+            / f64::from(samples);
+        assert!((0.94..0.98).contains(&held), "{held}");
+    }
+
+    #[test]
+    fn signs() {
+        assert!((sign_test(9, 1) - 22.0 / 1024.0).abs() < 1e-15);
+        assert!((sign_test(1, 9) - sign_test(9, 1)).abs() < 1e-15);
+        assert!((sign_test(5, 5) - 1.0).abs() < 1e-15);
+        assert!((sign_test(0, 0) - 1.0).abs() < 1e-15);
+        assert!((sign_test(20, 0) / 2.0_f64.powi(-19) - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn adjusted_for_their_number() {
+        let adjusted = holm(&[0.01, 0.04, 0.03, f64::NAN, 0.5]);
+        for (found, expected) in adjusted.iter().zip([0.04, 0.09, 0.09, f64::NAN, 0.5]) {
+            assert!(found.is_nan() == expected.is_nan());
+            assert!(expected.is_nan() || (found - expected).abs() < 1e-15, "{adjusted:?}");
+        }
+        assert_eq!(holm(&[0.6, 0.7]), [1.0, 1.0]);
+    }
+}
