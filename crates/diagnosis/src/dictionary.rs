@@ -39,6 +39,10 @@ pub(crate) struct Dictionary {
     pub(crate) further: Vec<(Candidate, Vec<f64>, f64)>,
 }
 
+/// Part of a column's length that has to be left after the projection: what calibration and start states imitate to so
+/// many digits cannot be seen in these records, and what is left of it is the linearization's error.
+const INVISIBLE: f64 = 1e-4;
+
 /// What a set of entries would take away.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gain {
@@ -250,7 +254,13 @@ impl Dictionary {
                 .collect();
         }
         let mut columns = matrix(projection.rows(), &all);
+        let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
         projection.apply(&mut columns);
+        for (mut column, raw) in columns.column_iter_mut().zip(raw) {
+            if column.norm() <= INVISIBLE * raw {
+                column.fill(0.0);
+            }
+        }
         let residual: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
         let mut residual = DMatrix::from_vec(residual.len(), 1, residual);
         projection.apply(&mut residual);
