@@ -131,6 +131,15 @@ impl Candidate {
         }
     }
 
+    /// The candidate that it is at one of its own sizes: Stribeck friction without its excess is Coulomb friction. A set
+    /// never holds both.
+    pub(crate) fn generalizes(self) -> Option<Self> {
+        match self {
+            Self::System(SystemEffect::StribeckFriction) => Some(Self::System(SystemEffect::CoulombFriction)),
+            _ => None,
+        }
+    }
+
     /// What it is easily confused with: those are fitted wherever it is.
     pub(crate) fn confused_with(self) -> Vec<Self> {
         let of = |id: &str| Self::ALL.iter().copied().find(|other| other.id() == id);

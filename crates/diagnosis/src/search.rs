@@ -87,6 +87,22 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     own.into_iter().any(|(parameter, value)| parameter.strength && *value <= parameter.lower)
 }
 
+/// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
+fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
+    let special: Vec<(Candidate, Candidate)> =
+        members.iter().filter_map(|(general, _)| Some((*general, general.generalizes()?))).collect();
+    for (general, special) in special {
+        let Some(place) = members.iter().position(|(candidate, _)| *candidate == special) else { continue };
+        let (_, own) = members.remove(place);
+        let target = members.iter_mut().find(|(candidate, _)| *candidate == general);
+        if let (Some((_, values)), Some(size)) = (target, own.first())
+            && let Some(first) = values.first_mut()
+        {
+            *first += size;
+        }
+    }
+}
+
 /// A set and a start for it: what a fit has found, with one candidate left out and others added.
 fn proposal(
     data: &Data,
@@ -105,6 +121,7 @@ fn proposal(
         .filter(|(candidate, _)| Some(*candidate) != without)
         .chain(added.iter().cloned())
         .collect();
+    absorb(&mut members);
     members.sort_by_key(|(candidate, _)| candidate.rank());
     let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
     let hypothesis = base.hypothesis.with(&candidates);
