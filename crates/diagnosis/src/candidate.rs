@@ -269,6 +269,7 @@ mod tests {
         interval: 1.0 / 260.0,
         inertia: 1.0,
         stiffness: 484.0,
+        tolerance: Facts::UNKNOWN_NOISE,
     };
 
     #[test]

@@ -55,11 +55,11 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 16, small: 1e-4, sizes_first: 2 };
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2 };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0 };
     /// For what is reported: half of 1e-8·N is far below what a probability would feel.
-    pub(crate) const FINAL: Self = Self { steps: 30, small: 1e-8, sizes_first: 0 };
+    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0 };
 }
 
 /// What is moved.

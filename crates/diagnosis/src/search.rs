@@ -202,19 +202,41 @@ fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
     fits.into_iter().flatten().collect()
 }
 
-/// Proposals at a fit: what to add, and what a confusion or a swap would put in a member's place.
-fn around(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> Vec<Proposal> {
+/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+const WHITE: f64 = 1.5;
+
+/// Part of the threshold that the linearized gain has to promise at a white residual.
+const PROMISE: f64 = 0.5;
+
+/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
+/// show only once the first is in.
+fn promising(base: &Fit, time: f64, gain: f64, threshold: f64) -> bool {
+    let left = (base.squares - gain).max(f64::MIN_POSITIVE);
+    let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
+    time > WHITE || score > PROMISE * threshold
+}
+
+/// Proposals at a fit: what to add.
+fn around(
+    data: &Data,
+    base: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Vec<Proposal> {
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
     let size = base.hypothesis.candidates.len();
     let ranked = singles(&dictionary);
     if size < breadth.most_effects {
-        for gain in ranked.iter().take(breadth.additions) {
+        let time = base.autocorrelation_time();
+        let worth = |gain: f64| promising(base, time, gain, threshold);
+        for gain in ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares)) {
             proposals.push(proposal(data, base, None, &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
-            if *gain > weakest {
+            if *gain > weakest && worth(*gain) {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -278,13 +300,15 @@ pub(crate) fn search(
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return pool };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
-    for gain in ranked.iter().take(breadth.singles) {
+    let time = calibrated.autocorrelation_time();
+    let worth = |gain: f64| promising(calibrated, time, gain, threshold);
+    for gain in ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares)) {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    for (candidate, parameters, _) in &dictionary.further {
+    for (candidate, parameters, _) in dictionary.further.iter().filter(|further| worth(further.2)) {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }
-    for gain in pairs(&dictionary).iter().take(breadth.pairs) {
+    for gain in pairs(&dictionary).iter().take(breadth.pairs).filter(|gain| worth(gain.squares)) {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
     settle(data, &mut pool, &mut tried, proposals);
@@ -311,7 +335,7 @@ pub(crate) fn search(
             .par_iter()
             .enumerate()
             .map(|(place, base)| {
-                let mut own = around(data, base, candidates, breadth);
+                let mut own = around(data, base, candidates, breadth, threshold);
                 let mut dropped = Vec::new();
                 if place == 0 {
                     let (proposals, without) = swaps(data, base, candidates, breadth);
