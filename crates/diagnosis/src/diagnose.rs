@@ -115,8 +115,6 @@ pub fn diagnose(
     let floor = noise::floor(&data, &repaired.residuals);
     let ceiling = latent::ceiling(&data, repaired)?;
     lap("latent torque");
-    let third =
-        [last_third(&data, &base.calibrated, Moving::All)?, last_third(&data, repaired, Moving::All)?];
     let unit = records.first().map_or("", |record| record.unit);
     let figures = gap(
         &Stages {
@@ -126,7 +124,7 @@ pub fn diagnose(
             ceiling: &ceiling,
         },
         floor,
-        third,
+        held.last_third,
         unit,
         &settings.seed,
     );
@@ -238,6 +236,8 @@ struct Held<'a> {
     nominal: HeldOut,
     recalibrated: HeldOut,
     after: HeldOut,
+    /// Mean squares on the last third, recalibrated and repaired.
+    last_third: [f64; 2],
     repaired: &'a Fit,
 }
 
@@ -280,19 +280,24 @@ impl<'a> Work<'a> {
     fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
         let nominal = interleaved(self.data, &self.base.nominal, Moving::Starts)?;
         let recalibrated = interleaved(self.data, &self.base.calibrated, Moving::All)?;
+        let third = last_third(self.data, &self.base.calibrated, Moving::All)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
         for w in weighed.iter().take(4) {
             if w.fit.hypothesis.candidates.is_empty() {
                 break;
             }
-            let after = interleaved(self.data, w.fit, Moving::All)?;
+            // A set whose motion cannot be followed from parts of the data predicts nothing.
+            let Ok(after) = interleaved(self.data, w.fit, Moving::All) else { continue };
+            let Ok(later) = last_third(self.data, w.fit, Moving::All) else { continue };
             if after.mean_square() < recalibrated.mean_square() {
-                return Ok(Held { nominal, recalibrated, after, repaired: w.fit });
+                let last_third = [third, later];
+                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit });
             }
         }
         let repaired = calibrated
             .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
-        Ok(Held { nominal, after: recalibrated.clone(), recalibrated, repaired })
+        let after = recalibrated.clone();
+        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired })
     }
 
     /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its interval from a
