@@ -17,6 +17,8 @@ mod description;
 mod edges;
 pub mod effects;
 mod error;
+#[cfg(test)]
+mod event_tests;
 mod field;
 #[cfg(test)]
 mod fixtures;
