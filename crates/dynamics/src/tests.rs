@@ -247,6 +247,9 @@ fn the_contact_never_pulls() {
     }
 }
 
+/// Nominal coefficients, an effect, and the words that refuse them.
+type Refused<'a> = ([f64; 4], (&'a str, &'a [f64]), &'a str);
+
 #[test]
 fn impossible_parameters_are_named_with_their_range() {
     let refusal = |nominal: [f64; 4], effects: &[(&str, &[f64])]| {
@@ -260,7 +263,7 @@ fn impossible_parameters_are_named_with_their_range() {
     };
     let plain = [1.0, 0.2, 484.0, 0.0];
     let above = "expected a finite number above 0";
-    let cases: &[([f64; 4], (&str, &[f64]), &str)] = &[
+    let cases: &[Refused<'_>] = &[
         ([-1.0, 0.2, 484.0, 0.0], ("gravity", &[1.0, 0.0]), &format!("nominal `inertia` is -1; {above}")),
         (
             [1.0, 0.2, f64::NAN, 0.0],
