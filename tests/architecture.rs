@@ -9,8 +9,8 @@ use std::process::Command;
 /// the test: somebody has to say where it belongs.
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
-        "record" | "seed" | "settings" => 0,
-        "envelope" => 1,
+        "record" | "seed" | "settings" | "dynamics" => 0,
+        "envelope" | "truth" => 1,
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,
@@ -106,6 +106,31 @@ fn an_estimator_reaches_no_oracle_no_truth_and_no_other_estimator() {
         for other in estimators.iter().filter(|other| *other != estimator) {
             assert!(!reached.contains(*other), "{estimator} reaches {other}");
         }
+    }
+}
+
+/// What generated a record is for those who make records and score answers. Tests count too: a check against
+/// the truth inside an estimator's crate would be a way in.
+#[test]
+fn only_who_makes_or_scores_records_reaches_the_truth() {
+    let packages = packages();
+    let depends_on = |package: &Value, on: &BTreeSet<String>| {
+        package["dependencies"].as_array().unwrap().iter().any(|dependency| on.contains(name(dependency)))
+    };
+    let mut reaching = BTreeSet::from(["truth".to_owned()]);
+    loop {
+        let before = reaching.len();
+        let found = packages.iter().filter(|package| depends_on(package, &reaching));
+        let found: Vec<String> = found.map(|package| name(package).to_owned()).collect();
+        reaching.extend(found);
+        if reaching.len() == before {
+            break;
+        }
+    }
+    assert!(reaching.contains("simulator"), "{reaching:?}");
+    for package in &reaching {
+        let may = ["truth", "simulator", "scoring", "trainer"].contains(&package.as_str());
+        assert!(may, "{package} reaches the truth");
     }
 }
 

@@ -33,6 +33,29 @@ fn refusal(arguments: &[&str]) -> String {
     message
 }
 
+/// Runs a simulation with these overrides and expects a refusal with these words.
+fn not_simulated(arguments: &[&str], expected: &str) {
+    let message = refusal(&[&["simulate", "configs/default-record.toml"], arguments].concat());
+    assert!(message.contains(expected), "no `{expected}` in: {message}");
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused() {
+    not_simulated(&["effects.1.id=columb_friction"], "did you mean `coulomb_friction`?");
+    not_simulated(&["nominal.inertia=-1"], "`nominal.inertia` is -1; expected a finite number from 0 up");
+    not_simulated(&["nominal.damping.from=1e-4"], "expected a number, or a prior");
+    not_simulated(&["sensor.noise=-1"], "`sensor.noise` is -1; expected a finite number from 0 up (rad)");
+    not_simulated(&["effects.4.parameters.step=3"], "`step` is 3, but must be at most");
+    not_simulated(&["effects.5.parameters.interval=0.001"], "a shorter burst holds zero samples");
+    not_simulated(&["effects.9.id=sensor_lag"], "`effects.9.parameters.time_constant` is missing");
+    not_simulated(&["record.seconds=0.03"], "default-record.toml: system 0, record 0: ");
+    not_simulated(&["record.decimals=3"], "unknown key `record.decimals`");
+    let message = refusal(&["simulate", "configs/no-such.toml"]);
+    assert!(message.contains("configs/no-such.toml: cannot be read"), "{message}");
+    let message = refusal(&["simulate", "configs/pinn.toml"]);
+    assert!(message.contains("configs/pinn.toml:"), "{message}");
+}
+
 /// A record of a decaying oscillation, one sample a line.
 fn decay(samples: usize) -> String {
     let mut text = "time_s,angle_rad\n".to_owned();

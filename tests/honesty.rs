@@ -1,5 +1,6 @@
 //! Estimates come from the envelope alone: no oracle and no truth has a way in.
 
+use crate::simulation::simulate;
 use crate::support::{result, root};
 use envelope::{Envelope, PaperPipeline};
 use estimator::{Cancel, FitContext, Silent};
@@ -63,4 +64,21 @@ fn another_truth_behind_the_record_changes_no_bit() {
     std::fs::write(&other, text.replace("# origin: simulated", "# origin: measured")).unwrap();
     std::fs::write(folder.path().join("truth.json"), r#"{"decay_rate": 0.5}"#).unwrap();
     assert_eq!(compared(&other), compared(&record));
+}
+
+/// The same with a record of the program's own making: its sealed truth beside it, then a false one.
+#[test]
+fn a_falsified_seal_behind_a_simulated_record_changes_no_bit() {
+    let (_, folder) = simulate(&["configs/default-record.toml", "seed=5", "record.seconds=20"]);
+    let record = folder.path().join("records/record-000.csv");
+    let before = compared(&record);
+    let truth = folder.path().join("truth/record-000.json");
+    let text = std::fs::read_to_string(&truth).unwrap();
+    let falsified = text.replace("\"damping\": 0.00011", "\"damping\": 0.11");
+    assert_ne!(falsified, text);
+    std::fs::write(&truth, &falsified).unwrap();
+    std::fs::write(folder.path().join("records/truth.json"), &falsified).unwrap();
+    assert_eq!(compared(&record), before);
+    std::fs::remove_dir_all(folder.path().join("truth")).unwrap();
+    assert_eq!(compared(&record), before);
 }

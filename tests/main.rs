@@ -22,4 +22,5 @@ mod nist;
 mod prediction;
 mod recipe;
 mod runs;
+mod simulation;
 mod support;

@@ -11,13 +11,25 @@ use tempfile::NamedTempFile;
 /// A crash before the rename leaves what was there, and perhaps a file named `.tmp…`; after it, the new
 /// content.
 pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), RunError> {
+    put(path, content, File::sync_all)?;
+    sync_folder(path.parent().unwrap_or_else(|| Path::new(".")))
+}
+
+/// As [`write`], without waiting for the disk: a crash of the program leaves a whole file or none, a power cut
+/// may take it. For what a seed gives again; ten thousand flushes take longer than making the files.
+pub(crate) fn write_unflushed(path: &Path, content: &[u8]) -> Result<(), RunError> {
+    put(path, content, |_| Ok(()))
+}
+
+/// Writes to a temporary file in the same folder, flushes it as asked, and renames it into place.
+fn put(path: &Path, content: &[u8], flush: impl Fn(&File) -> std::io::Result<()>) -> Result<(), RunError> {
     let folder = path.parent().unwrap_or_else(|| Path::new("."));
     let mut file = NamedTempFile::new_in(folder).map_err(RunError::io(path, "create"))?;
     file.write_all(content).map_err(RunError::io(path, "write"))?;
     allow_reading(file.as_file()).map_err(RunError::io(path, "set permissions of"))?;
-    file.as_file().sync_all().map_err(RunError::io(path, "flush"))?;
+    flush(file.as_file()).map_err(RunError::io(path, "flush"))?;
     file.persist(path).map_err(|error| RunError::io(path, "rename into place")(error.error))?;
-    sync_folder(folder)
+    Ok(())
 }
 
 /// Makes a rename or a new file in a folder last through a power cut. Folders cannot be opened for that

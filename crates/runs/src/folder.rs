@@ -92,11 +92,25 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Io`] with the file and what was tried.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
+        atomic::write(&self.place(name)?, content)
+    }
+
+    /// As [`RunFolder::write`], for one of very many files that a seed gives again: whole or absent after a crash
+    /// of the program, but not flushed to the disk.
+    ///
+    /// # Errors
+    /// As [`RunFolder::write`].
+    pub fn write_reproducible(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
+        atomic::write_unflushed(&self.place(name)?, content)
+    }
+
+    /// The path of a file of the run, its subfolder made.
+    fn place(&self, name: &str) -> Result<PathBuf, RunError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent() {
             std::fs::create_dir_all(folder).map_err(RunError::io(folder, "create"))?;
         }
-        atomic::write(&path, content)
+        Ok(path)
     }
 
     /// Writes a value as a JSON file, indented, ending in a line break.

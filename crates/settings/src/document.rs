@@ -45,6 +45,8 @@ pub struct Leaf {
 }
 
 /// A configuration as written, overrides included: an ordered list of leaves, each key once.
+///
+/// An array of tables is a table of numbered ones: the second `[[effects]]` is `[effects.2]`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Document {
     file: String,
@@ -133,7 +135,13 @@ impl Document {
         Ok(())
     }
 
+    /// Puts a leaf in place of what it displaces: the leaf of that key, a table of that name with all that is
+    /// below it, or a value where the key now needs a table.
     fn set(&mut self, leaf: Leaf) {
+        let lies_below =
+            |key: &str, table: &str| key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
+        self.leaves.retain(|known| !lies_below(&known.key, &leaf.key) && !lies_below(&leaf.key, &known.key));
+        self.tables.retain(|table| *table != leaf.key && !lies_below(table, &leaf.key));
         match self.leaves.iter_mut().find(|known| known.key == leaf.key) {
             Some(known) => *known = leaf,
             None => self.leaves.push(leaf),
@@ -152,6 +160,12 @@ impl Document {
             if let DeValue::Table(inner) = value.get_ref() {
                 self.tables.push(key.clone());
                 self.collect(text, &key, inner)?;
+            } else if let Some(inner) = tables(value.get_ref()) {
+                for (number, inner) in inner.into_iter().enumerate() {
+                    let key = format!("{key}.{}", number + 1);
+                    self.tables.push(key.clone());
+                    self.collect(text, &key, inner)?;
+                }
             } else {
                 let value = plain(value.get_ref()).map_err(|problem| SettingsError::Syntax {
                     file: self.file.clone(),
@@ -164,6 +178,16 @@ impl Document {
         }
         Ok(())
     }
+}
+
+/// The tables of a list that holds nothing else, and something.
+fn tables<'a, 'i>(value: &'a DeValue<'i>) -> Option<Vec<&'a DeTable<'i>>> {
+    let DeValue::Array(entries) = value else { return None };
+    let inner = entries.iter().map(|entry| match entry.get_ref() {
+        DeValue::Table(inner) => Some(inner),
+        _ => None,
+    });
+    inner.collect::<Option<Vec<_>>>().filter(|tables| !tables.is_empty())
 }
 
 /// A parsed value without its spans. Numbers are decoded here: the parser keeps them as text.

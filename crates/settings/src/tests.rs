@@ -183,3 +183,30 @@ fn a_table_that_the_configuration_names_is_checked_like_any_other() {
     let resolved = Resolved::new(&document, &sections).unwrap();
     assert!(resolved.to_toml().contains("\n[problem.mine]\nduration = 2.0"), "{}", resolved.to_toml());
 }
+
+#[test]
+fn an_array_of_tables_is_a_table_of_numbered_ones() {
+    let text = "[[part]]\nsize = 1\n[[part]]\nsize = 2\ninner = { a = 3 }\n[inline]\nof = [{ x = 1 }]\n";
+    let mut document = Document::parse("a.toml", text).unwrap();
+    document.apply_override("part.2.size=5").unwrap();
+    assert_eq!(document.tables_below("part"), ["1", "2"]);
+    let keys: Vec<&str> = document.leaves().iter().map(|leaf| leaf.key.as_str()).collect();
+    assert_eq!(keys, ["part.1.size", "part.2.size", "part.2.inner.a", "inline.of.1.x"]);
+    assert_eq!(document.get("part.1.size").unwrap().origin.to_string(), "a.toml:2:1");
+    assert_eq!(document.get("part.2.size").unwrap().value, toml::Value::Integer(5));
+    let mixed = Document::parse("a.toml", "list = [1, { x = 1 }]").unwrap_err().to_string();
+    assert!(mixed.contains("a table inside a list"), "{mixed}");
+}
+
+#[test]
+fn an_override_displaces_what_it_contradicts() {
+    let text = "[a]\nb = { from = 1, to = 2 }\nc = 3\n";
+    let keys = |argument: &str| -> Vec<String> {
+        let mut document = Document::parse("a.toml", text).unwrap();
+        document.apply_override(argument).unwrap();
+        document.leaves().iter().map(|leaf| leaf.key.clone()).collect()
+    };
+    assert_eq!(keys("a.b=7"), ["a.c", "a.b"]);
+    assert_eq!(keys("a.c.from=7"), ["a.b.from", "a.b.to", "a.c.from"]);
+    assert_eq!(keys("a.bb=7"), ["a.b.from", "a.b.to", "a.c", "a.bb"]);
+}

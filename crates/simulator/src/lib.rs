@@ -1,5 +1,9 @@
 //! Simulated decays whose truth is known, kept apart from what estimators see.
 //!
+//! A [`Plan`] holds priors of systems, starts and measuring chains, as a configuration states them. Drawing from
+//! it gives records, each with its sealed [`truth::Truth`]; a truth gives its record again to the bit
+//! ([`generate`]).
+//!
 //! A [`DecayLaw`] gives the noise-free turning points of an oscillator ([`EnvelopeTruth`]); drawing scatter
 //! on them gives an [`Envelope`](envelope::Envelope), which is all that an estimator is handed. Nothing
 //! leads from an envelope back to its truth, and no estimator's crate may depend on this one.
@@ -7,12 +11,26 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod decay_law;
+mod draw;
 mod envelope_draw;
 mod error;
+mod generate;
+mod generation_error;
+mod number;
+mod plan;
+mod prior;
+mod schema;
 
 #[cfg(test)]
 mod oscillator;
+#[cfg(test)]
+mod tests;
 
 pub use decay_law::DecayLaw;
+pub use draw::{DrawnSystem, nominal_text};
 pub use envelope_draw::{EnvelopeSimulation, EnvelopeTruth, SMALLEST_IN_SCATTER, Scatter};
 pub use error::SimulationError;
+pub use generate::{MOST_DECIMALS, MOST_SAMPLES, csv_text, generate};
+pub use generation_error::GenerationError;
+pub use plan::Plan;
+pub use prior::Prior;

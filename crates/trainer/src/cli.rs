@@ -18,7 +18,9 @@ Examples:
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
   trainer configs/pinn.toml --json | jq .estimate.zeta
+  trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer list estimators
+  trainer list effects
   trainer report reports/runs/RUN
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
@@ -47,7 +49,7 @@ pub(crate) struct ExperimentArguments {
     /// Overrides the configuration's seed
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// Threads over seeds; results do not depend on it [default: one for each core]
+    /// Threads over seeds or records; results do not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     #[command(flatten)]
@@ -75,6 +77,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
+    /// Makes records of systems drawn from priors, their truths sealed in a folder apart
+    Simulate(ExperimentArguments),
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder
@@ -88,4 +92,6 @@ pub(crate) enum Command {
 pub(crate) enum Listing {
     /// The estimators
     Estimators,
+    /// The effects that a simulator may lack
+    Effects,
 }

@@ -7,7 +7,7 @@ use record::RecordError;
 use report::ReportError;
 use runs::RunError;
 use settings::SettingsError;
-use simulator::SimulationError;
+use simulator::{GenerationError, SimulationError};
 use thiserror::Error;
 
 /// Why a command gave no result.
@@ -44,6 +44,8 @@ pub(crate) enum TrainerError {
     Split { problem: String, peaks: usize, missing: &'static str },
     #[error("predict.methods and predict.problems leave nothing to fit")]
     NothingToFit,
+    #[error("{file}: system {system}, record {record}: {source}")]
+    Generation { file: String, system: usize, record: usize, source: GenerationError },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
@@ -69,6 +71,7 @@ impl TrainerError {
             | Self::Simulation { .. }
             | Self::Split { .. }
             | Self::NothingToFit
+            | Self::Generation { .. }
             | Self::TooManySeeds { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,

@@ -6,11 +6,13 @@ use crate::console;
 use crate::error::TrainerError;
 use crate::method::Method;
 use crate::summary::table;
+use dynamics::{Class, Coordinate, Description, Kind, REGISTRY, Units};
 use serde_json::json;
 
 pub(crate) fn list(what: Listing, output: Output) -> Result<Outcome, TrainerError> {
     match what {
         Listing::Estimators => estimators(output)?,
+        Listing::Effects => effects(output),
     }
     Ok(Outcome::Done)
 }
@@ -48,4 +50,93 @@ fn estimators(output: Output) -> Result<(), TrainerError> {
         .collect();
     console::result(&table(&["name", "no. in the paper", "family", "what it does"], rows));
     Ok(())
+}
+
+fn effects(output: Output) {
+    let descriptions = || REGISTRY.iter().map(|effect| effect.description());
+    if output.json {
+        let rows: Vec<_> = descriptions().map(effect_json).collect();
+        console::result(&json!({ "effects": rows }).to_string());
+        return;
+    }
+    let entries: Vec<String> = descriptions().map(entry).collect();
+    console::result(&entries.join("\n\n"));
+}
+
+/// An effect as a paragraph of short lines: a table of all this is wider than a screen.
+fn entry(effect: &Description) -> String {
+    let mut lines = vec![
+        format!(
+            "{}: {}, in {}, {}",
+            effect.id,
+            effect.title,
+            kind(effect.kind),
+            class_in_words(effect.class)
+        ),
+        format!("  law            {}", effect.equation),
+    ];
+    for parameter in effect.parameters {
+        let (name, symbol, unit) = (parameter.name, parameter.symbol, parameter.quantity.unit(SI));
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+        let (range, meaning) = (parameter.range, parameter.meaning);
+        lines.push(format!("  {name:<14} {symbol}{unit}, {range}: {meaning}"));
+    }
+    lines.push(format!("  tell-tale      {}", effect.tell_tale));
+    if !effect.confused_with.is_empty() {
+        lines.push(format!("  confused with  {}", effect.confused_with.join(", ")));
+    }
+    lines.join("\n")
+}
+
+/// The units that listings show: of an angle, with the inertia known.
+const SI: Units = Units::Si(Coordinate::Angle);
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::System => "the system",
+        Kind::MeasuringChain => "the measuring chain",
+    }
+}
+
+fn class(class: Class) -> &'static str {
+    match class {
+        Class::Dissipative => "dissipative",
+        Class::Conservative => "conservative",
+        Class::TimeDependent => "time_dependent",
+        Class::Sensor => "sensor",
+        Class::Clock => "clock",
+    }
+}
+
+fn class_in_words(of: Class) -> String {
+    class(of).replace('_', "-")
+}
+
+fn effect_json(effect: &Description) -> serde_json::Value {
+    let parameters: Vec<_> = effect
+        .parameters
+        .iter()
+        .map(|parameter| {
+            json!({
+                "name": parameter.name,
+                "symbol": parameter.symbol,
+                "unit": parameter.quantity.unit(SI),
+                "range": parameter.range.to_string(),
+                "meaning": parameter.meaning,
+            })
+        })
+        .collect();
+    json!({
+        "id": effect.id,
+        "title": effect.title,
+        "acts_in": kind(effect.kind),
+        "class": class(effect.class),
+        "equation": effect.equation,
+        "latex": effect.latex,
+        "parameters": parameters,
+        "tell_tale": effect.tell_tale,
+        "confused_with": effect.confused_with,
+        "driven_only": effect.driven_only,
+        "reference": effect.reference,
+    })
 }

@@ -18,6 +18,7 @@ mod predict;
 mod progress;
 mod rerender;
 mod run;
+mod simulate;
 mod summary;
 
 use clap::Parser;
@@ -59,6 +60,7 @@ impl Outcome {
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
         Some(Command::List { what, output }) => list::list(what, output),
+        Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

@@ -11,6 +11,7 @@ use std::sync::Mutex;
 /// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {
     bar: ProgressBar,
+    unit: &'static str,
     counts_steps: bool,
     lines: bool,
 }
@@ -27,7 +28,12 @@ impl Progress {
         Self::new(fits, "fits", false, quiet)
     }
 
-    fn new(length: u64, unit: &str, counts_steps: bool, quiet: bool) -> Self {
+    /// Over the records of a simulation.
+    pub(crate) fn over_records(records: u64, quiet: bool) -> Self {
+        Self::new(records, "records", false, quiet)
+    }
+
+    fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
         if terminal && !quiet {
@@ -37,7 +43,7 @@ impl Progress {
         if let Ok(style) = ProgressStyle::with_template(&template) {
             bar.set_style(style);
         }
-        Self { bar, counts_steps, lines: !terminal && !quiet }
+        Self { bar, unit, counts_steps, lines: !terminal && !quiet }
     }
 
     fn step(&self, step: &Step) {
@@ -66,12 +72,12 @@ impl Progress {
         }
     }
 
-    /// One more of very many fits is done: a line for every tenth part of them.
+    /// One more of very many is done: a line for every tenth part of them.
     pub(crate) fn one_of_many_done(&self) {
         self.bar.inc(1);
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
         if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
-            console::remark(&format!("{done} of {all} fits"));
+            console::remark(&format!("{done} of {all} {}", self.unit));
         }
     }
 

@@ -12,6 +12,7 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::method::Method;
 use crate::predict::predict;
+use crate::simulate::{is_simulation, simulate};
 use estimator::Cancel;
 use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
@@ -22,6 +23,7 @@ use runs::{RunFolder, default_root};
 use serde::Serialize;
 use serde_json::json;
 use settings::Document;
+use simulator::Plan;
 
 /// An experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
@@ -37,6 +39,9 @@ pub(crate) struct Run<'a> {
 pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let document = read_config(arguments)?;
+    if is_simulation(&document) {
+        return simulate(arguments, &Plan::resolve(&document)?, cancel);
+    }
     let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
     if is_prediction(&document) {
         return predict(arguments, &resolve_prediction(&document, ESTIMATORS, &classical)?, cancel);
@@ -111,7 +116,8 @@ impl Output {
     }
 }
 
-fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
+/// Reads the configuration that the arguments name, overrides applied.
+pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {

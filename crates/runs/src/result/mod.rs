@@ -6,6 +6,7 @@
 
 mod comparison;
 mod prediction;
+mod simulation;
 
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use prediction::{
@@ -13,6 +14,7 @@ pub use prediction::{
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
     SplitSummary,
 };
+pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 
 use serde::{Deserialize, Deserializer, Serialize};
 

@@ -1,0 +1,144 @@
+//! An effect with values for its parameters.
+
+use crate::error::DynamicsError;
+use crate::law::{MOST_PARAMETERS, Values};
+use crate::registry::Effect;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// An effect of the registry with values for its parameters, each within its range.
+///
+/// In TOML: `{ id = "coulomb_friction", parameters = { torque = 7e-5 } }`.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Raw", into = "Raw")]
+pub struct Active {
+    effect: Effect,
+    values: Values<f64>,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Raw {
+    id: String,
+    #[serde(default)]
+    parameters: BTreeMap<String, f64>,
+}
+
+impl Active {
+    /// An effect by its public id, with values in the order of its description.
+    ///
+    /// # Errors
+    /// [`DynamicsError::UnknownEffect`], [`DynamicsError::WrongNumberOfValues`], or
+    /// [`DynamicsError::OutOfRange`].
+    pub fn new(id: &str, values: &[f64]) -> Result<Self, DynamicsError> {
+        Self::of(Effect::find(id)?, values)
+    }
+
+    /// An effect with values in the order of its description.
+    ///
+    /// # Errors
+    /// [`DynamicsError::WrongNumberOfValues`] or [`DynamicsError::OutOfRange`].
+    pub fn of(effect: Effect, values: &[f64]) -> Result<Self, DynamicsError> {
+        let description = effect.description();
+        if values.len() != description.parameters.len() {
+            return Err(DynamicsError::WrongNumberOfValues {
+                effect: description.id,
+                expected: description.parameters.len(),
+                found: values.len(),
+            });
+        }
+        let mut own = [0.0; MOST_PARAMETERS];
+        for ((own, &value), parameter) in own.iter_mut().zip(values).zip(description.parameters) {
+            if !parameter.range.contains(value) {
+                return Err(DynamicsError::OutOfRange {
+                    effect: description.id,
+                    parameter: parameter.name,
+                    value,
+                    range: parameter.range,
+                });
+            }
+            *own = value;
+        }
+        Ok(Self { effect, values: own })
+    }
+
+    /// An effect by its public id, with values by name.
+    ///
+    /// # Errors
+    /// [`DynamicsError::UnknownEffect`], [`DynamicsError::UnknownParameter`],
+    /// [`DynamicsError::MissingParameter`], or [`DynamicsError::OutOfRange`].
+    pub fn named(id: &str, parameters: &[(&str, f64)]) -> Result<Self, DynamicsError> {
+        let effect = Effect::find(id)?;
+        let description = effect.description();
+        if let Some((name, _)) =
+            parameters.iter().find(|(name, _)| description.parameter_index(name).is_none())
+        {
+            return Err(DynamicsError::UnknownParameter {
+                effect: description.id,
+                parameter: (*name).to_owned(),
+                known: description.parameters.iter().map(|parameter| parameter.name).collect(),
+            });
+        }
+        let values = description
+            .parameters
+            .iter()
+            .map(|parameter| {
+                parameters.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value).ok_or(
+                    DynamicsError::MissingParameter {
+                        effect: description.id,
+                        parameter: parameter.name,
+                        meaning: parameter.meaning,
+                        range: parameter.range,
+                    },
+                )
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        Self::of(effect, &values)
+    }
+
+    /// The effect.
+    #[must_use]
+    pub fn effect(&self) -> Effect {
+        self.effect
+    }
+
+    /// The public id.
+    #[must_use]
+    pub fn id(&self) -> &'static str {
+        self.effect.id()
+    }
+
+    /// The values, in the order of the description's parameters.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        self.values.get(..self.effect.description().parameters.len()).unwrap_or_default()
+    }
+
+    /// The value of a parameter.
+    #[must_use]
+    pub fn value(&self, parameter: &str) -> Option<f64> {
+        let index = self.effect.description().parameter_index(parameter)?;
+        self.values.get(index).copied()
+    }
+
+    pub(crate) fn all_values(&self) -> Values<f64> {
+        self.values
+    }
+}
+
+impl TryFrom<Raw> for Active {
+    type Error = DynamicsError;
+
+    fn try_from(raw: Raw) -> Result<Self, DynamicsError> {
+        let parameters: Vec<(&str, f64)> =
+            raw.parameters.iter().map(|(name, &value)| (name.as_str(), value)).collect();
+        Self::named(&raw.id, &parameters)
+    }
+}
+
+impl From<Active> for Raw {
+    fn from(active: Active) -> Self {
+        let names = active.effect.description().parameters.iter().map(|parameter| parameter.name.to_owned());
+        Self { id: active.id().to_owned(), parameters: names.zip(active.values().iter().copied()).collect() }
+    }
+}

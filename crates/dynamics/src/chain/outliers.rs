@@ -1,0 +1,62 @@
+//! Isolated wrong samples.
+
+use super::step::{Samples, Step};
+use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::law::Values;
+use crate::units::Quantity;
+use rand::{Rng, RngExt};
+use rand_distr::StandardNormal;
+
+const DESCRIPTION: Description = Description {
+    id: "outliers",
+    title: "Outliers",
+    kind: Kind::MeasuringChain,
+    class: Class::Sensor,
+    equation: "x + s n with probability p, n standard normal",
+    latex: r"x+s\,n\ \text{with probability}\ p,\quad n\sim\mathcal N(0,1)",
+    parameters: &[
+        Parameter {
+            name: "probability",
+            symbol: "p",
+            quantity: Quantity::Ratio,
+            range: Range { minimum: 0.0, maximum: 1.0, closed: true },
+            meaning: "chance of a sample to be wrong, each on its own",
+        },
+        Parameter {
+            name: "size",
+            symbol: "s",
+            quantity: Quantity::Observed,
+            range: Range::POSITIVE,
+            meaning: "standard deviation of a wrong sample's error",
+        },
+    ],
+    tell_tale: "Heavy tails: isolated samples far off, their neighbors right.",
+    confused_with: &[],
+    reference: "Huber, Annals of Mathematical Statistics 35 (1964) 73 (contaminated normal)",
+    driven_only: false,
+    hidden_states: 0,
+    smooth: false,
+};
+
+/// Each sample is wrong with a probability, independent of the others, by a normal error. A sensor with a step
+/// reports wrong readings on its lattice too: see [`crate::chain::Chain::observe`].
+#[derive(Debug, Clone, Copy)]
+pub struct Outliers;
+
+impl Step for Outliers {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+
+    fn distort<R: Rng + ?Sized>(
+        &[probability, size, ..]: &Values<f64>,
+        samples: &mut Samples<f64>,
+        generator: &mut R,
+    ) {
+        for value in &mut samples.values {
+            // Two draws for each sample, so that which are wrong does not depend on the probability's history.
+            let (chance, error): (f64, f64) = (generator.random(), generator.sample(StandardNormal));
+            if chance < probability {
+                *value += size * error;
+            }
+        }
+    }
+}

@@ -1,0 +1,69 @@
+//! A sensor whose range ends.
+
+use super::step::{Extent, Observed, Sampled, SampledMotion, Samples, Step};
+use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::error::DynamicsError;
+use crate::law::Values;
+use crate::units::Quantity;
+
+const DESCRIPTION: Description = Description {
+    id: "sensor_saturation",
+    title: "Sensor saturation",
+    kind: Kind::MeasuringChain,
+    class: Class::Sensor,
+    equation: "x clipped to ±b",
+    latex: r"\min(\max(x,-b),b)",
+    parameters: &[Parameter {
+        name: "bound",
+        symbol: "b",
+        quantity: Quantity::Observed,
+        range: Range::POSITIVE,
+        meaning: "largest reading to either side",
+    }],
+    tell_tale: "Flat tops at exactly one value, only while the amplitude is large.",
+    confused_with: &["end_stop"],
+    reference: "Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (span)",
+    driven_only: false,
+    hidden_states: 0,
+    smooth: false,
+};
+
+/// Readings clipped to ±b. Where it clips, the reading depends on the bound alone.
+#[derive(Debug, Clone, Copy)]
+pub struct SensorSaturation;
+
+impl Step for SensorSaturation {
+    const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const DIFFERENTIABLE: bool = true;
+
+    fn transform<S: Sampled>(
+        &[bound, ..]: &Values<S>,
+        _: &SampledMotion<'_, S>,
+        _: Observed,
+        samples: &mut Samples<S>,
+    ) {
+        for value in &mut samples.values {
+            if value.plain() > bound.plain() {
+                *value = bound;
+            } else if value.plain() < -bound.plain() {
+                *value = -bound;
+            }
+        }
+    }
+
+    fn check(&[bound, ..]: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
+        // Where every value lies beyond the same bound, the reading never changes.
+        let nearest = extent.smallest.max(-extent.largest);
+        if bound > nearest {
+            return Ok(());
+        }
+        Err(DynamicsError::Contradiction {
+            effect: DESCRIPTION.id,
+            parameter: "bound",
+            value: bound,
+            relation: "above",
+            bound: nearest,
+            reason: "the smallest distance of the signal from the sensor's zero: below it every sample is clipped",
+        })
+    }
+}

@@ -1,0 +1,129 @@
+//! What is known about an effect, as data.
+
+use crate::units::Quantity;
+
+/// Where an effect acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// In the system: it changes the motion.
+    System,
+    /// In the measuring chain: it changes what the file says about the motion.
+    MeasuringChain,
+}
+
+/// The part of a gap budget that an effect belongs to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Class {
+    /// Takes energy out of the motion; depends on its direction.
+    Dissipative,
+    /// Stores energy and gives it back; depends on position.
+    Conservative,
+    /// Depends on time: drifts, forcing, the input's path.
+    TimeDependent,
+    /// Distorts the values.
+    Sensor,
+    /// Distorts the times.
+    Clock,
+}
+
+/// The values that a parameter may take.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Range {
+    /// Lower end.
+    pub minimum: f64,
+    /// Upper end.
+    pub maximum: f64,
+    /// Whether the ends themselves are admitted.
+    pub closed: bool,
+}
+
+impl Range {
+    /// Any finite number.
+    pub const ANY: Self = Self { minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, closed: false };
+    /// Above 0.
+    pub const POSITIVE: Self = Self { minimum: 0.0, maximum: f64::INFINITY, closed: false };
+    /// 0 or above.
+    pub const NON_NEGATIVE: Self = Self { minimum: 0.0, maximum: f64::INFINITY, closed: true };
+    /// Any finite angle up to a full turn either way.
+    pub const TURN: Self =
+        Self { minimum: -std::f64::consts::TAU, maximum: std::f64::consts::TAU, closed: true };
+
+    /// Whether a finite value lies inside.
+    #[must_use]
+    pub fn contains(&self, value: f64) -> bool {
+        let inside = if self.closed {
+            value >= self.minimum && value <= self.maximum
+        } else {
+            value > self.minimum && value < self.maximum
+        };
+        inside && value.is_finite()
+    }
+}
+
+impl std::fmt::Display for Range {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match (self.minimum.is_finite(), self.maximum.is_finite(), self.closed) {
+            (false, false, _) => f.write_str("a finite number"),
+            (true, false, true) => write!(f, "a finite number of {} or above", self.minimum),
+            (true, false, false) => write!(f, "a finite number above {}", self.minimum),
+            (false, true, true) => write!(f, "a finite number of {} or below", self.maximum),
+            (false, true, false) => write!(f, "a finite number below {}", self.maximum),
+            (true, true, true) => write!(f, "from {} to {}", self.minimum, self.maximum),
+            (true, true, false) => write!(f, "between {} and {}", self.minimum, self.maximum),
+        }
+    }
+}
+
+/// One parameter of an effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parameter {
+    /// Name in configurations and results, such as `torque`.
+    pub name: &'static str,
+    /// Symbol in equations, such as `τ_c`.
+    pub symbol: &'static str,
+    /// What it measures; the unit follows from the system's units.
+    pub quantity: Quantity,
+    /// Physically admissible values.
+    pub range: Range,
+    /// What it means, a phrase.
+    pub meaning: &'static str,
+}
+
+/// What is known about an effect. The same for everybody: simulator, diagnosis, documents, listings.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Description {
+    /// The public id, such as `coulomb_friction`.
+    pub id: &'static str,
+    /// A title for tables.
+    pub title: &'static str,
+    /// Where it acts.
+    pub kind: Kind,
+    /// Its part of a gap budget.
+    pub class: Class,
+    /// What it adds, as plain text.
+    pub equation: &'static str,
+    /// The same in LaTeX.
+    pub latex: &'static str,
+    /// Its parameters, in the order in which values are given; at most [`crate::MOST_PARAMETERS`].
+    pub parameters: &'static [Parameter],
+    /// How it shows in a free decay (or under drive).
+    pub tell_tale: &'static str,
+    /// Ids of effects that it is easily confused with when the data are poor.
+    pub confused_with: &'static [&'static str],
+    /// The literature.
+    pub reference: &'static str,
+    /// Whether it acts only where there is an input.
+    pub driven_only: bool,
+    /// Number of hidden state variables that it brings.
+    pub hidden_states: usize,
+    /// Whether its law has a continuous derivative everywhere: no switching.
+    pub smooth: bool,
+}
+
+impl Description {
+    /// The position of a parameter in the order of values.
+    #[must_use]
+    pub fn parameter_index(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|parameter| parameter.name == name)
+    }
+}

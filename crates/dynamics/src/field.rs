@@ -1,0 +1,140 @@
+//! The vector field: what all forces together do to a state, on one smooth piece.
+
+use crate::law::{Hidden, MOST_HIDDEN, Moment, Values};
+use crate::nominal::Coefficients;
+use crate::registry::SystemEffect;
+use crate::scalar::Scalar;
+
+/// Most hidden state variables of a system: those of all effects of the registry together.
+pub const SYSTEM_HIDDEN: usize = 4;
+
+/// Most effects in one system: each of the registry once.
+pub(crate) const MOST_EFFECTS: usize = SystemEffect::ALL.len();
+
+/// One smooth piece: direction of motion and the region of each effect.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Mode {
+    /// 1 or −1; 0 while the system sticks.
+    pub(crate) direction: f64,
+    pub(crate) regions: [i8; MOST_EFFECTS],
+}
+
+impl Mode {
+    pub(crate) fn sticks(&self) -> bool {
+        self.direction == 0.0
+    }
+}
+
+/// State, time and input at one moment.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct State<S> {
+    pub(crate) time: S,
+    pub(crate) position: S,
+    pub(crate) velocity: S,
+    pub(crate) hidden: [S; SYSTEM_HIDDEN],
+    /// Torque of the input after gain and delay.
+    pub(crate) input: S,
+}
+
+/// One effect of a system.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Term<S> {
+    pub(crate) effect: SystemEffect,
+    pub(crate) values: Values<S>,
+    /// Where its hidden state begins.
+    pub(crate) hidden: usize,
+}
+
+/// A system as an evaluable field over any scalar.
+#[derive(Debug, Clone)]
+pub(crate) struct Field<S> {
+    pub(crate) nominal: Coefficients<S>,
+    pub(crate) terms: Vec<Term<S>>,
+}
+
+impl<S: Scalar> Term<S> {
+    /// What the effect sees.
+    #[inline]
+    pub(crate) fn moment(
+        &self,
+        nominal: &Coefficients<S>,
+        state: &State<S>,
+        direction: f64,
+        region: i8,
+    ) -> Moment<S> {
+        let mut hidden = [S::from(0.0); MOST_HIDDEN];
+        for (own, all) in hidden.iter_mut().zip(state.hidden.iter().skip(self.hidden)) {
+            *own = *all;
+        }
+        Moment {
+            time: state.time,
+            position: state.position,
+            velocity: state.velocity,
+            input: state.input,
+            hidden,
+            nominal: *nominal,
+            direction,
+            region,
+        }
+    }
+}
+
+impl<S: Scalar> Field<S> {
+    /// Every effect with what it sees.
+    #[inline]
+    pub(crate) fn moments(
+        &self,
+        state: &State<S>,
+        mode: &Mode,
+    ) -> impl Iterator<Item = (&Term<S>, Moment<S>)> {
+        self.terms.iter().zip(mode.regions).map(|(term, region)| {
+            let moment = term.moment(&self.nominal, state, mode.direction, region);
+            (term, moment)
+        })
+    }
+
+    /// The nominal damping's torque −c·θ̇.
+    #[inline]
+    pub(crate) fn damping(&self, state: &State<S>) -> S {
+        -self.nominal.damping * state.velocity
+    }
+
+    /// The nominal spring's torque −k·(θ − θ_rest).
+    #[inline]
+    pub(crate) fn spring(&self, state: &State<S>) -> S {
+        -self.nominal.stiffness * (state.position - self.nominal.rest_angle)
+    }
+
+    /// All torques together, in a mode that may stick: dry friction then gives none.
+    #[inline]
+    pub(crate) fn torque(&self, state: &State<S>, mode: &Mode) -> S {
+        let nominal = self.spring(state) + self.damping(state) + state.input;
+        self.moments(state, mode)
+            .fold(nominal, |sum, (term, moment)| sum + term.effect.torque(&term.values, &moment))
+    }
+
+    /// The torque up to which dry friction holds; `None` where there is none.
+    pub(crate) fn holding_torque(&self) -> Option<S> {
+        let holding = self.terms.iter().filter_map(|term| term.effect.holding_torque(&term.values));
+        holding.reduce(|sum, torque| sum + torque)
+    }
+
+    /// Acceleration and the rates of the hidden state; no acceleration while it sticks.
+    #[inline]
+    pub(crate) fn rates(&self, state: &State<S>, mode: &Mode) -> (S, [S; SYSTEM_HIDDEN]) {
+        let acceleration =
+            if mode.sticks() { S::from(0.0) } else { self.torque(state, mode) / self.nominal.inertia };
+        let mut rates = [S::from(0.0); SYSTEM_HIDDEN];
+        for (term, moment) in self.moments(state, mode) {
+            let states = term.effect.description().hidden_states;
+            if states == 0 {
+                continue;
+            }
+            let own: Hidden<S> = term.effect.hidden_rate(&term.values, &moment);
+            for (rate, own) in rates.iter_mut().skip(term.hidden).zip(own).take(states) {
+                *rate = own;
+            }
+        }
+        (acceleration, rates)
+    }
+}

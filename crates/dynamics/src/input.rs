@@ -1,0 +1,109 @@
+//! The measured input.
+
+use crate::error::DynamicsError;
+use serde::{Deserialize, Serialize};
+
+/// What the input does between its samples.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Hold {
+    /// It keeps the last value, as a digital controller's output does.
+    #[default]
+    Zero,
+    /// It goes straight to the next value.
+    Linear,
+}
+
+/// A measured input: values at times, and what happens in between. Before the first time it has the first
+/// value, after the last the last.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Input {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    hold: Hold,
+}
+
+/// The input on one piece: `value` at time `from`, changing by `slope` per second until `until`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Piece {
+    pub(crate) from: f64,
+    pub(crate) value: f64,
+    pub(crate) slope: f64,
+    pub(crate) until: f64,
+}
+
+impl Piece {
+    pub(crate) fn at(&self, time: f64) -> f64 {
+        if self.slope == 0.0 { self.value } else { self.value + self.slope * (time - self.from) }
+    }
+}
+
+impl Input {
+    /// An input from its samples; times in seconds, values in the unit that the nominal `input_gain` turns
+    /// into a torque.
+    ///
+    /// # Errors
+    /// [`DynamicsError::BadInput`] unless there is at least one sample, as many values as times, all
+    /// finite, and the times strictly increase.
+    pub fn new(times: Vec<f64>, values: Vec<f64>, hold: Hold) -> Result<Self, DynamicsError> {
+        let bad = |what, index, value, remedy| Err(DynamicsError::BadInput { what, index, value, remedy });
+        if times.is_empty() || times.len() != values.len() {
+            return bad(
+                "number of values",
+                values.len(),
+                times.len() as f64,
+                "give one value for each time, at least one",
+            );
+        }
+        if let Some((index, &value)) = values.iter().enumerate().find(|(_, value)| !value.is_finite()) {
+            return bad("value", index, value, "values must be finite");
+        }
+        if let Some((index, &time)) = times.iter().enumerate().find(|(_, time)| !time.is_finite()) {
+            return bad("time", index, time, "times must be finite");
+        }
+        let pairs = times.iter().zip(times.iter().skip(1));
+        if let Some((index, (_, &time))) = pairs.enumerate().find(|(_, (before, after))| after <= before) {
+            return bad("time", index + 1, time, "times must strictly increase");
+        }
+        Ok(Self { times, values, hold })
+    }
+
+    /// Sample times in seconds.
+    #[must_use]
+    pub fn times(&self) -> &[f64] {
+        &self.times
+    }
+
+    /// Sample values.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// What happens between samples.
+    #[must_use]
+    pub fn hold(&self) -> Hold {
+        self.hold
+    }
+
+    /// The piece that begins at sample `index − 1` and ends at sample `index`; 0 is the piece before the first.
+    pub(crate) fn piece(&self, index: usize) -> Piece {
+        let at = |list: &[f64], index: usize| list.get(index).copied();
+        let until = at(&self.times, index).unwrap_or(f64::INFINITY);
+        let Some(from) = index.checked_sub(1).and_then(|before| at(&self.times, before)) else {
+            let value = at(&self.values, 0).unwrap_or(0.0);
+            return Piece { from: f64::NEG_INFINITY, value, slope: 0.0, until };
+        };
+        let value = at(&self.values, index - 1).unwrap_or(0.0);
+        let slope = match (self.hold, at(&self.values, index)) {
+            (Hold::Linear, Some(next)) => (next - value) / (until - from),
+            _ => 0.0,
+        };
+        Piece { from, value, slope, until }
+    }
+
+    /// Index of the piece that holds just after a time.
+    pub(crate) fn piece_index(&self, time: f64) -> usize {
+        self.times.partition_point(|&knot| knot <= time)
+    }
+}

@@ -1,0 +1,113 @@
+//! Samples and energy accounts along the steps.
+
+use super::gauss::{Gauss, integrals};
+use super::motion::{Account, Motion, Worker};
+use super::step::{MOST_STAGES, Step, state};
+use crate::field::{Field, MOST_EFFECTS, Mode};
+use crate::system::Drive;
+
+/// Accounts: damping, input, effects.
+const MOST_ACCOUNTS: usize = MOST_EFFECTS + 2;
+
+/// Fills a motion while steps are made.
+#[derive(Debug)]
+pub(crate) struct Recorder {
+    pub(crate) motion: Motion,
+    /// Next of the times asked for.
+    next: usize,
+    /// Work at the beginning of the present step.
+    work: [f64; MOST_ACCOUNTS],
+    /// Legendre series of the powers of the present step.
+    series: [[f64; MOST_ACCOUNTS]; MOST_STAGES],
+}
+
+impl Recorder {
+    pub(crate) fn new(field: &Field<f64>, samples: usize) -> Self {
+        let workers = [Worker::Damping, Worker::Input].into_iter();
+        let effects = field.terms.iter().map(|term| Worker::Effect(term.effect.description().id));
+        let accounts = workers
+            .chain(effects)
+            .map(|worker| Account { worker, work: Vec::with_capacity(samples) })
+            .collect();
+        let motion = Motion {
+            position: Vec::with_capacity(samples),
+            velocity: Vec::with_capacity(samples),
+            acceleration: Vec::with_capacity(samples),
+            accounts,
+            ..Motion::default()
+        };
+        Self { motion, next: 0, work: [0.0; MOST_ACCOUNTS], series: [[0.0; MOST_ACCOUNTS]; MOST_STAGES] }
+    }
+
+    /// Whether every time asked for is recorded.
+    pub(crate) fn complete(&self, times: &[f64]) -> bool {
+        self.next >= times.len()
+    }
+
+    /// Records the times up to the end of an accepted step.
+    pub(crate) fn step(
+        &mut self,
+        gauss: &Gauss,
+        field: &Field<f64>,
+        mode: &Mode,
+        drive: &Drive<'_>,
+        step: &Step,
+        times: &[f64],
+    ) {
+        self.powers(gauss, field, mode, drive, step);
+        let end = step.from + step.size;
+        let mut basis = [0.0; MOST_STAGES];
+        while let Some(&time) = times.get(self.next).filter(|&&time| time <= end) {
+            let tau = if step.size > 0.0 { ((time - step.from) / step.size).clamp(0.0, 1.0) } else { 0.0 };
+            integrals(tau, basis.get_mut(..gauss.stages()).unwrap_or_default());
+            let vector = step.with_basis(&basis);
+            let state = state(time, &vector, drive.torque(time));
+            let (acceleration, _) = field.rates(&state, mode);
+            self.motion.position.push(state.position);
+            self.motion.velocity.push(state.velocity);
+            self.motion.acceleration.push(acceleration);
+            for (number, account) in self.motion.accounts.iter_mut().enumerate() {
+                let work = work(&self.series, &basis, number) * step.size;
+                account.work.push(self.work.get(number).unwrap_or(&0.0) + work);
+            }
+            self.next += 1;
+        }
+        integrals(1.0, basis.get_mut(..gauss.stages()).unwrap_or_default());
+        for (number, total) in self.work.iter_mut().enumerate() {
+            *total += work(&self.series, &basis, number) * step.size;
+        }
+    }
+
+    fn powers(&mut self, gauss: &Gauss, field: &Field<f64>, mode: &Mode, drive: &Drive<'_>, step: &Step) {
+        for coefficients in &mut self.series {
+            coefficients.fill(0.0);
+        }
+        if mode.sticks() {
+            return;
+        }
+        for (stage, (node, vector)) in gauss.nodes.iter().zip(&step.stages).enumerate() {
+            let time = step.from + node * step.size;
+            let state = state(time, vector, drive.torque(time));
+            let nominal = [field.damping(&state), state.input].into_iter();
+            let effects =
+                field.moments(&state, mode).map(|(term, moment)| term.effect.torque(&term.values, &moment));
+            let mut powers = [0.0; MOST_ACCOUNTS];
+            for (power, torque) in powers.iter_mut().zip(nominal.chain(effects)) {
+                *power = torque * state.velocity;
+            }
+            for (row, coefficients) in gauss.analysis.iter().zip(&mut self.series) {
+                let weight = row.get(stage).copied().unwrap_or(0.0);
+                for (coefficient, power) in
+                    coefficients.iter_mut().zip(powers).take(self.motion.accounts.len())
+                {
+                    *coefficient += weight * power;
+                }
+            }
+        }
+    }
+}
+
+fn work(series: &[[f64; MOST_ACCOUNTS]; MOST_STAGES], basis: &[f64; MOST_STAGES], number: usize) -> f64 {
+    let coefficients = series.iter().filter_map(|coefficients| coefficients.get(number));
+    coefficients.zip(basis).map(|(coefficient, basis)| coefficient * basis).sum()
+}

@@ -1,0 +1,241 @@
+//! The effects there are, one line each.
+//!
+//! Everybody who needs to know what effects exist reads [`REGISTRY`]: simulator, diagnosis, documents. An
+//! effect in the system is a file under `effects/`, one in the measuring chain a file under `chain/`; either
+//! takes a line in `registry!`.
+
+use crate::chain::{self, Extent, Observed, Sampled, SampledMotion, Samples, Step};
+use crate::description::Description;
+use crate::effects;
+use crate::error::DynamicsError;
+use crate::law::{Hidden, Law, Margins, Moment, Values};
+use crate::nominal::Nominal;
+use crate::scalar::Scalar;
+use rand::Rng;
+
+/// Makes the enumeration of effects and hands every question to the effect's own law, at compile time.
+macro_rules! system_effects {
+    ($($name:ident,)+) => {
+        /// An effect that acts in the system.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum SystemEffect {
+            $(#[doc = concat!("See [`effects::", stringify!($name), "`].")] $name,)+
+        }
+
+        impl SystemEffect {
+            /// Every effect that acts in the system.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)+];
+
+            /// What is known about it.
+            #[must_use]
+            pub const fn description(self) -> &'static Description {
+                match self { $(Self::$name => effects::$name::DESCRIPTION,)+ }
+            }
+
+            /// As [`Law::DIRECTED`].
+            #[must_use]
+            pub const fn directed(self) -> bool {
+                match self { $(Self::$name => effects::$name::DIRECTED,)+ }
+            }
+
+            /// As [`Law::torque`].
+            #[inline]
+            pub fn torque<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> S {
+                match self { $(Self::$name => effects::$name::torque(values, moment),)+ }
+            }
+
+            /// As [`Law::hidden_rate`].
+            #[inline]
+            pub fn hidden_rate<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> Hidden<S> {
+                match self { $(Self::$name => effects::$name::hidden_rate(values, moment),)+ }
+            }
+
+            /// As [`Law::relaxed`].
+            pub fn relaxed<S: Scalar>(self, position: S, velocity: S) -> Hidden<S> {
+                match self { $(Self::$name => effects::$name::relaxed(position, velocity),)+ }
+            }
+
+            /// As [`Law::holding_torque`].
+            pub fn holding_torque<S: Scalar>(self, values: &Values<S>) -> Option<S> {
+                match self { $(Self::$name => effects::$name::holding_torque(values),)+ }
+            }
+
+            /// As [`Law::input_delay`].
+            pub fn input_delay<S: Scalar>(self, values: &Values<S>) -> Option<S> {
+                match self { $(Self::$name => effects::$name::input_delay(values),)+ }
+            }
+
+            /// As [`Law::region`].
+            pub fn region(self, values: &Values<f64>, moment: &Moment<f64>) -> i8 {
+                match self { $(Self::$name => effects::$name::region(values, moment),)+ }
+            }
+
+            /// As [`Law::margins`].
+            #[inline]
+            pub fn margins<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> Margins<S> {
+                match self { $(Self::$name => effects::$name::margins(values, moment),)+ }
+            }
+
+            /// As [`Law::beyond`].
+            pub fn beyond(self, region: i8, edge: usize) -> i8 {
+                match self { $(Self::$name => effects::$name::beyond(region, edge),)+ }
+            }
+
+            /// As [`Law::settle`].
+            pub fn settle(self, region: i8, direction: f64, hidden: Hidden<f64>) -> Hidden<f64> {
+                match self { $(Self::$name => effects::$name::settle(region, direction, hidden),)+ }
+            }
+
+            /// As [`Law::check`].
+            ///
+            /// # Errors
+            /// As [`Law::check`].
+            pub fn check(self, values: &Values<f64>, nominal: &Nominal) -> Result<(), DynamicsError> {
+                match self { $(Self::$name => effects::$name::check(values, nominal),)+ }
+            }
+        }
+    };
+}
+
+/// The same for the measuring chain.
+macro_rules! chain_effects {
+    ($($name:ident,)+) => {
+        /// An effect in the measuring chain.
+        #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+        pub enum ChainEffect {
+            $(#[doc = concat!("See [`chain::", stringify!($name), "`].")] $name,)+
+        }
+
+        impl ChainEffect {
+            /// Every effect in the measuring chain, in the order in which they act.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)+];
+
+            /// What is known about it.
+            #[must_use]
+            pub const fn description(self) -> &'static Description {
+                match self { $(Self::$name => chain::$name::DESCRIPTION,)+ }
+            }
+
+            /// As [`Step::DIFFERENTIABLE`].
+            #[must_use]
+            pub const fn is_differentiable(self) -> bool {
+                match self { $(Self::$name => chain::$name::DIFFERENTIABLE,)+ }
+            }
+
+            /// As [`Step::transform`].
+            pub fn transform<S: Sampled>(
+                self,
+                values: &Values<S>,
+                motion: &SampledMotion<'_, S>,
+                observed: Observed,
+                samples: &mut Samples<S>,
+            ) {
+                match self { $(Self::$name => chain::$name::transform(values, motion, observed, samples),)+ }
+            }
+
+            /// As [`Step::distort`].
+            pub fn distort<R: Rng + ?Sized>(
+                self,
+                values: &Values<f64>,
+                samples: &mut Samples<f64>,
+                generator: &mut R,
+            ) {
+                match self { $(Self::$name => chain::$name::distort(values, samples, generator),)+ }
+            }
+
+            /// As [`Step::check`].
+            ///
+            /// # Errors
+            /// As [`Step::check`].
+            pub fn check(self, values: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
+                match self { $(Self::$name => chain::$name::check(values, extent),)+ }
+            }
+        }
+    };
+}
+
+macro_rules! registry {
+    (system { $($system:ident,)+ } measuring_chain { $($chain:ident,)+ }) => {
+        system_effects! { $($system,)+ }
+        chain_effects! { $($chain,)+ }
+
+        /// Every effect of the vocabulary: those in the system in the order of the documents, then those in the
+        /// measuring chain in the order in which they act.
+        pub static REGISTRY: &[Effect] = &[
+            $(Effect::System(SystemEffect::$system),)+
+            $(Effect::MeasuringChain(ChainEffect::$chain),)+
+        ];
+    };
+}
+
+registry! {
+    system {
+    CoulombFriction,
+    StribeckFriction,
+    QuadraticDrag,
+    CubicStiffness,
+    AsymmetricStiffness,
+    Gravity,
+    ConstantTorque,
+    Backlash,
+    Hysteresis,
+    EndStop,
+    StiffnessDrift,
+    DampingDrift,
+    PeriodicForcing,
+    FlexibleCoupling,
+    InputDelay,
+    InputSaturation,
+    }
+    measuring_chain {
+    SensorLag,
+    SensorNonlinearity,
+    SensorDrift,
+    SensorSaturation,
+    SensorQuantization,
+    Outliers,
+    Dropouts,
+    ClockDrift,
+    TimestampJitter,
+    TimestampBatching,
+    }
+}
+
+/// An effect of the registry, by where it acts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Effect {
+    /// In the system: it changes the motion.
+    System(SystemEffect),
+    /// In the measuring chain: it changes what a file says of the motion.
+    MeasuringChain(ChainEffect),
+}
+
+impl Effect {
+    /// What is known about it.
+    #[must_use]
+    pub const fn description(self) -> &'static Description {
+        match self {
+            Self::System(effect) => effect.description(),
+            Self::MeasuringChain(effect) => effect.description(),
+        }
+    }
+
+    /// The public id.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        self.description().id
+    }
+
+    /// The effect with a public id.
+    ///
+    /// # Errors
+    /// [`DynamicsError::UnknownEffect`] where there is none.
+    pub fn find(id: &str) -> Result<Self, DynamicsError> {
+        REGISTRY.iter().copied().find(|effect| effect.id() == id).ok_or_else(|| {
+            DynamicsError::UnknownEffect {
+                id: id.to_owned(),
+                known: REGISTRY.iter().map(|effect| effect.id()).collect(),
+            }
+        })
+    }
+}

@@ -1,0 +1,55 @@
+//! Numbers that a force law can be evaluated on.
+//!
+//! A law is written once, over any [`Scalar`]: doubles give the force, [`Dual`] numbers its exact
+//! derivatives, and expressions (inside [`crate::sensitivity`]) its Taylor series. No second, hand-written
+//! derivative exists that could disagree with the law.
+
+#[cfg(test)]
+mod complex;
+mod dual;
+
+#[cfg(test)]
+pub(crate) use complex::Complex;
+pub use dual::Dual;
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A commutative field with the elementary functions that force laws use.
+pub trait Scalar:
+    Copy
+    + From<f64>
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+{
+    /// Sine of an angle in radians.
+    #[must_use]
+    fn sin(self) -> Self;
+
+    /// Cosine of an angle in radians.
+    #[must_use]
+    fn cos(self) -> Self;
+
+    /// The exponential.
+    #[must_use]
+    fn exp(self) -> Self;
+}
+
+impl Scalar for f64 {
+    fn sin(self) -> Self {
+        self.sin()
+    }
+
+    fn cos(self) -> Self {
+        self.cos()
+    }
+
+    fn exp(self) -> Self {
+        self.exp()
+    }
+}

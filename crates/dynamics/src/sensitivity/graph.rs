@@ -1,0 +1,300 @@
+//! A field written down: the graph of its operations.
+
+use super::adjoint::Adjoint;
+use super::expression::{Expression, Operation, Recorder};
+use super::program::Program;
+use super::series::{LENGTH, Series, first};
+use crate::edges::Edge;
+use crate::field::{Field, Mode, SYSTEM_HIDDEN, State, Term};
+use crate::law::MOST_PARAMETERS;
+use crate::nominal::Coefficients;
+
+/// Numbers of the leaves: time, state, raw input, nominal coefficients, then [`MOST_PARAMETERS`] for each
+/// effect.
+pub(crate) const TIME: usize = 0;
+/// Position and velocity, then the hidden state.
+pub(crate) const STATE: usize = 1;
+/// State variables of a system.
+pub(crate) const MOST_STATES: usize = 2 + SYSTEM_HIDDEN;
+/// The input before gain.
+pub(crate) const INPUT: usize = STATE + MOST_STATES;
+/// Inertia, damping, stiffness, rest angle, input gain.
+pub(crate) const NOMINAL: usize = INPUT + 1;
+/// Parameters of the first effect.
+pub(crate) const EFFECTS: usize = NOMINAL + 5;
+
+/// A node of the graph.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Node {
+    pub(crate) operation: Operation,
+    /// Depends on parameters only.
+    pub(crate) constant: bool,
+    /// Depends on the state, or on a parameter that is free.
+    pub(crate) wanted: bool,
+    /// A result depends on it.
+    used: bool,
+    /// Its series is needed by itself: as a result, in a nonlinear operation, or in a derivative.
+    kept: bool,
+}
+
+/// The field of one mode, written down: rates of the state and margins of the edges.
+#[derive(Debug, Clone)]
+pub(crate) struct Graph {
+    pub(super) nodes: Vec<Node>,
+    program: Program,
+    /// Leaf number to node.
+    leaves: Vec<Option<usize>>,
+    /// The node of each state variable's rate.
+    pub(crate) rates: Vec<usize>,
+    pub(crate) edges: Vec<(Edge, usize)>,
+    pub(super) series: Vec<Series>,
+    pub(super) adjoints: Vec<Adjoint>,
+}
+
+impl Node {
+    /// Whether its series has to be computed, once constants are known.
+    pub(crate) fn varies(&self) -> bool {
+        self.used && !self.constant
+    }
+
+    /// Whether its series is needed by itself.
+    pub(crate) fn is_kept(&self) -> bool {
+        self.kept
+    }
+}
+
+impl Graph {
+    /// Writes down the field of a mode. `free` tells which leaves derivatives are wanted for, besides the
+    /// state; `states` is the number of state variables.
+    pub(crate) fn record(
+        field: &Field<f64>,
+        directed: bool,
+        mode: &Mode,
+        states: usize,
+        free: &dyn Fn(usize) -> bool,
+    ) -> Self {
+        let recorder = Recorder::default();
+        let leaf = |number| recorder.leaf(number);
+        let nominal = Coefficients {
+            inertia: leaf(NOMINAL),
+            damping: leaf(NOMINAL + 1),
+            stiffness: leaf(NOMINAL + 2),
+            rest_angle: leaf(NOMINAL + 3),
+            input_gain: leaf(NOMINAL + 4),
+        };
+        let terms = field.terms.iter().enumerate().map(|(number, term)| Term {
+            effect: term.effect,
+            values: std::array::from_fn(|index| leaf(EFFECTS + number * MOST_PARAMETERS + index)),
+            hidden: term.hidden,
+        });
+        let written: Field<Expression<'_>> = Field { nominal, terms: terms.collect() };
+        let position = leaf(STATE);
+        let velocity = if mode.sticks() { Expression::Constant(0.0) } else { leaf(STATE + 1) };
+        let state = State {
+            time: leaf(TIME),
+            position,
+            velocity,
+            hidden: std::array::from_fn(|index| leaf(STATE + 2 + index)),
+            input: nominal.input_gain * leaf(INPUT),
+        };
+        let (acceleration, hidden) = written.rates(&state, mode);
+        let rates: Vec<usize> = [velocity, acceleration]
+            .into_iter()
+            .chain(hidden)
+            .take(states)
+            .map(|rate| recorder.number(rate))
+            .collect();
+        let mut edges = Vec::new();
+        written.edges(directed, &state, mode, |edge, margin| edges.push((edge, recorder.number(margin))));
+        drop(written);
+        Self::assemble(recorder.into_operations(), rates, edges, states, free)
+    }
+
+    fn assemble(
+        operations: Vec<Operation>,
+        rates: Vec<usize>,
+        edges: Vec<(Edge, usize)>,
+        states: usize,
+        free: &dyn Fn(usize) -> bool,
+    ) -> Self {
+        let mut nodes: Vec<Node> = Vec::with_capacity(operations.len());
+        for operation in operations {
+            let (constant, wanted) = match operation {
+                Operation::Leaf(leaf) => {
+                    (leaf >= NOMINAL, (STATE..STATE + states).contains(&leaf) || free(leaf))
+                }
+                other => {
+                    let of =
+                        |number: usize| nodes.get(number).map_or((true, false), |n| (n.constant, n.wanted));
+                    let (first, second) = operands(other);
+                    let (first, second) = (of(first), second.map_or((true, false), of));
+                    (first.0 && second.0, first.1 || second.1)
+                }
+            };
+            nodes.push(Node { operation, constant, wanted, used: false, kept: false });
+        }
+        let mut pending: Vec<usize> = rates.iter().copied().chain(edges.iter().map(|edge| edge.1)).collect();
+        while let Some(number) = pending.pop() {
+            let Some(node) = nodes.get_mut(number).filter(|node| !node.used) else { continue };
+            node.used = true;
+            match node.operation {
+                Operation::Leaf(_) => {}
+                operation => {
+                    let (first, second) = operands(operation);
+                    pending.extend([first].into_iter().chain(second));
+                    // Sine and cosine need each other's series.
+                    match operation {
+                        Operation::Sine(_) => pending.push(number + 1),
+                        Operation::Cosine(_) => pending.extend(number.checked_sub(1)),
+                        _ => {}
+                    }
+                }
+            }
+        }
+        keep(&mut nodes, rates.iter().copied().chain(edges.iter().map(|edge| edge.1)));
+        let mut leaves = Vec::new();
+        for (number, node) in nodes.iter().enumerate() {
+            if let Operation::Leaf(leaf) = node.operation {
+                if leaves.len() <= leaf {
+                    leaves.resize(leaf + 1, None);
+                }
+                if let Some(slot) = leaves.get_mut(leaf) {
+                    *slot = Some(number);
+                }
+            }
+        }
+        Self {
+            series: vec![[0.0; LENGTH]; nodes.len()],
+            adjoints: vec![Adjoint::NONE; nodes.len()],
+            nodes,
+            program: Program::default(),
+            leaves,
+            rates,
+            edges,
+        }
+    }
+
+    pub(super) fn leaf_node(&self, leaf: usize) -> Option<usize> {
+        self.leaves.get(leaf).copied().flatten()
+    }
+
+    /// Sets the lowest coefficients of a leaf's series and clears the rest.
+    pub(crate) fn set_leaf(&mut self, leaf: usize, value: f64, slope: f64) {
+        if let Some(series) = self.leaf_node(leaf).and_then(|node| self.series.get_mut(node)) {
+            *series = [0.0; LENGTH];
+            let [first, second, ..] = series;
+            (*first, *second) = (value, slope);
+        }
+    }
+
+    /// Sets one coefficient of a state variable.
+    #[inline]
+    pub(crate) fn set_state(&mut self, variable: usize, degree: usize, value: f64) {
+        let series = self.leaf_node(STATE + variable).and_then(|node| self.series.get_mut(node));
+        if let Some(coefficient) = series.and_then(|series| series.get_mut(degree)) {
+            *coefficient = value;
+        }
+    }
+
+    /// Computes what depends on parameters only, and from that the program for the rest. The leaves of the
+    /// parameters have to be set.
+    pub(crate) fn prepare(&mut self) {
+        for (number, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.constant) {
+            let of = |operand: usize| self.series.get(operand).map_or(0.0, first);
+            let value = match node.operation {
+                Operation::Leaf(_) => continue,
+                Operation::Add(a, b) => of(a) + of(b),
+                Operation::Subtract(a, b) => of(a) - of(b),
+                Operation::Multiply(a, b) => of(a) * of(b),
+                Operation::Divide(a, b) => of(a) / of(b),
+                Operation::Scale(a, factor) => of(a) * factor,
+                Operation::Offset(a, summand) => of(a) + summand,
+                Operation::Sine(a) => of(a).sin(),
+                Operation::Cosine(a) => of(a).cos(),
+                Operation::Exponential(a) => of(a).exp(),
+            };
+            if let Some([slot, ..]) = self.series.get_mut(number) {
+                *slot = value;
+            }
+        }
+        self.program = Program::compile(&self.nodes, &self.series);
+    }
+
+    /// Computes coefficient `degree` of every node that is needed, from lower ones and those of the leaves.
+    #[inline]
+    pub(crate) fn extend(&mut self, degree: usize) {
+        self.program.extend(&mut self.series, degree);
+    }
+
+    /// A node's series.
+    #[inline]
+    pub(crate) fn series(&self, number: usize) -> &Series {
+        const ZERO: &Series = &[0.0; LENGTH];
+        self.series.get(number).unwrap_or(ZERO)
+    }
+
+    /// One coefficient of a node's series.
+    #[inline]
+    pub(crate) fn coefficient(&self, number: usize, degree: usize) -> f64 {
+        self.series(number).get(degree).copied().unwrap_or(0.0)
+    }
+
+    /// The state variable that a node simply is, if so.
+    pub(crate) fn link(&self, number: usize) -> Option<usize> {
+        match self.nodes.get(number)?.operation {
+            Operation::Leaf(leaf) if (STATE..INPUT).contains(&leaf) => Some(leaf - STATE),
+            _ => None,
+        }
+    }
+}
+
+/// Marks the nodes whose series are needed by themselves.
+fn keep(nodes: &mut [Node], results: impl Iterator<Item = usize>) {
+    let mut kept: Vec<usize> = results.collect();
+    let of = |number: usize| nodes.get(number).map_or((true, false), |node| (node.constant, node.wanted));
+    for (number, node) in nodes.iter().enumerate().filter(|(_, node)| node.used && !node.constant) {
+        match node.operation {
+            Operation::Multiply(a, b) => {
+                // With a constant factor it is linear, but the factor's derivative is the other's series.
+                let ((a_constant, a_wanted), (b_constant, b_wanted)) = (of(a), of(b));
+                if (a_constant && a_wanted) || !(a_constant || b_constant) {
+                    kept.push(b);
+                }
+                if (b_constant && b_wanted) || !(a_constant || b_constant) {
+                    kept.push(a);
+                }
+            }
+            Operation::Divide(a, b) => {
+                let (constant, wanted) = of(b);
+                kept.extend([a, b].into_iter().filter(|_| !constant));
+                kept.extend([number].into_iter().filter(|_| wanted));
+            }
+            Operation::Sine(a) | Operation::Cosine(a) | Operation::Exponential(a) => kept.push(a),
+            Operation::Leaf(_)
+            | Operation::Add(..)
+            | Operation::Subtract(..)
+            | Operation::Scale(..)
+            | Operation::Offset(..) => {}
+        }
+    }
+    for number in kept {
+        if let Some(node) = nodes.get_mut(number) {
+            node.kept = true;
+        }
+    }
+}
+
+fn operands(operation: Operation) -> (usize, Option<usize>) {
+    match operation {
+        Operation::Add(a, b)
+        | Operation::Subtract(a, b)
+        | Operation::Multiply(a, b)
+        | Operation::Divide(a, b) => (a, Some(b)),
+        Operation::Leaf(a)
+        | Operation::Scale(a, _)
+        | Operation::Offset(a, _)
+        | Operation::Sine(a)
+        | Operation::Cosine(a)
+        | Operation::Exponential(a) => (a, None),
+    }
+}

@@ -1,0 +1,47 @@
+//! Motions with exact sensitivities, fast enough for fitting.
+//!
+//! The state is advanced by its Taylor series, of a degree around thirteen and over a large part of a period
+//! at a time; samples are read off the series, however many fall into a step. The law is the one of the
+//! effects' own files, written down once a mode as a graph of operations, whose series follow from the recurrences for
+//! products, quotients, sines and exponentials. One sweep backward through the graph gives the series of all
+//! partial derivatives; with them the variational equation
+//!
+//!   δÿ = (∂f/∂y)·δy + ∂f/∂p
+//!
+//! is solved in series as well, for all columns at once. At an event the step ends on the edge; the columns jump
+//! by the saltation matrix δy⁺ = δy⁻ + (f⁻ − f⁺)·δt, which is zero wherever the force is continuous. While stuck the
+//! velocity and its columns are exactly zero.
+//!
+//! # Why series and not an exponential integrator
+//! An integrator of order 4 with one step a sample (260 Hz, 3.5 Hz) leaves 3e-6 rad when the nonlinear part is
+//! 5 % of the spring, more when gravity is all of it. The series costs about the same, reaches rounding, does not
+//! care how large the perturbation is, and does not tie the step to the sampling.
+//!
+//! # At kinks
+//! The motion is not differentiable in a start velocity at exactly zero velocity with dry friction, nor where an
+//! edge is only touched; the derivative given is that of the side on which the motion goes on.
+//!
+//! # Reference
+//! Jorba, Zou, Experimental Mathematics 14 (2005) 99 (Taylor method, choice of the step); Leine, Nijmeijer,
+//! Dynamics and Bifurcations of Non-Smooth Mechanical Systems, Springer 2004, section 7.3 (saltation matrix).
+
+mod adjoint;
+mod columns;
+mod crossing;
+mod expression;
+mod free;
+mod graph;
+mod march;
+mod model;
+mod program;
+mod response;
+mod saltation;
+mod series;
+mod step_size;
+
+pub use free::Free;
+pub use model::{Model, Settings};
+pub use response::{FullState, Response};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,219 @@
+//! A system with free quantities, ready to be run many times.
+
+use super::columns::{Columns, Coupling};
+use super::free::{Free, Place, place};
+use super::graph::{EFFECTS, Graph, MOST_STATES, NOMINAL};
+use super::march::March;
+use super::response::{FullState, Response};
+use super::series::LENGTH;
+use crate::description::Range;
+use crate::error::DynamicsError;
+use crate::field::{Field, Mode};
+use crate::input::Input;
+use crate::law::MOST_PARAMETERS;
+use crate::system::System;
+use serde::{Deserialize, Serialize};
+
+/// How a model is run.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Settings {
+    /// Error of a step relative to the largest position, velocity and hidden state so far.
+    pub tolerance: f64,
+    /// Degree of the Taylor series, 2 to 19.
+    pub degree: usize,
+    /// Whether velocities and their sensitivities are wanted at the samples.
+    pub velocity: bool,
+    /// Whether accelerations and their sensitivities are wanted at the samples.
+    pub acceleration: bool,
+    /// Most steps before [`DynamicsError::TooManySteps`].
+    pub most_steps: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { tolerance: 1e-10, degree: 14, velocity: false, acceleration: false, most_steps: 1_000_000 }
+    }
+}
+
+/// A system with free quantities. What a run needs is kept: later runs allocate nothing.
+#[derive(Debug, Clone)]
+pub struct Model {
+    pub(super) field: Field<f64>,
+    pub(super) directed: bool,
+    pub(super) delay: f64,
+    pub(super) free: Vec<Place>,
+    pub(super) states: usize,
+    pub(super) settings: Settings,
+    /// The field of each mode met so far.
+    pub(super) graphs: Vec<Piece>,
+    pub(super) columns: Columns,
+    pub(super) couplings: Vec<Coupling>,
+    pub(super) shifts: Vec<f64>,
+}
+
+/// The written-down field of one mode.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    pub(super) mode: Mode,
+    pub(super) graph: Graph,
+    /// Whether its parameters are those of the field.
+    pub(super) current: bool,
+}
+
+impl Model {
+    /// A system with free quantities, in the order of the columns; there may be none.
+    ///
+    /// # Errors
+    /// [`DynamicsError::NotFree`] where a free quantity is not the system's, or named twice.
+    pub fn new(system: &System, free: &[Free], settings: Settings) -> Result<Self, DynamicsError> {
+        let mut places = Vec::with_capacity(free.len());
+        for (index, quantity) in free.iter().enumerate() {
+            if free.iter().take(index).any(|other| other == quantity) {
+                let parameter = format!("{quantity:?}");
+                return Err(DynamicsError::NotFree { parameter, reason: "it is named twice" });
+            }
+            places.push(place(system, *quantity)?);
+        }
+        let field = system.field();
+        let states = 2 + system.hidden_states();
+        let degree = settings.degree.clamp(2, LENGTH - 1);
+        Ok(Self {
+            directed: field.directed(),
+            delay: system.input_delay(),
+            states,
+            settings: Settings { degree, ..settings },
+            graphs: Vec::new(),
+            columns: Columns::new(places.len(), states),
+            couplings: Vec::with_capacity(MOST_STATES * MOST_STATES),
+            shifts: vec![0.0; places.len()],
+            free: places,
+            field,
+        })
+    }
+
+    /// Number of columns.
+    #[must_use]
+    pub fn columns(&self) -> usize {
+        self.free.len()
+    }
+
+    /// Gives the free parameters new values: one for each free quantity that is no start value, in order.
+    ///
+    /// Values outside a parameter's physical range are taken: a fit that ends there has found something.
+    ///
+    /// # Errors
+    /// [`DynamicsError::WrongNumberOfValues`]; [`DynamicsError::NominalOutOfRange`] for an inertia that is not
+    /// above 0 or a value that is not finite.
+    pub fn set(&mut self, values: &[f64]) -> Result<(), DynamicsError> {
+        let leaf = |place: &Place| match place {
+            Place::Leaf(leaf) | Place::Delay(leaf) => Some(*leaf),
+            Place::Start(_) => None,
+        };
+        let leaves: Vec<usize> = self.free.iter().filter_map(leaf).collect();
+        if leaves.len() != values.len() {
+            return Err(DynamicsError::WrongNumberOfValues {
+                effect: "model",
+                expected: leaves.len(),
+                found: values.len(),
+            });
+        }
+        for (&leaf, &value) in leaves.iter().zip(values) {
+            let range = if leaf == NOMINAL { Range::POSITIVE } else { Range::ANY };
+            if !range.contains(value) {
+                let parameter = if leaf == NOMINAL { "inertia" } else { "free parameter" };
+                return Err(DynamicsError::NominalOutOfRange { parameter, value, range });
+            }
+        }
+        for (&leaf, &value) in leaves.iter().zip(values) {
+            if let Some(slot) = self.parameter(leaf) {
+                *slot = value;
+            }
+        }
+        let delay = self.field.terms.iter().find_map(|term| term.effect.input_delay(&term.values));
+        self.delay = delay.unwrap_or(0.0);
+        for piece in &mut self.graphs {
+            piece.current = false;
+        }
+        Ok(())
+    }
+
+    /// The motion at `times` from a start at the first of them, with its sensitivities.
+    ///
+    /// `times` in seconds, never decreasing; they may be uneven and are also the time that drifts, forcing and
+    /// input count in. A column of a start value whose hidden states are relaxed includes their moving along.
+    ///
+    /// # Errors
+    /// [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::Diverged`],
+    /// [`DynamicsError::StepTooSmall`] and [`DynamicsError::TooManySteps`].
+    pub fn run_into(
+        &mut self,
+        start: FullState,
+        input: Option<&Input>,
+        times: &[f64],
+        response: &mut Response,
+    ) -> Result<(), DynamicsError> {
+        crate::times::check(times)?;
+        crate::Start { position: start.position, velocity: start.velocity }.check()?;
+        if let Some(&value) = start.hidden.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(DynamicsError::BadStart { what: "hidden state", value });
+        }
+        March::new(self, start, input, times, response).run()
+    }
+
+    /// As [`Self::run_into`], into new buffers.
+    ///
+    /// # Errors
+    /// As [`Self::run_into`].
+    pub fn run(
+        &mut self,
+        start: FullState,
+        input: Option<&Input>,
+        times: &[f64],
+    ) -> Result<Response, DynamicsError> {
+        let mut response = Response::default();
+        self.run_into(start, input, times, &mut response)?;
+        Ok(response)
+    }
+
+    fn parameter(&mut self, leaf: usize) -> Option<&mut f64> {
+        let nominal = &mut self.field.nominal;
+        match leaf.checked_sub(NOMINAL)? {
+            0 => Some(&mut nominal.inertia),
+            1 => Some(&mut nominal.damping),
+            2 => Some(&mut nominal.stiffness),
+            3 => Some(&mut nominal.rest_angle),
+            4 => Some(&mut nominal.input_gain),
+            _ => {
+                let index = leaf - EFFECTS;
+                let term = self.field.terms.get_mut(index / MOST_PARAMETERS)?;
+                term.values.get_mut(index % MOST_PARAMETERS)
+            }
+        }
+    }
+
+    /// Number of the piece with the field of a mode, written down when first met.
+    pub(super) fn piece(&mut self, mode: &Mode) -> usize {
+        let known = self.graphs.iter().position(|piece| piece.mode == *mode);
+        let number = known.unwrap_or_else(|| {
+            let free = &self.free;
+            let wanted = |leaf: usize| free.iter().any(|place| place.influences(leaf));
+            let graph = Graph::record(&self.field, self.directed, mode, self.states, &wanted);
+            self.graphs.push(Piece { mode: *mode, graph, current: false });
+            self.graphs.len() - 1
+        });
+        let field = &self.field;
+        if let Some(piece) = self.graphs.get_mut(number).filter(|piece| !piece.current) {
+            let nominal = &field.nominal;
+            let coefficients =
+                [nominal.inertia, nominal.damping, nominal.stiffness, nominal.rest_angle, nominal.input_gain];
+            let effects = field.terms.iter().flat_map(|term| term.values);
+            for (index, value) in coefficients.into_iter().chain(effects).enumerate() {
+                piece.graph.set_leaf(NOMINAL + index, value, 0.0);
+            }
+            piece.graph.prepare();
+            piece.current = true;
+        }
+        number
+    }
+}

@@ -1,0 +1,67 @@
+//! Truncated Taylor series.
+
+/// Coefficients in a series; the highest degree is one less.
+pub(crate) const LENGTH: usize = 20;
+
+/// A Taylor series in the time since the step began.
+pub(crate) type Series = [f64; LENGTH];
+
+/// The coefficient of degree 0.
+#[inline]
+pub(crate) fn first(series: &Series) -> f64 {
+    let [first, ..] = series;
+    *first
+}
+
+/// Coefficient `degree` of a product.
+#[inline]
+pub(crate) fn convolve(a: &Series, b: &Series, degree: usize) -> f64 {
+    dot_reversed(a.get(..=degree).unwrap_or_default(), b.get(..=degree).unwrap_or_default())
+}
+
+/// Σ aᵢ·b₋ᵢ of two lists of one length, the second read backward. Two sums side by side: one alone would wait for
+/// itself.
+#[inline]
+pub(crate) fn dot_reversed(a: &[f64], b: &[f64]) -> f64 {
+    let (mut even, mut odd) = (0.0, 0.0);
+    for (a, b) in a.chunks_exact(2).zip(b.rchunks_exact(2)) {
+        if let ([a, next], [before, b]) = (a, b) {
+            even += a * b;
+            odd += next * before;
+        }
+    }
+    match (a.chunks_exact(2).remainder(), b) {
+        ([last], [first, ..]) => even + odd + last * first,
+        _ => even + odd,
+    }
+}
+
+/// The value of a series at a time after the step began.
+#[inline]
+pub(crate) fn value(series: &[f64], time: f64) -> f64 {
+    series.iter().rev().fold(0.0, |sum, coefficient| sum * time + coefficient)
+}
+
+/// The time derivative of a series at a time after the step began.
+#[inline]
+pub(crate) fn slope(series: &[f64], time: f64) -> f64 {
+    let terms = series.iter().enumerate().skip(1).rev();
+    terms.fold(0.0, |sum, (power, coefficient)| sum * time + coefficient * power as f64)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LENGTH, convolve, slope, value};
+
+    #[test]
+    fn products_values_and_slopes_are_the_polynomials() {
+        let a: [f64; LENGTH] = std::array::from_fn(|i| 1.0 / (1.0 + i as f64));
+        let b: [f64; LENGTH] = std::array::from_fn(|i| (i as f64 * 0.7).cos());
+        for degree in 0..LENGTH {
+            let expected: f64 = (0..=degree).map(|i| a[i] * b[degree - i]).sum();
+            assert!((convolve(&a, &b, degree) - expected).abs() < 1e-14);
+        }
+        assert_eq!(value(&[3.0, -2.0, 0.5], 2.0), 1.0);
+        assert_eq!(slope(&[3.0, -2.0, 0.5], 2.0), 0.0);
+    }
+}

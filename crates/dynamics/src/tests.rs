@@ -1,0 +1,288 @@
+//! The registry against the vocabulary, and every law against what its description says.
+
+use crate::scalar::{Complex, Dual, Scalar};
+use crate::{
+    Active, Class, Coefficients, Kind, MOST_HIDDEN, Moment, Nominal, REGISTRY, Start, System, SystemEffect,
+    Values,
+};
+use std::collections::BTreeSet;
+
+/// The public vocabulary: those in the system, then those in the measuring chain.
+const VOCABULARY: [&[&str]; 2] = [
+    &[
+        "coulomb_friction",
+        "stribeck_friction",
+        "quadratic_drag",
+        "cubic_stiffness",
+        "asymmetric_stiffness",
+        "gravity",
+        "constant_torque",
+        "backlash",
+        "hysteresis",
+        "end_stop",
+        "stiffness_drift",
+        "damping_drift",
+        "periodic_forcing",
+        "flexible_coupling",
+        "input_delay",
+        "input_saturation",
+    ],
+    &[
+        "sensor_quantization",
+        "sensor_saturation",
+        "sensor_lag",
+        "sensor_nonlinearity",
+        "sensor_drift",
+        "timestamp_batching",
+        "timestamp_jitter",
+        "clock_drift",
+        "dropouts",
+        "outliers",
+    ],
+];
+
+#[test]
+fn the_ids_in_the_system_are_the_vocabularys() {
+    let of_kind = |kind| REGISTRY.iter().filter(move |effect| effect.description().kind == kind);
+    let ids: Vec<&str> = of_kind(Kind::System).map(|effect| effect.id()).collect();
+    assert_eq!(ids, VOCABULARY[0]);
+    for effect in of_kind(Kind::MeasuringChain) {
+        assert!(VOCABULARY[1].contains(&effect.id()));
+    }
+    let unique: BTreeSet<&str> = REGISTRY.iter().map(|effect| effect.id()).collect();
+    assert_eq!(unique.len(), REGISTRY.len());
+}
+
+#[test]
+fn descriptions_are_complete() {
+    for effect in REGISTRY {
+        let description = effect.description();
+        let id = description.id;
+        for text in [
+            description.title,
+            description.equation,
+            description.latex,
+            description.tell_tale,
+            description.reference,
+        ] {
+            assert!(!text.is_empty(), "{id}");
+        }
+        assert!(!description.parameters.is_empty() && description.parameters.len() <= crate::MOST_PARAMETERS);
+        let names: BTreeSet<&str> = description.parameters.iter().map(|parameter| parameter.name).collect();
+        assert_eq!(names.len(), description.parameters.len(), "{id}");
+        for parameter in description.parameters {
+            assert!(!parameter.symbol.is_empty() && !parameter.meaning.is_empty(), "{id}");
+        }
+        for other in description.confused_with {
+            assert!(VOCABULARY.iter().any(|ids| ids.contains(other)), "{id}: {other}");
+            assert_ne!(*other, id);
+        }
+        assert!(description.hidden_states <= MOST_HIDDEN, "{id}");
+    }
+    let hidden: usize = SystemEffect::ALL.iter().map(|effect| effect.description().hidden_states).sum();
+    assert!(hidden <= crate::SYSTEM_HIDDEN);
+}
+
+fn values(effect: SystemEffect) -> Values<f64> {
+    match effect {
+        SystemEffect::StribeckFriction => [0.4, 0.9, 1.1, 0.0],
+        SystemEffect::EndStop => [0.3, 50.0, 0.2, 0.0],
+        _ => [0.7, 0.9, 1.3, 0.0],
+    }
+}
+
+/// A moment with one of its eleven variables shifted.
+fn moment<S: Scalar>(position: f64, velocity: f64, region: i8, shift: S, which: usize) -> Moment<S> {
+    let number = |index: usize, value: f64| {
+        let value = S::from(value);
+        if index == which { value + shift } else { value }
+    };
+    Moment {
+        time: number(0, 2.3),
+        position: number(1, position),
+        velocity: number(2, velocity),
+        input: number(3, 1.7),
+        hidden: [number(4, 0.3), number(5, -0.8)],
+        nominal: Coefficients {
+            inertia: number(6, 1.4),
+            damping: number(7, 0.6),
+            stiffness: number(8, 5.0),
+            rest_angle: number(9, 0.1),
+            input_gain: number(10, 1.0),
+        },
+        direction: if velocity < 0.0 { -1.0 } else { 1.0 },
+        region,
+    }
+}
+
+const NONE: usize = usize::MAX;
+
+#[test]
+fn duals_agree_with_the_complex_step_in_every_law() {
+    const STEP: f64 = 1e-40;
+    fn evaluate<S: Scalar>(effect: SystemEffect, state: (f64, f64, i8), shift: S, which: usize) -> [S; 3] {
+        let mut own = values(effect).map(S::from);
+        if let Some(value) = which.checked_sub(11).and_then(|index| own.get_mut(index)) {
+            *value = *value + shift;
+        }
+        let at = moment(state.0, state.1, state.2, shift, which);
+        let [first, second] = effect.hidden_rate(&own, &at);
+        [effect.torque(&own, &at), first, second]
+    }
+    for &effect in SystemEffect::ALL {
+        for region in -3..=3 {
+            for (position, velocity) in [(0.5, 0.8), (-0.6, -1.2)] {
+                for which in 0..15 {
+                    let state = (position, velocity, region);
+                    let complex = evaluate(effect, state, Complex { re: 0.0, im: STEP }, which);
+                    let dual = evaluate(effect, state, Dual::<1>::variable(0.0, 0), which);
+                    for (complex, dual) in complex.iter().zip(dual) {
+                        let derivative = complex.im / STEP;
+                        let error = (derivative - dual.partials[0]).abs();
+                        assert!(error <= 1e-13 * (1.0 + derivative.abs()), "{effect:?} {which}");
+                        assert!((complex.re - dual.value).abs() <= 1e-14 * (1.0 + dual.value.abs()));
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn dissipative_laws_take_energy_out_whatever_the_state() {
+    let dissipative = |effect: &&SystemEffect| effect.description().class == Class::Dissipative;
+    assert_eq!(SystemEffect::ALL.iter().filter(dissipative).count(), 4);
+    for effect in SystemEffect::ALL.iter().filter(dissipative) {
+        let own = values(*effect);
+        for velocity in [-3.0, -0.2, 0.2, 3.0] {
+            let mut at = moment(0.5, velocity, 0, 0.0, NONE);
+            // A contact that slides; what it stores while bending comes back.
+            at.hidden = [velocity.signum(), 0.0];
+            let power = effect.torque(&own, &at) * velocity;
+            assert!(power < 0.0, "{effect:?} at {velocity}: {power}");
+        }
+    }
+}
+
+#[test]
+fn the_signs_are_those_of_the_equations() {
+    use SystemEffect::{
+        AsymmetricStiffness, Backlash, ConstantTorque, CoulombFriction, CubicStiffness, DampingDrift,
+        EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation, PeriodicForcing,
+        QuadraticDrag, StiffnessDrift, StribeckFriction,
+    };
+    let at = moment(0.5, 0.8, 0, 0.0, NONE);
+    // Depth beyond the stop at 0.3.
+    let depth = 0.2;
+    let expected = [
+        (CoulombFriction, 0, -0.7),
+        (StribeckFriction, 0, -0.4),
+        (StribeckFriction, 1, -(0.4 + 0.5 * (-(0.8 / 1.1_f64).powi(2)).exp())),
+        (QuadraticDrag, 0, -0.7 * 0.8 * 0.8),
+        (CubicStiffness, 0, -0.7 * 0.4_f64.powi(3)),
+        (AsymmetricStiffness, 0, -0.7 * 0.4_f64.powi(2)),
+        (Gravity, 0, -0.7 * 1.4_f64.sin()),
+        (ConstantTorque, 0, 0.7),
+        (Backlash, 0, 5.0 * 0.4),
+        (Backlash, 1, 5.0 * 0.7),
+        (Backlash, -1, -5.0 * 0.7),
+        (Hysteresis, 0, -0.7 * 0.3),
+        (EndStop, 1, 0.0),
+        (EndStop, 2, -50.0 * depth * (1.0 + 0.2 * 0.8)),
+        (EndStop, 3, 0.0),
+        (StiffnessDrift, 0, -5.0 * 0.7 * 2.3 * 0.4),
+        (DampingDrift, 0, -0.6 * 0.7 * 2.3 * 0.8),
+        (PeriodicForcing, 0, 0.7 * (0.9 * 2.3 + 1.3_f64).sin()),
+        (FlexibleCoupling, 0, 0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)),
+        (InputDelay, 0, 0.0),
+        (InputSaturation, 0, 0.0),
+        (InputSaturation, 1, 0.7 - 1.7),
+        (InputSaturation, -1, -0.7 - 1.7),
+    ];
+    for &effect in SystemEffect::ALL {
+        assert!(expected.iter().any(|(other, ..)| *other == effect));
+    }
+    for (effect, region, expected) in expected {
+        let found = effect.torque(&values(effect), &Moment { region, ..at });
+        assert!((found - expected).abs() < 1e-14, "{effect:?} {region}: {found}, not {expected}");
+    }
+    let [rate, _] = Hysteresis.hidden_rate(&values(Hysteresis), &at);
+    assert!((rate - (0.8 - 0.8 * 0.3) / 0.9).abs() < 1e-14);
+    let [velocity, acceleration] = FlexibleCoupling.hidden_rate(&values(FlexibleCoupling), &at);
+    let expected = -(0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)) / 0.7;
+    assert!(velocity == -0.8 && (acceleration - expected).abs() < 1e-14);
+}
+
+#[test]
+fn a_region_has_positive_margins_in_its_inside() {
+    for &effect in SystemEffect::ALL {
+        let own = values(effect);
+        for position in [-1.4, -0.3, 0.05, 0.25, 0.5, 1.5] {
+            for velocity in [-8.0, -0.3, 0.4, 9.0] {
+                let mut at = moment(position, velocity, 0, 0.0, NONE);
+                at.region = effect.region(&own, &at);
+                for (edge, margin) in effect.margins(&own, &at).into_iter().enumerate() {
+                    let Some(margin) = margin else { continue };
+                    assert!(margin > 0.0, "{effect:?} {position} {velocity}: {margin}");
+                    assert_ne!(effect.beyond(at.region, edge), at.region, "{effect:?}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn the_contact_never_pulls() {
+    let effect = SystemEffect::EndStop;
+    for stop in [0.3, -0.2] {
+        let own = [stop, 50.0, 0.2, 0.0];
+        for position in [-1.0, -0.21, 0.0, 0.31, 0.9] {
+            for velocity in [-40.0, -4.0, 0.0, 4.0, 40.0] {
+                let mut at = moment(position, velocity, 0, 0.0, NONE);
+                at.region = effect.region(&own, &at);
+                let push = -effect.torque(&own, &at) * (stop - 0.1_f64).signum();
+                assert!(push >= 0.0, "{stop} {position} {velocity}: {push}");
+            }
+        }
+    }
+}
+
+/// Nominal coefficients, an effect, and the words that refuse them.
+type Refused<'a> = ([f64; 4], (&'a str, &'a [f64]), &'a str);
+
+#[test]
+fn impossible_parameters_are_named_with_their_range() {
+    let refusal = |nominal: [f64; 4], effects: &[(&str, &[f64])]| {
+        let [inertia, damping, stiffness, rest_angle] = nominal;
+        let system = Nominal::new(inertia, damping, stiffness, rest_angle).and_then(|nominal| {
+            let effects = effects.iter().map(|(id, values)| Active::new(id, values));
+            System::new(nominal, effects.collect::<Result<_, _>>()?)
+        });
+        let released = system.and_then(|system| system.check_release(Start::release(0.3)));
+        released.unwrap_err().to_string()
+    };
+    let plain = [1.0, 0.2, 484.0, 0.0];
+    let above = "expected a finite number above 0";
+    let cases: &[Refused<'_>] = &[
+        ([-1.0, 0.2, 484.0, 0.0], ("gravity", &[1.0, 0.0]), &format!("nominal `inertia` is -1; {above}")),
+        (
+            [1.0, 0.2, f64::NAN, 0.0],
+            ("gravity", &[1.0, 0.0]),
+            "nominal `stiffness` is NaN; expected a finite",
+        ),
+        (plain, ("periodic_forcing", &[1.0, 0.0, 0.0]), &format!("`frequency` is 0; {above}")),
+        (plain, ("coulomb_friction", &[-0.1]), "`torque` is -0.1; expected a finite number"),
+        (plain, ("stribeck_friction", &[0.5, 0.4, 1.0]), "`static_torque` is 0.4, but must be at least 0.5"),
+        (plain, ("backlash", &[0.31]), "the dead zone of `backlash`, ±0.31, is wider than the release, 0.3"),
+        (plain, ("end_stop", &[0.0, 1e4, 0.1]), "`angle` is 0, but must be above or below 0"),
+        (plain, ("sensor_lag", &[0.1]), "`sensor_lag` belongs to the measuring chain"),
+        (plain, ("gravity", &[1.0]), "`gravity` takes 2 values, not 1"),
+        (plain, ("columb_friction", &[1.0]), "unknown effect `columb_friction`; known are coulomb_friction"),
+    ];
+    for (nominal, effect, expected) in cases {
+        let message = refusal(*nominal, &[*effect]);
+        assert!(message.contains(expected), "no `{expected}` in: {message}");
+    }
+    let twice = refusal(plain, &[("coulomb_friction", &[0.1]), ("coulomb_friction", &[0.2])]);
+    assert_eq!(twice, "`coulomb_friction` is given twice; add its parameters up in one");
+}

@@ -1,0 +1,15 @@
+//! Checks on lists of times.
+
+use crate::error::DynamicsError;
+
+/// Refuses times that are not finite or decrease.
+pub(crate) fn check(times: &[f64]) -> Result<(), DynamicsError> {
+    let mut before = f64::NEG_INFINITY;
+    for (index, &value) in times.iter().enumerate() {
+        if !value.is_finite() || value < before {
+            return Err(DynamicsError::BadTimes { index, value });
+        }
+        before = value;
+    }
+    Ok(())
+}

@@ -1,0 +1,114 @@
+//! Units of what a system is made of.
+
+use serde::{Deserialize, Serialize};
+
+/// What the coordinate of a system is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Coordinate {
+    /// An angle in radians; generalized forces are torques.
+    #[default]
+    Angle,
+    /// A displacement in meters (or in a sensor's own unit, which then takes the meter's place).
+    Displacement,
+}
+
+/// The system of units that a system's numbers are written in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Units {
+    /// SI, inertia in kg m² or kg.
+    Si(Coordinate),
+    /// Every torque, stiffness and damping divided by the inertia, which is then 1.
+    PerInertia(Coordinate),
+}
+
+/// The physical quantity that a parameter measures; its unit follows from the system's [`Units`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Moment of inertia, or mass.
+    Inertia,
+    /// Torque, or force.
+    Torque,
+    /// Position: angle or displacement.
+    Position,
+    /// Velocity of the coordinate.
+    Velocity,
+    /// Torque per position.
+    Stiffness,
+    /// Torque per position squared.
+    QuadraticStiffness,
+    /// Torque per position cubed.
+    CubicStiffness,
+    /// Torque per velocity.
+    Damping,
+    /// Torque per velocity squared.
+    QuadraticDamping,
+    /// Reciprocal of a velocity.
+    InverseVelocity,
+    /// A duration.
+    Time,
+    /// Relative change per time.
+    Rate,
+    /// Angular frequency.
+    AngularFrequency,
+    /// An angle, whatever the coordinate.
+    Angle,
+    /// What the sensor observes: a position, or its first or second derivative.
+    Observed,
+    /// Change of what the sensor observes, per second.
+    ObservedPerTime,
+    /// A share, or a relative change.
+    Ratio,
+    /// A number of samples.
+    Samples,
+}
+
+impl Quantity {
+    /// The unit's symbol, such as `N m/rad`; for [`Quantity::Observed`] that of a sensor of positions.
+    #[must_use]
+    pub const fn unit(self, units: Units) -> &'static str {
+        use Coordinate::{Angle, Displacement};
+        match (self, units) {
+            (Self::Ratio, _) => "1",
+            (Self::Samples, _) => "samples",
+            (Self::Observed, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad",
+            (Self::Observed, _) => "m",
+            (Self::ObservedPerTime, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad/s",
+            (Self::ObservedPerTime, _) => "m/s",
+            (Self::Time, _) => "s",
+            (Self::Rate, _) => "1/s",
+            (Self::AngularFrequency, _) => "rad/s",
+            (Self::Angle, _) | (Self::Position, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad",
+            (Self::Position, _) => "m",
+            (Self::Velocity, Units::Si(Angle) | Units::PerInertia(Angle)) => "rad/s",
+            (Self::Velocity, _) => "m/s",
+            (Self::InverseVelocity, Units::Si(Angle) | Units::PerInertia(Angle)) => "s/rad",
+            (Self::InverseVelocity, _) => "s/m",
+            (Self::Inertia, Units::Si(Angle)) => "kg m^2",
+            (Self::Inertia, Units::Si(Displacement)) => "kg",
+            (Self::Inertia, _) => "1",
+            (Self::Torque, Units::Si(Angle)) => "N m",
+            (Self::Torque, Units::Si(Displacement)) => "N",
+            (Self::Torque, Units::PerInertia(Angle)) => "rad/s^2",
+            (Self::Torque, Units::PerInertia(Displacement)) => "m/s^2",
+            (Self::Stiffness, Units::Si(Angle)) => "N m/rad",
+            (Self::Stiffness, Units::Si(Displacement)) => "N/m",
+            (Self::Stiffness, Units::PerInertia(_)) => "1/s^2",
+            (Self::QuadraticStiffness, Units::Si(Angle)) => "N m/rad^2",
+            (Self::QuadraticStiffness, Units::Si(Displacement)) => "N/m^2",
+            (Self::QuadraticStiffness, Units::PerInertia(Angle)) => "1/(rad s^2)",
+            (Self::QuadraticStiffness, Units::PerInertia(Displacement)) => "1/(m s^2)",
+            (Self::CubicStiffness, Units::Si(Angle)) => "N m/rad^3",
+            (Self::CubicStiffness, Units::Si(Displacement)) => "N/m^3",
+            (Self::CubicStiffness, Units::PerInertia(Angle)) => "1/(rad^2 s^2)",
+            (Self::CubicStiffness, Units::PerInertia(Displacement)) => "1/(m^2 s^2)",
+            (Self::Damping, Units::Si(Angle)) => "N m s/rad",
+            (Self::Damping, Units::Si(Displacement)) => "N s/m",
+            (Self::Damping, Units::PerInertia(_)) => "1/s",
+            (Self::QuadraticDamping, Units::Si(Angle)) => "N m s^2/rad^2",
+            (Self::QuadraticDamping, Units::Si(Displacement)) => "N s^2/m^2",
+            (Self::QuadraticDamping, Units::PerInertia(Angle)) => "1/rad",
+            (Self::QuadraticDamping, Units::PerInertia(Displacement)) => "1/m",
+        }
+    }
+}

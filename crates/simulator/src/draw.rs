@@ -1,0 +1,166 @@
+//! From a plan to systems and their records.
+
+use crate::generate::generate;
+use crate::generation_error::GenerationError;
+use crate::number::Number;
+use crate::plan::{Plan, PlannedEffect};
+use crate::prior::Prior;
+use dynamics::chain::Chain;
+use dynamics::{Active, Coefficients, Effect, Nominal, Range, Start, System};
+use rand::RngExt;
+use record::Record;
+use seed::Seed;
+use truth::{Draws, Sealed, TRUTH_SCHEMA, Truth};
+
+/// A drawn system: what is believed of it, and what generates each of its records.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DrawnSystem {
+    /// What a user of a simulator would believe: the nominal oscillator without the effects, off by the
+    /// calibration error.
+    pub nominal: Nominal,
+    /// What is, one truth for each record; they differ in start and draws only.
+    pub truths: Vec<Truth>,
+}
+
+impl Plan {
+    /// The system with a number from 0. It depends on the seed and the number alone.
+    ///
+    /// # Errors
+    /// [`GenerationError::Dynamics`] where the drawn numbers contradict each other.
+    pub fn draw(&self, system: usize) -> Result<DrawnSystem, GenerationError> {
+        let branch = ["simulate".to_owned(), format!("system {system}")];
+        let seed = branch.iter().fold(Seed::new(self.seed), |node, name| node.child(name));
+        let nominal = self.draw_nominal(&seed.child("nominal"))?;
+        let (acting, sensing): (Vec<Active>, Vec<Active>) = self
+            .draw_effects(&seed.child("effects"))?
+            .into_iter()
+            .partition(|active| matches!(active.effect(), Effect::System(_)));
+        let noise = self.noise.first().map_or(0.0, |noise| noise.draw(&seed.child("sensor")));
+        let chain = Chain::new(self.observed, noise, sensing)?;
+        let actual = System::new(nominal, acting)?;
+        let truths = (0..self.records)
+            .map(|record| {
+                let name = format!("record {record}");
+                let mut start =
+                    self.start.iter().map(|number| number.draw(&seed.child(&name).child("start")));
+                Truth {
+                    schema: TRUTH_SCHEMA.to_owned(),
+                    system: actual.clone(),
+                    start: Start {
+                        position: start.next().unwrap_or_default(),
+                        velocity: start.next().unwrap_or_default(),
+                    },
+                    excitation: self.excitation,
+                    chain: chain.clone(),
+                    sampling: self.sampling,
+                    draws: Draws {
+                        seed: self.seed,
+                        branch: branch.iter().cloned().chain([name.clone()]).collect(),
+                    },
+                }
+            })
+            .collect();
+        Ok(DrawnSystem { nominal: self.believed(&nominal, &seed.child("calibration"))?, truths })
+    }
+
+    /// A record of a system, with its truth under seal; both numbers from 0.
+    ///
+    /// # Errors
+    /// As [`Plan::draw`] and [`generate`].
+    pub fn record(&self, system: usize, record: usize) -> Result<(Record, Sealed<Truth>), GenerationError> {
+        let drawn = self.draw(system)?;
+        let truth = drawn.truths.get(record).ok_or(GenerationError::NoSuchRecord { record })?;
+        Ok((generate(truth)?, Sealed::seal(truth)?))
+    }
+
+    fn draw_nominal(&self, seed: &Seed) -> Result<Nominal, GenerationError> {
+        let mut numbers = self.nominal.coefficients.iter().map(|number: &Number| number.draw(seed));
+        let mut next = || numbers.next().unwrap_or_default();
+        let coefficients = Coefficients {
+            inertia: next(),
+            damping: next(),
+            stiffness: next(),
+            rest_angle: next(),
+            input_gain: next(),
+        };
+        let nominal = Nominal::from_coefficients(coefficients)?.with_coordinate(self.nominal.coordinate);
+        Ok(match self.nominal.sensor_resolution {
+            Some(resolution) => nominal.with_sensor_resolution(resolution)?,
+            None => nominal,
+        })
+    }
+
+    /// The effects of one system: each with its probability, or so many as are asked for, drawn without
+    /// replacement with the probabilities as weights (Efraimidis, Spirakis, Information Processing
+    /// Letters 97 (2006) 181: the largest u^(1/w)).
+    fn draw_effects(&self, seed: &Seed) -> Result<Vec<Active>, GenerationError> {
+        let chance = |planned: &PlannedEffect| {
+            seed.child(planned.effect.id()).child("presence").generator().random::<f64>()
+        };
+        let mut present: Vec<&PlannedEffect> = match self.effects_per_system {
+            None => self.effects.iter().filter(|planned| chance(planned) < planned.probability).collect(),
+            Some(_) => self.effects.iter().filter(|planned| planned.probability > 0.0).collect(),
+        };
+        if let Some(count) = self.effects_per_system {
+            present.sort_by(|one, other| {
+                let key = |planned: &PlannedEffect| chance(planned).ln() / planned.probability;
+                key(other).total_cmp(&key(one))
+            });
+            present.truncate(count);
+        }
+        present
+            .into_iter()
+            .map(|planned| {
+                let own = seed.child(planned.effect.id());
+                let values: Vec<f64> = planned.parameters.iter().map(|number| number.draw(&own)).collect();
+                Ok(Active::of(planned.effect, &values)?)
+            })
+            .collect()
+    }
+
+    fn believed(&self, actual: &Nominal, seed: &Seed) -> Result<Nominal, GenerationError> {
+        let believed = |name: &str, mean: f64, deviation: f64, range: &Range| {
+            Prior::Normal { mean, deviation }.draw(range, &mut seed.child(name).generator())
+        };
+        let is = actual.coefficients();
+        let off = self.calibration;
+        let relative = |name, value: f64, deviation| {
+            // A number that is 0 is known to be: there is nothing to calibrate.
+            if value == 0.0 { value } else { believed(name, value, deviation * value, &Range::POSITIVE) }
+        };
+        Ok(actual.with_coefficients(Coefficients {
+            inertia: relative("inertia", is.inertia, off.inertia),
+            damping: relative("damping", is.damping, off.damping),
+            stiffness: relative("stiffness", is.stiffness, off.stiffness),
+            rest_angle: believed("rest_angle", is.rest_angle, off.rest_angle, &Range::ANY),
+            input_gain: is.input_gain,
+        })?)
+    }
+}
+
+/// A nominal oscillator as the text of a `nominal.toml`.
+#[must_use]
+pub fn nominal_text(nominal: &Nominal) -> String {
+    use dynamics::Quantity;
+    let units = nominal.units();
+    let mut text = String::from("# What is believed of the system: the simulator without any effect.\n");
+    if nominal.coordinate() == dynamics::Coordinate::Displacement {
+        text.push_str("coordinate = \"displacement\"\n");
+    }
+    for (key, value, quantity) in [
+        ("inertia", nominal.inertia(), Quantity::Inertia),
+        ("damping", nominal.damping(), Quantity::Damping),
+        ("stiffness", nominal.stiffness(), Quantity::Stiffness),
+        ("rest_angle", nominal.rest_angle(), Quantity::Position),
+    ] {
+        text.push_str(&format!("{:<40}# {}\n", format!("{key} = {value:?}"), quantity.unit(units)));
+    }
+    if nominal.input_gain() != 1.0 {
+        text.push_str(&format!("input_gain = {:?}\n", nominal.input_gain()));
+    }
+    if let Some(resolution) = nominal.sensor_resolution() {
+        let unit = Quantity::Position.unit(units);
+        text.push_str(&format!("{:<40}# {unit}\n", format!("sensor_resolution = {resolution:?}")));
+    }
+    text
+}
