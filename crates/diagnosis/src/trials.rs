@@ -364,3 +364,20 @@ fn a_bank_of_hidden_effects() {
     }
     assert!(short.is_empty(), "{short:?}");
 }
+
+/// As [`rig`].
+#[test]
+#[ignore = "seconds in a release build, a minute without"]
+fn silverbox() {
+    let columns = CsvColumns {
+        time: None,
+        angle: Some("output_v".to_owned()),
+        input: Some("input_v".to_owned()),
+        ..CsvColumns::default()
+    };
+    try_measured(
+        "silverbox/record.csv",
+        "silverbox/nominal.toml",
+        &ReadOptions { columns, ..ReadOptions::default() },
+    );
+}
