@@ -241,6 +241,8 @@ pub struct Series {
     pub position: Vec<f64>,
     /// See `position`.
     pub velocity: Vec<f64>,
+    /// Torque of the input; 0 without one.
+    pub input_torque: Vec<f64>,
     /// First sample of each segment.
     pub segment_starts: Vec<usize>,
     /// The record, from 0, that each segment is of.

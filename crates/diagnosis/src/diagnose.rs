@@ -635,6 +635,7 @@ fn series(data: &Data, [nominal, recalibrated, repaired]: [&HeldOut; 3], paths: 
         series.observed.extend(&segment.values);
         series.position.extend(&path.motion.position);
         series.velocity.extend(&path.motion.velocity);
+        series.input_torque.extend(&path.input);
     }
     let flat = |held: &HeldOut| held.residuals.iter().flat_map(|e| e.iter().copied()).collect();
     series.nominal_residual = flat(nominal);
