@@ -59,4 +59,4 @@ pub use diagnose::{Settings, diagnose};
 pub use error::DiagnosisError;
 pub use noise::NoiseFloor;
 pub use observations::Observations;
-pub use portrait::{Swing, SurfaceCell, backbone, surface};
+pub use portrait::{SurfaceCell, Swing, backbone, surface};

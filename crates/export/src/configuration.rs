@@ -10,7 +10,6 @@ use std::fmt::Write;
 #[must_use]
 pub fn configuration(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
-    let units = nominal.units();
     let mut text = String::from(
         "# The repaired simulator: the recalibrated nominal one with the effects that it lacked.\n\
          #\n\
@@ -26,17 +25,17 @@ pub fn configuration(repaired: &Repaired) -> String {
     if nominal.coordinate() == Coordinate::Displacement {
         text.push_str("coordinate = \"displacement\"\n");
     }
-    number(&mut text, "inertia", nominal.inertia(), Quantity::Inertia.unit(units));
-    number(&mut text, "damping", nominal.damping(), Quantity::Damping.unit(units));
-    number(&mut text, "stiffness", nominal.stiffness(), Quantity::Stiffness.unit(units));
-    number(&mut text, "rest_angle", nominal.rest_angle(), Quantity::Position.unit(units));
+    number(&mut text, "inertia", nominal.inertia(), repaired.unit(Quantity::Inertia));
+    number(&mut text, "damping", nominal.damping(), repaired.unit(Quantity::Damping));
+    number(&mut text, "stiffness", nominal.stiffness(), repaired.unit(Quantity::Stiffness));
+    number(&mut text, "rest_angle", nominal.rest_angle(), repaired.unit(Quantity::Position));
     number(&mut text, "input_gain", nominal.input_gain(), "torque or force per unit of the input");
     if let Some(resolution) = nominal.sensor_resolution() {
-        number(&mut text, "sensor_resolution", resolution, Quantity::Position.unit(units));
+        number(&mut text, "sensor_resolution", resolution, repaired.unit(Quantity::Position));
     }
     text.push_str("\n[start]\n");
-    number(&mut text, "position", repaired.start.position, Quantity::Position.unit(units));
-    number(&mut text, "velocity", repaired.start.velocity, Quantity::Velocity.unit(units));
+    number(&mut text, "position", repaired.start.position, repaired.unit(Quantity::Position));
+    number(&mut text, "velocity", repaired.start.velocity, repaired.unit(Quantity::Velocity));
     if repaired.driven {
         text.push_str(
             "\n# The system was driven by a measured input, which a configuration cannot hold: choose a waveform.\n\
@@ -49,13 +48,13 @@ pub fn configuration(repaired: &Repaired) -> String {
         Observed::Acceleration => "acceleration",
     };
     let _ = write!(text, "\n[sensor]\nobserves = \"{observed}\"\n");
-    number(&mut text, "noise", repaired.noise.max(0.0), repaired.unit(Quantity::Observed, units));
+    number(&mut text, "noise", repaired.noise.max(0.0), repaired.unit(Quantity::Observed));
     for active in repaired.system.effects().iter().chain(&repaired.chain) {
         let description = active.effect().description();
         let _ = write!(text, "\n[[effects]]\nid = \"{}\"\n", description.id);
         for (parameter, value) in description.parameters.iter().zip(active.values()) {
             let key = format!("parameters.{}", parameter.name);
-            number(&mut text, &key, *value, repaired.unit(parameter.quantity, units));
+            number(&mut text, &key, *value, repaired.unit(parameter.quantity));
         }
     }
     text

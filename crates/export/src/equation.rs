@@ -1,7 +1,7 @@
 //! The equation of motion, for people.
 
 use crate::Repaired;
-use dynamics::{Coordinate, Description, Nominal, Units};
+use dynamics::{Coordinate, Description};
 use std::fmt::Write;
 
 /// Symbols of the coordinate and its derivatives: as text, and in LaTeX.
@@ -14,25 +14,18 @@ const LETTERS: Letters =
     Letters { text: ["θ", "θ′", "θ″"], latex: [r"\theta", r"\dot\theta", r"\ddot\theta"] };
 
 /// The left-hand side's coefficients with their symbols, values and units.
-fn coefficients(nominal: &Nominal) -> Vec<(&'static str, &'static str, f64, &'static str)> {
+fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'static str)> {
     use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
-    let units = nominal.units();
+    let nominal = repaired.system.nominal();
     let all = [
-        ("I", "I", nominal.inertia(), Inertia.unit(units)),
-        ("c", "c", nominal.damping(), Damping.unit(units)),
-        ("k", "k", nominal.stiffness(), Stiffness.unit(units)),
-        ("θ_rest", r"\theta_\mathrm{rest}", nominal.rest_angle(), Position.unit(units)),
+        ("I", "I", nominal.inertia(), repaired.unit(Inertia)),
+        ("c", "c", nominal.damping(), repaired.unit(Damping)),
+        ("k", "k", nominal.stiffness(), repaired.unit(Stiffness)),
+        ("θ_rest", r"\theta_\mathrm{rest}", nominal.rest_angle(), repaired.unit(Position)),
     ];
     let springless = nominal.stiffness() == 0.0;
-    all.into_iter()
-        .enumerate()
-        .filter(|(index, _)| match index {
-            0 => matches!(units, Units::Si(_)),
-            1 => true,
-            _ => !springless,
-        })
-        .map(|(_, row)| row)
-        .collect()
+    let shown = |index: usize| if index == 0 { nominal.inertia() != 1.0 } else { index == 1 || !springless };
+    all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
 }
 
 /// The equation of motion as text; its numbers follow, one a line, and what acts on the measurement.
@@ -40,10 +33,7 @@ fn coefficients(nominal: &Nominal) -> Vec<(&'static str, &'static str, f64, &'st
 pub fn equation_text(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.text;
     let nominal = repaired.system.nominal();
-    let mut left = match nominal.units() {
-        Units::Si(_) => format!("I {a} + c {v}"),
-        Units::PerInertia(_) => format!("{a} + c {v}"),
-    };
+    let mut left = if nominal.inertia() == 1.0 { format!("{a} + c {v}") } else { format!("I {a} + c {v}") };
     if nominal.stiffness() != 0.0 {
         let _ = write!(left, " + k ({x} - θ_rest)");
     }
@@ -65,7 +55,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
         let _ = write!(text, "\n  {term}");
     }
     text.push_str("\n\nwhere");
-    for (symbol, _, value, unit) in coefficients(nominal) {
+    for (symbol, _, value, unit) in coefficients(repaired) {
         let _ = write!(text, "\n  {symbol} = {value:.6e} {unit}");
     }
     if repaired.driven {
@@ -90,10 +80,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
 pub fn equation_latex(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.latex;
     let nominal = repaired.system.nominal();
-    let mut left = match nominal.units() {
-        Units::Si(_) => format!("I{a}+c{v}"),
-        Units::PerInertia(_) => format!("{a}+c{v}"),
-    };
+    let mut left = if nominal.inertia() == 1.0 { format!("{a}+c{v}") } else { format!("I{a}+c{v}") };
     if nominal.stiffness() != 0.0 {
         let _ = write!(left, r"+k({x}-\theta_\mathrm{{rest}})");
     }
@@ -103,8 +90,9 @@ pub fn equation_latex(repaired: &Repaired) -> String {
     }
     right.extend(repaired.system.effects().iter().map(|a| a.effect().description().latex.to_owned()));
     let right = if right.is_empty() { "0".to_owned() } else { right.join("\\\\\n  &\\quad ") };
-    let mut text = format!("\\begin{{align*}}\n  {left} ={{}}& {right}\n\\end{{align*}}\n\\begin{{itemize}}\n");
-    for (_, symbol, value, unit) in coefficients(nominal) {
+    let mut text =
+        format!("\\begin{{align*}}\n  {left} ={{}}& {right}\n\\end{{align*}}\n\\begin{{itemize}}\n");
+    for (_, symbol, value, unit) in coefficients(repaired) {
         let _ = writeln!(text, "  \\item ${symbol} = {}$ {}", latex_number(value), latex_unit(unit));
     }
     if repaired.driven {
@@ -122,7 +110,8 @@ pub fn equation_latex(repaired: &Repaired) -> String {
     }
     for active in &repaired.chain {
         let description = active.effect().description();
-        let _ = writeln!(text, "  \\item on the way to the file: {}, ${}$", description.title, description.latex);
+        let _ =
+            writeln!(text, "  \\item on the way to the file: {}, ${}$", description.title, description.latex);
     }
     text.push_str("\\end{itemize}\n");
     text
@@ -130,13 +119,12 @@ pub fn equation_latex(repaired: &Repaired) -> String {
 
 /// Every parameter of every effect.
 fn parameters(repaired: &Repaired) -> Vec<(&'static Description, &'static str, f64, &'static str)> {
-    let units = repaired.system.nominal().units();
     let all = repaired.system.effects().iter().chain(&repaired.chain);
     all.flat_map(|active| {
         let description = active.effect().description();
         let own = description.parameters.iter().zip(active.values());
         own.map(move |(parameter, value)| {
-            (description, parameter.symbol, *value, repaired.unit(parameter.quantity, units))
+            (description, parameter.symbol, *value, repaired.unit(parameter.quantity))
         })
     })
     .collect()

@@ -8,6 +8,8 @@ use dynamics::{Active, Coordinate, Quantity, Start, System, Units};
 pub struct Repaired {
     /// The oscillator with the effects in the system.
     pub system: System,
+    /// Units of its numbers: those of the simulator as it was given.
+    pub units: Units,
     /// The effects in the measuring chain.
     pub chain: Vec<Active>,
     /// What cannot be part of it, each in a sentence.
@@ -28,7 +30,8 @@ pub struct Repaired {
 
 impl Repaired {
     /// The unit of a quantity; of what the sensor observes, by what that is.
-    pub(crate) fn unit(&self, quantity: Quantity, units: Units) -> &'static str {
+    #[must_use]
+    pub fn unit(&self, quantity: Quantity) -> &'static str {
         let derivatives = match self.observed {
             Observed::Position => 0,
             Observed::Velocity => 1,
@@ -37,9 +40,9 @@ impl Repaired {
         let order = match quantity {
             Quantity::Observed => derivatives,
             Quantity::ObservedPerTime => derivatives + 1,
-            _ => return quantity.unit(units),
+            _ => return quantity.unit(self.units),
         };
-        let (Units::Si(coordinate) | Units::PerInertia(coordinate)) = units;
+        let (Units::Si(coordinate) | Units::PerInertia(coordinate)) = self.units;
         match (coordinate, order) {
             (Coordinate::Angle, 0) => "rad",
             (Coordinate::Angle, 1) => "rad/s",

@@ -12,6 +12,7 @@ mod summary;
 use crate::Outcome;
 use crate::environment::Environment;
 use crate::error::TrainerError;
+use crate::rerender::write_report;
 use arguments::{DiagnoseArguments, Reading};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use export::Repaired;
@@ -57,13 +58,12 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
     folder.write_json("diagnosis.json", &answer.result)?;
     folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
     let digests: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
-    folder.write_json(
-        "environment.json",
-        &Environment::new(pool.current_num_threads(), &digests.join(" ")),
-    )?;
+    folder
+        .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
     for (name, text) in export::files(&answer.repaired) {
         folder.write(name, text.as_bytes())?;
     }
+    write_report(&folder)?;
     folder.record_event("end", &json!({ "status": answer.result.verdict.status }))?;
     arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
     Ok(Outcome::Done)
@@ -87,7 +87,8 @@ struct Question {
 impl Question {
     fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, TrainerError> {
         let stated = nominal::read(nominal)?;
-        let given = records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<_, _>>()?;
+        let given =
+            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<_, _>>()?;
         Ok(Self { stated, given, nominal: nominal.to_owned() })
     }
 
@@ -99,11 +100,10 @@ impl Question {
         let found = diagnosis::diagnose(&observations, &self.stated.nominal, settings, &stopwatch)
             .map_err(|source| self.refused(source))?;
         let seconds = stopwatch();
-        let repaired = repair::repaired(&found, &self.given)
+        let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())
             .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
         let nominal = self.nominal.display().to_string();
-        let beside =
-            Beside { given: &self.given, nominal: &nominal, seed, seconds, repaired: &repaired };
+        let beside = Beside { given: &self.given, nominal: &nominal, seed, seconds, repaired: &repaired };
         let result = result(&found, &beside);
         Ok(Answer { found, repaired, result })
     }

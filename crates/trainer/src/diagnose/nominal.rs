@@ -51,7 +51,12 @@ const FIELDS: &[Field] = &[
         ..NUMBER
     },
     Field { key: "damping", kind: NON_NEGATIVE, meaning: "Viscous damping.", ..NUMBER },
-    Field { key: "stiffness", kind: NON_NEGATIVE, meaning: "Stiffness; 0 for a drive without a spring.", ..NUMBER },
+    Field {
+        key: "stiffness",
+        kind: NON_NEGATIVE,
+        meaning: "Stiffness; 0 for a drive without a spring.",
+        ..NUMBER
+    },
     Field { key: "rest_angle", unit: "rad or m", meaning: "Where the spring is relaxed.", ..NUMBER },
     Field {
         key: "input_gain",

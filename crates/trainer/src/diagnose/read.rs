@@ -7,7 +7,9 @@ use crate::input::summarize;
 use diagnosis::Observations;
 use dynamics::Coordinate;
 use dynamics::chain::Observed;
-use record::{Clock, ClockChoice, CsvColumns, Fault, Format, Quantity, ReadOptions, Record, Statements, Unit};
+use record::{
+    Clock, ClockChoice, CsvColumns, Fault, Format, Quantity, ReadOptions, Record, Statements, Unit,
+};
 use runs::result::RecordRow;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
@@ -46,7 +48,8 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &Stated) -> Result<Gi
         std::fs::read(path).map_err(|error| fault(Fault::Unreadable { problem: error.to_string() }))?;
     let header = header(&bytes);
     let options = options(reading, stated.nominal.coordinate(), &header);
-    let (record, source) = record::read_text(&name, &bytes, &options).map_err(TrainerError::DiagnosedRecord)?;
+    let (record, source) =
+        record::read_text(&name, &bytes, &options).map_err(TrainerError::DiagnosedRecord)?;
     check_unit(&name, &record, stated.nominal.coordinate())?;
     if stated.driven && record.input().is_none() {
         return Err(TrainerError::MissingInput { file: name, columns: header.join(", ") });

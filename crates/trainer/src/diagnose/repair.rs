@@ -3,12 +3,12 @@
 use super::read::{Given, observed};
 use super::result::title;
 use diagnosis::{Diagnosis, EffectProbability};
-use dynamics::{Active, DynamicsError, Effect, Start, System};
+use dynamics::{Active, DynamicsError, Effect, Start, System, Units};
 use export::Repaired;
 
 /// Puts it together. An effect without coefficients of its own (stamps in bursts, say) cannot be part of it and is
 /// listed.
-pub(crate) fn repaired(found: &Diagnosis, given: &[Given]) -> Result<Repaired, DynamicsError> {
+pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Result<Repaired, DynamicsError> {
     let (mut effects, mut chain, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
     // The effects that the repaired fit has are those that carry a share of the gap.
     for row in found.effects.iter().filter(|row| row.gap_share.is_some()) {
@@ -39,6 +39,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given]) -> Result<Repaired, D
     let at_start = |values: &[f64]| values.first().copied().unwrap_or_default();
     Ok(Repaired {
         system,
+        units,
         chain,
         left_out,
         driven: first.is_some_and(|given| given.driven),

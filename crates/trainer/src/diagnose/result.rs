@@ -2,7 +2,7 @@
 
 use super::read::Given;
 use diagnosis::{Calibrated, Cell, Diagnosis, Interval, Series, Status, Swing, backbone, surface};
-use dynamics::{Coordinate, Effect, Quantity, Units};
+use dynamics::{Effect, Quantity, Units};
 use export::{Repaired, equation_latex, equation_text};
 use runs::result::{
     Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
@@ -27,7 +27,7 @@ pub(crate) struct Beside<'a> {
 pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult {
     let first = beside.given.first();
     let quantity = first.map(|given| given.quantity).unwrap_or_default();
-    let units = beside.repaired.system.nominal().units();
+    let units = beside.repaired.units;
     let effects = effects(found);
     let chain = &found.measuring_chain;
     DiagnosisResult {
@@ -112,10 +112,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             })
             .collect(),
         rejected: found.rejected.iter().map(|set| owned(set)).collect(),
-        equation: Equation {
-            text: equation_text(beside.repaired),
-            latex: equation_latex(beside.repaired),
-        },
+        equation: Equation { text: equation_text(beside.repaired), latex: equation_latex(beside.repaired) },
         units: [Quantity::Position, Quantity::Velocity, Quantity::Torque]
             .map(|quantity| quantity.unit(units).to_owned()),
         backbone: if beside.repaired.driven { Backbone::default() } else { backbones(&found.series) },
@@ -305,12 +302,4 @@ pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
         });
     }
     rows
-}
-
-/// Symbol of the acceleration's unit.
-pub(crate) fn acceleration_unit(coordinate: Coordinate) -> &'static str {
-    match coordinate {
-        Coordinate::Angle => "rad/s^2",
-        Coordinate::Displacement => "m/s^2",
-    }
 }

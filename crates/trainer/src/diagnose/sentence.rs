@@ -54,7 +54,9 @@ pub(crate) fn names<T: AsRef<str>>(ids: &[T]) -> String {
 /// Why no experiment is proposed.
 pub(crate) fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
-        Status::None | Status::Calibration => "None: nothing was named that would have to be told from something else.",
+        Status::None | Status::Calibration => {
+            "None: nothing was named that would have to be told from something else."
+        }
         Status::Effect => "None: nothing fitted here could stand in the place of what was named.",
         Status::Unknown => {
             "None that these data suggest: what is missing has no name yet. A second release from another amplitude \

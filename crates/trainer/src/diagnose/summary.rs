@@ -42,7 +42,8 @@ fn verdict(result: &DiagnosisResult) -> String {
 fn gap(result: &DiagnosisResult) -> String {
     let gap = &result.gap;
     let row = |name: &str, value: f64, note: String| {
-        let ratio = if gap.noise_floor > 0.0 { significant(value / gap.noise_floor, 3) } else { "–".to_owned() };
+        let ratio =
+            if gap.noise_floor > 0.0 { significant(value / gap.noise_floor, 3) } else { "–".to_owned() };
         vec![name.to_owned(), quantity(&significant(value, 3), &gap.unit), ratio, note]
     };
     let closed = |of: &WithInterval| format!("closes {}", share(of));
@@ -60,7 +61,8 @@ fn gap(result: &DiagnosisResult) -> String {
     ];
     if !same {
         if let Some(repaired) = rows.get_mut(2).and_then(|row| row.last_mut()) {
-            repaired.push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
+            repaired
+                .push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
         }
     }
     table(&["held-out error", "RMS", "floors", ""], rows)
@@ -130,9 +132,10 @@ fn apart(result: &DiagnosisResult) -> String {
             _ => "nothing here that could not be told apart".to_owned(),
         });
     }
-    let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
-        format!(" (predicted distance {})", significant(distance, 2))
-    });
+    let distance = result
+        .next_experiment
+        .distance
+        .map_or_else(String::new, |distance| format!(" (predicted distance {})", significant(distance, 2)));
     lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
     lines.join("\n")
 }
@@ -207,7 +210,13 @@ fn calibrated(name: &str, row: &CalibratedRow) -> Vec<String> {
     };
     let repaired = row.repaired.as_ref().map_or_else(
         || "held".to_owned(),
-        |found| format!("{} {}", quantity(&significant(found.value, 4), unit(&row.unit)), interval(found.interval_95)),
+        |found| {
+            format!(
+                "{} {}",
+                quantity(&significant(found.value, 4), unit(&row.unit)),
+                interval(found.interval_95)
+            )
+        },
     );
     vec![name.to_owned(), significant(row.nominal, 4), value(&row.recalibrated), repaired]
 }
@@ -230,7 +239,10 @@ fn chain(result: &DiagnosisResult) -> String {
         lines.extend(record.findings.iter().map(|finding| format!("  {}: {finding}", record.path)));
     }
     if result.samples_used < 0.9999 {
-        lines.push(format!("  {} of the samples were used: whole stretches, evenly spaced", percent(result.samples_used)));
+        lines.push(format!(
+            "  {} of the samples were used: whole stretches, evenly spaced",
+            percent(result.samples_used)
+        ));
     }
     lines.join("\n")
 }
