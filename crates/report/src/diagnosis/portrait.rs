@@ -8,6 +8,8 @@ use crate::plot::{Axis, HeatCell, HeatMap, Mark, Plot};
 
 /// Points of a backbone curve: each is the median of neighbors in amplitude.
 const POINTS: usize = 40;
+/// Smallest amplitude shown, in noise floors.
+const SMALLEST: f64 = 10.0;
 
 pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
     [
@@ -18,7 +20,7 @@ pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
             "angular frequency (rad/s)",
             |point| Some(point.frequency),
             "The backbone curve, flat for a linear oscillator. Where it rises with amplitude the spring stiffens; where it falls the spring softens, as with a hanging weight. Cycle by cycle \
-             from turning points, each dot the median of neighbors in amplitude.",
+             from turning points, each dot the median of neighbors in amplitude; none below ten noise floors.",
         ),
         backbone(
             result,
@@ -64,7 +66,13 @@ fn backbone(
     if curves.measured.is_empty() {
         return None;
     }
-    let points = |of: &[BackbonePoint]| medians(of, value);
+    // Below, turning points are those of the noise.
+    let least = SMALLEST * result.gap.noise_floor;
+    let points = |of: &[BackbonePoint]| {
+        let swings: Vec<BackbonePoint> =
+            of.iter().filter(|point| point.amplitude >= least).copied().collect();
+        medians(&swings, value)
+    };
     let plot = Plot {
         x: Axis::linear(format!("amplitude ({})", result.gap.unit)),
         y: Axis::linear(label),

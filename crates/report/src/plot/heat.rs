@@ -120,21 +120,20 @@ impl HeatMap {
     }
 
     fn legend(&self) -> Vec<LegendEntry> {
-        let largest = self.largest();
         let swatch = |hue: Hue, opacity: f64| {
             svg::swatch_of(&format!(
                 "<rect x=\"4\" y=\"0\" width=\"20\" height=\"12\" fill=\"{}\" opacity=\"{opacity:.2}\" />",
                 hue.light()
             ))
         };
-        let value = |share: f64| format::quantity(&format::significant(share * largest, 2), &self.unit);
+        let largest = self.largest();
         let mut entries = Vec::new();
         for (hue, sign) in [(Hue::Estimate, 1.0), (Hue::Oracle, -1.0)] {
-            if self.shown().any(|cell| cell.value * sign > 0.0) {
-                for share in [1.0, 0.5] {
-                    let label = value(sign * share);
-                    entries.push(LegendEntry { label, swatch: swatch(hue, opacity(share)) });
-                }
+            // The extreme of each sign and half of it, as deep as they are drawn.
+            let extreme = self.shown().map(|cell| cell.value * sign).fold(0.0, f64::max);
+            for value in [extreme, extreme / 2.0].into_iter().filter(|value| *value > 0.0) {
+                let label = format::quantity(&format::significant(sign * value, 2), &self.unit);
+                entries.push(LegendEntry { label, swatch: swatch(hue, opacity(value / largest)) });
             }
         }
         if self.shown().any(|cell| cell.outlined) {
@@ -212,7 +211,7 @@ mod tests {
         }
         let labels: Vec<String> =
             drawing.legend.iter().map(|entry| entry.label.replace('\u{a0}', " ")).collect();
-        assert_eq!(labels, ["2.0 rad", "1.0 rad", "−2.0 rad", "−1.0 rad", "above the band"]);
+        assert_eq!(labels, ["2.0 rad", "1.0 rad", "−1.0 rad", "−0.50 rad", "above the band"]);
     }
 
     #[test]

@@ -96,6 +96,9 @@ pub(crate) struct Reading {
     /// Rate at which to lay out a file without a time column
     #[arg(long, value_name = "HZ", value_parser = rate)]
     pub(crate) sample_rate: Option<f64>,
+    /// Where the numbers came from, where the files do not say: for the report's headline, not for the diagnosis
+    #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
+    pub(crate) origin: Option<String>,
     /// Takes the mean of the observed column and of the input away: for channels with an arbitrary zero
     #[arg(long)]
     pub(crate) remove_mean: bool,

@@ -58,7 +58,8 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &Stated) -> Result<Gi
     let choice = word(&reading.clock).unwrap_or_default();
     let clock_of = |choice: ClockChoice| Clock::new(&record, choice).map_err(fault);
     let (clock, believed) = (clock_of(choice)?, clock_of(ClockChoice::Auto)?);
-    let summary = summarize(&record, &source, &clock, &believed, Statements::default());
+    let stated = Statements { origin: reading.origin.as_deref().and_then(word), ..Statements::default() };
+    let summary = summarize(&record, &source, &clock, &believed, stated);
     let (first, last) = (clock.times_s.first(), clock.times_s.last());
     Ok(Given {
         observations: Observations::new(&record, &clock),

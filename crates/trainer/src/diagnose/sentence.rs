@@ -2,7 +2,7 @@
 
 use super::result::title;
 use diagnosis::{Diagnosis, Status};
-use report::format;
+use report::{format, in_a_sentence};
 
 /// What the diagnosis comes to, in one sentence.
 pub(crate) fn verdict(found: &Diagnosis) -> String {
@@ -12,7 +12,6 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
     } else {
         format!("{} {}", format::significant(gap.repaired, 3), gap.unit)
     };
-    let names = names(&found.verdict.effects);
     match found.verdict.status {
         Status::None => format!(
             "Nothing is missing: the simulator as given explains what was recorded, down to {floor} on parts that \
@@ -23,27 +22,43 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
              on parts that were not fitted, and no effect is missing."
         ),
         Status::Effect => format!(
-            "The simulator lacks {names}: with that and recalibrated, {closed} of the gap close{s} and {floor} \
-             are left on parts that were not fitted.",
-            closed = percent(gap.closure.value),
-            s = "s",
+            "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts that were not fitted.",
+            lacking(found),
+            percent(gap.closure.value)
         ),
-        Status::Unknown => {
-            let beside = match found.verdict.effects.is_empty() {
+        Status::Unknown => format!(
+            "Something is missing that no known effect explains: the best named model leaves {floor}, and a torque \
+             without a name predicts better, so it is left unnamed{}.",
+            match found.verdict.effects.is_empty() {
                 true => String::new(),
-                false => format!(" beside {names}"),
-            };
-            format!(
-                "Something is missing that no known effect explains{beside}: the best named model leaves {floor}, \
-                 and a torque without a name predicts better; it is left unnamed."
-            )
-        }
+                false => format!("; {}", in_a_sentence(&lacking(found))),
+            }
+        ),
     }
 }
 
-/// Titles of ids, with an `and` before the last.
-pub(crate) fn names<T: AsRef<str>>(ids: &[T]) -> String {
-    let titles: Vec<String> = ids.iter().map(|id| title(id.as_ref())).collect();
+/// What is missing, and what the record shows without a fit: stamps in bursts, say.
+fn lacking(found: &Diagnosis) -> String {
+    let is_fitted = |id: &&'static str| {
+        found
+            .effects
+            .iter()
+            .any(|row| row.id == *id && (row.gap_share.is_some() || !row.parameters.is_empty()))
+    };
+    let (fitted, seen): (Vec<&'static str>, Vec<&'static str>) =
+        found.verdict.effects.iter().copied().partition(is_fitted);
+    match (fitted.is_empty(), seen.is_empty()) {
+        (false, true) => format!("The simulator lacks {}", names(&fitted)),
+        (false, false) => {
+            format!("The simulator lacks {}, and the record shows {}", names(&fitted), names(&seen))
+        }
+        (true, _) => format!("The record shows {}, which the simulator lacks", names(&seen)),
+    }
+}
+
+/// Titles of ids as they stand in a sentence, with an `and` before the last.
+fn names(ids: &[&str]) -> String {
+    let titles: Vec<String> = ids.iter().map(|id| in_a_sentence(&title(id))).collect();
     match titles.as_slice() {
         [] => "nothing".to_owned(),
         [one] => one.clone(),
