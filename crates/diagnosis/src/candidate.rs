@@ -32,25 +32,35 @@ pub(crate) struct Parameter {
     pub(crate) strength: bool,
     /// An angle: full turns do not count.
     pub(crate) circular: bool,
+    /// Whether it says how the effect looks rather than how large it is: a width, a frequency, a phase. It means
+    /// nothing while the effect has no size.
+    pub(crate) shape: bool,
 }
 
 /// Parameters per candidate at most.
 pub(crate) const MOST_PARAMETERS: usize = 3;
 
 const fn any(name: &'static str) -> Parameter {
-    Parameter { name, lower: f64::NEG_INFINITY, upper: f64::INFINITY, strength: false, circular: false }
+    Parameter {
+        name,
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        strength: false,
+        circular: false,
+        shape: false,
+    }
 }
 
 const fn positive(name: &'static str) -> Parameter {
-    Parameter { name, lower: 0.0, upper: f64::INFINITY, strength: true, circular: false }
+    Parameter { name, lower: 0.0, upper: f64::INFINITY, strength: true, circular: false, shape: false }
 }
 
 const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
-    Parameter { name, lower, upper, strength: false, circular: false }
+    Parameter { name, lower, upper, strength: false, circular: false, shape: true }
 }
 
 const fn angle(name: &'static str) -> Parameter {
-    Parameter { name, lower: -PI, upper: PI, strength: false, circular: true }
+    Parameter { name, lower: -PI, upper: PI, strength: false, circular: true, shape: true }
 }
 
 impl Candidate {
@@ -121,6 +131,15 @@ impl Candidate {
         }
     }
 
+    /// The candidate that it is at one of its own sizes: Stribeck friction without its excess is Coulomb friction. A set
+    /// never holds both.
+    pub(crate) fn generalizes(self) -> Option<Self> {
+        match self {
+            Self::System(SystemEffect::StribeckFriction) => Some(Self::System(SystemEffect::CoulombFriction)),
+            _ => None,
+        }
+    }
+
     /// What it is easily confused with: those are fitted wherever it is.
     pub(crate) fn confused_with(self) -> Vec<Self> {
         let of = |id: &str| Self::ALL.iter().copied().find(|other| other.id() == id);
@@ -160,7 +179,7 @@ impl Candidate {
                 SystemEffect::Gravity => vec![positive("torque"), angle("angle")],
                 SystemEffect::ConstantTorque => vec![any("torque")],
                 SystemEffect::Backlash => {
-                    vec![Parameter { strength: true, ..between("half_width", 0.0, 0.9 * a) }]
+                    vec![Parameter { strength: true, shape: false, ..between("half_width", 0.0, 0.9 * a) }]
                 }
                 SystemEffect::Hysteresis => {
                     vec![positive("torque"), between("displacement", 1e-3 * a, 2.0 * a)]
@@ -182,21 +201,32 @@ impl Candidate {
                     Parameter { strength: false, ..positive("damping") },
                 ],
                 SystemEffect::InputDelay => {
-                    vec![Parameter { strength: true, ..between("delay", 0.0, 1.0 / facts.frequency) }]
+                    vec![Parameter {
+                        strength: true,
+                        shape: false,
+                        ..between("delay", 0.0, 1.0 / facts.frequency)
+                    }]
                 }
                 SystemEffect::InputSaturation => {
                     vec![between("torque", 1e-3 * facts.input_torque, facts.input_torque)]
                 }
             },
             Self::Chain(Distortion::Lag) => {
-                vec![Parameter { strength: true, ..between("time_constant", 0.0, 0.5 / facts.frequency) }]
+                vec![Parameter {
+                    strength: true,
+                    shape: false,
+                    ..between("time_constant", 0.0, 0.5 / facts.frequency)
+                }]
             }
             Self::Chain(Distortion::Nonlinearity) => {
                 vec![Parameter { upper: 0.9, ..positive("amplitude") }, angle("phase")]
             }
             Self::Chain(Distortion::Drift) => vec![any("rate")],
             Self::Chain(Distortion::Clock) => {
-                vec![between("change", -0.4 / facts.duration, 0.4 / facts.duration)]
+                vec![Parameter {
+                    shape: false,
+                    ..between("change", -0.4 / facts.duration, 0.4 / facts.duration)
+                }]
             }
             Self::Chain(Distortion::Saturation) => vec![positive("bound")],
         }
@@ -239,6 +269,7 @@ mod tests {
         interval: 1.0 / 260.0,
         inertia: 1.0,
         stiffness: 484.0,
+        tolerance: Facts::UNKNOWN_NOISE,
     };
 
     #[test]

@@ -76,6 +76,7 @@ pub fn diagnose(
     let samples_used = data.samples() as f64 / all.samples().max(1) as f64;
     lap("measuring chain");
     let (data, base) = better_hold(&data, nominal)?;
+    let data = data.for_noise(noise::floor(&data, &base.calibrated.residuals).value);
     lap("calibration");
 
     let candidates: Vec<Candidate> = Candidate::ALL

@@ -39,6 +39,10 @@ pub(crate) struct Dictionary {
     pub(crate) further: Vec<(Candidate, Vec<f64>, f64)>,
 }
 
+/// Part of a column's length that has to be left after the projection: what calibration and start states imitate to so
+/// many digits cannot be seen in these records, and what is left of it is the linearization's error.
+const INVISIBLE: f64 = 1e-4;
+
 /// What a set of entries would take away.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Gain {
@@ -250,7 +254,13 @@ impl Dictionary {
                 .collect();
         }
         let mut columns = matrix(projection.rows(), &all);
+        let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
         projection.apply(&mut columns);
+        for (mut column, raw) in columns.column_iter_mut().zip(raw) {
+            if column.norm() <= INVISIBLE * raw {
+                column.fill(0.0);
+            }
+        }
         let residual: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
         let mut residual = DMatrix::from_vec(residual.len(), 1, residual);
         projection.apply(&mut residual);
@@ -264,25 +274,50 @@ impl Dictionary {
         }
     }
 
-    /// Joint gain of some entries; `None` where a coefficient has the wrong sign or nothing is left of a column.
+    /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is left without its
+    /// size.
     pub(crate) fn gain(&self, entries: &[usize]) -> Option<Gain> {
         let chosen: Vec<&Entry> = entries.iter().filter_map(|index| self.entries.get(*index)).collect();
-        let columns: Vec<usize> = chosen.iter().flat_map(|entry| entry.columns.clone()).collect();
-        if columns.is_empty() {
-            return None;
+        let all: Vec<(usize, bool)> = chosen
+            .iter()
+            .flat_map(|entry| entry.columns.clone().map(|column| (column, entry.positive)))
+            .collect();
+        // A size that comes out negative is zero, and the others are solved for anew.
+        let visible = |at: &usize| all.get(*at).is_some_and(|own| self.products[(own.0, own.0)] > 0.0);
+        let mut kept: Vec<usize> = (0..all.len()).filter(visible).collect();
+        let solution = loop {
+            let columns: Vec<usize> = kept.iter().filter_map(|&at| all.get(at).map(|own| own.0)).collect();
+            if columns.is_empty() {
+                return None;
+            }
+            let products = self.products.select_rows(&columns).select_columns(&columns);
+            let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| self.scores[c]));
+            let solution = solve(&products, &scores)?;
+            let below = |(place, at): (usize, &usize)| {
+                let positive = all.get(*at).is_some_and(|own| own.1);
+                let value = solution.get(place).copied().unwrap_or(0.0);
+                (positive && value < 0.0).then_some((place, value * products[(place, place)].sqrt()))
+            };
+            let worst = kept.iter().enumerate().filter_map(below).min_by(|a, b| a.1.total_cmp(&b.1));
+            match worst {
+                Some((place, _)) => _ = kept.remove(place),
+                None => break solution,
+            }
+        };
+        let mut coefficients = vec![0.0; all.len()];
+        let mut squares = 0.0;
+        for (at, value) in kept.iter().zip(solution.iter()) {
+            if let (Some(slot), Some(own)) = (coefficients.get_mut(*at), all.get(*at)) {
+                *slot = *value;
+                squares += value * self.scores[own.0];
+            }
         }
-        let products = self.products.select_rows(&columns).select_columns(&columns);
-        if products.diagonal().min() <= 0.0 {
-            return None;
-        }
-        let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| self.scores[c]));
-        let solution = solve(&products, &scores)?;
-        let squares = solution.dot(&scores);
-        let coefficients: Vec<f64> = solution.iter().copied().collect();
-        let mut at = coefficients.iter();
+        let mut from = 0;
         for entry in chosen {
-            let own: Vec<f64> = at.by_ref().take(entry.columns.len()).copied().collect();
-            if entry.positive && own.iter().any(|c| *c < 0.0) {
+            let own = coefficients.get(from..from + entry.columns.len())?;
+            from += own.len();
+            // The last column is the one without which the candidate would be another.
+            if own.last().is_none_or(|size| *size == 0.0) {
                 return None;
             }
         }

@@ -23,4 +23,22 @@ pub(crate) struct Facts {
     /// Nominal inertia, stiffness (or what would give the frequency) and damping.
     pub(crate) inertia: f64,
     pub(crate) stiffness: f64,
+    /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
+    pub(crate) tolerance: f64,
+}
+
+/// Finest and coarsest error of an integration step, and its part of the noise: a period takes about ten steps, so that
+/// the errors of a whole segment stay below a tenth of the noise.
+const FINEST: f64 = 1e-10;
+const COARSEST: f64 = 1e-6;
+const OF_NOISE: f64 = 1e-3;
+
+impl Facts {
+    /// The same with the tolerance that a noise of this size asks for.
+    pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
+        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), ..self }
+    }
+
+    /// Tolerance while the noise is not known yet.
+    pub(crate) const UNKNOWN_NOISE: f64 = 1e-9;
 }

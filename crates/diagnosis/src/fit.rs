@@ -12,6 +12,7 @@
 use crate::hypothesis::Hypothesis;
 use crate::response::{Prediction, Simulator};
 use crate::segments::{Data, Segment};
+use crate::settle::settle;
 use crate::statistics::autocorrelation_time;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
@@ -47,15 +48,18 @@ pub(crate) struct Effort {
     steps: usize,
     /// Relative decrease of the squares at which to stop.
     small: f64,
+    /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
+    /// has still to grow says nothing about them.
+    sizes_first: usize,
 }
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 14, small: 1e-4 };
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2 };
     /// For parts held out: begun at the fit to all, there is not far to go.
-    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6 };
+    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0 };
     /// For what is reported: half of 1e-8·N is far below what a probability would feel.
-    pub(crate) const FINAL: Self = Self { steps: 30, small: 1e-8 };
+    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0 };
 }
 
 /// What is moved.
@@ -242,9 +246,13 @@ pub(crate) fn fit(
     let mut small = 0;
     let mut steps = 0;
     let mut system = equations(&at.predictions, starts, globals);
+    let uneven = !hypothesis.smooth();
+    let mut settled = false;
     while steps < effort.steps {
         steps += 1;
-        let mut held = vec![moving == Moving::Starts; globals];
+        let sizes = steps <= effort.sizes_first;
+        let mut held: Vec<bool> =
+            parameters.iter().map(|p| moving == Moving::Starts || sizes && p.shape).collect();
         let mut trial = None;
         // Each round holds at least one parameter more.
         for _ in 0..=globals {
@@ -290,20 +298,27 @@ pub(crate) fn fit(
                 point = next;
                 at = evaluation;
                 damping = (damping * 0.1).max(1e-12);
-                if small >= 1 {
-                    converged = true;
-                    break;
+                if small == 0 {
+                    settled = false;
                 }
                 system = equations(&at.predictions, starts, globals);
             }
-            _ => {
-                damping = (damping * 8.0).max(1e-9);
-                if damping > 1e7 {
-                    // No step of any length decreases the squares: to rounding, this is the minimum.
-                    converged = true;
-                    break;
-                }
+            _ => damping = (damping * 8.0).max(1e-9),
+        }
+        // Where no step of any length decreases the squares it is, to rounding, a minimum.
+        let ended = !sizes && (small >= 1 || damping > 1e7);
+        if uneven && !settled && (ended || damping > 1e-2) {
+            settled = true;
+            if settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)? {
+                at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+                system = equations(&at.predictions, starts, globals);
+                (small, damping) = (0, 1e-4);
+                continue;
             }
+        }
+        if ended {
+            converged = true;
+            break;
         }
     }
     let system = equations(&at.predictions, starts, globals);

@@ -167,6 +167,7 @@ impl Hypothesis {
             upper: f64::INFINITY,
             strength: false,
             circular: false,
+            shape: false,
         });
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
     }
@@ -235,6 +236,14 @@ impl Hypothesis {
             }
         }
         measurement
+    }
+
+    /// Whether the motion depends smoothly on everything that is fitted.
+    pub(crate) fn smooth(&self) -> bool {
+        self.candidates.iter().all(|candidate| match candidate {
+            Candidate::System(effect) => effect.description().smooth,
+            Candidate::Chain(_) => true,
+        })
     }
 
     /// State values of a segment that are fitted: position, velocity, hidden ones.

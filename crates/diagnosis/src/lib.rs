@@ -44,6 +44,7 @@ mod response;
 mod score;
 mod search;
 mod segments;
+mod settle;
 mod spectrum;
 mod statistics;
 mod tangent;

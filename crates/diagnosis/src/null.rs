@@ -3,7 +3,7 @@
 use crate::dictionary::Dictionary;
 use crate::search::singles;
 use crate::statistics::quantile;
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 
@@ -21,16 +21,22 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
     if width == 0 {
         return crate::statistics::chi_squared_above(1.0, probability);
     }
-    let mut products = dictionary.products.clone();
-    let largest = products.diagonal().max();
-    for i in 0..width {
-        // Columns of one grid are nearly dependent; the factorization needs a whisker more.
-        products[(i, i)] *= 1.0 + 1e-9;
-        products[(i, i)] += 1e-12 * largest;
+    // In units of the columns' own lengths: they differ by many orders of magnitude. Columns of one grid are nearly
+    // dependent, so the root of their products comes from eigenvalues, not from a triangular factor.
+    let scale = dictionary.products.diagonal().map(f64::sqrt);
+    let of = |list: &DVector<f64>, i: usize| list.get(i).copied().unwrap_or(0.0);
+    let cosines = DMatrix::from_fn(width, width, |i, j| {
+        let length = of(&scale, i) * of(&scale, j);
+        if length > 0.0 { dictionary.products[(i, j)] / length } else { 0.0 }
+    });
+    let eigen = cosines.symmetric_eigen();
+    let mut factor = eigen.eigenvectors;
+    for (mut column, value) in factor.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+        column *= value.max(0.0).sqrt();
     }
-    let Some(factor) = products.cholesky().map(|c| c.l()) else {
-        return crate::statistics::chi_squared_above(1.0, probability / width as f64);
-    };
+    for (mut row, scale) in factor.row_iter_mut().zip(scale.iter()) {
+        row *= *scale;
+    }
     let mut generator = seed.child("null").generator();
     let mut drawn = dictionary.clone();
     let gains: Vec<f64> = (0..DRAWS)

@@ -1,21 +1,25 @@
 //! The best sets once more, on every sample and to convergence.
 
+use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::score::score;
 use crate::search::{Pool, vanished};
 use crate::segments::Data;
 use rayon::prelude::*;
 
-/// Refits the best `most` sets of a pool on other data with the same segments. The calibrated simulator, fitted there
-/// already, comes first.
+/// Refits the best `most` sets of a pool on other data with the same segments, and as many more that differ from the very
+/// best in one member: its rivals. The calibrated simulator, fitted there already, comes first.
 pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize) -> Pool {
     let time = pool.autocorrelation_time();
-    let chosen: Vec<&Fit> = pool
-        .ranked(time)
-        .into_iter()
-        .filter(|fit| !fit.hypothesis.candidates.is_empty())
-        .take(most)
-        .collect();
+    let ranked: Vec<&Fit> =
+        pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
+    let best: &[Candidate] = ranked.first().map_or(&[], |fit| &fit.hypothesis.candidates);
+    let rival = |fit: &Fit| {
+        let own = &fit.hypothesis.candidates;
+        own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
+    };
+    let further = ranked.iter().skip(most).copied().filter(|fit| rival(fit)).take(most);
+    let chosen: Vec<&Fit> = ranked.iter().take(most).copied().chain(further).collect();
     let refined: Vec<Option<Fit>> = chosen
         .par_iter()
         .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())

@@ -9,8 +9,9 @@ use dynamics::{DynamicsError, SystemEffect};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 
-/// Error of a step relative to the motion: far below any sensor.
-const TOLERANCE: f64 = 1e-9;
+/// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
+const MOST_STEPS: usize = 4000;
+const MOST_STEPS_PER_SAMPLE: usize = 4;
 
 /// A hypothesis made ready for runs.
 pub(crate) struct Simulator<'a> {
@@ -81,10 +82,12 @@ impl<'a> Simulator<'a> {
             }
         }
         let lag = measurement.lag.is_some();
+        let longest = data.segments.iter().map(|segment| segment.times.len()).max().unwrap_or(0);
         let settings = Settings {
-            tolerance: TOLERANCE,
+            tolerance: facts.tolerance,
             velocity: true,
             acceleration: lag || !derivatives || data.quantity != Quantity::Position,
+            most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest,
             ..Settings::default()
         };
         let system = hypothesis.system(facts, point)?;

@@ -7,6 +7,7 @@
 
 use crate::candidate::Candidate;
 use crate::dictionary::{Dictionary, Gain};
+use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
 use crate::segments::Data;
@@ -36,6 +37,9 @@ pub(crate) struct Breadth {
     pub(crate) additions: usize,
 }
 
+/// Part of its linearized size that an effect begins a fit with.
+const FIRST_SIZE: f64 = 1e-3;
+
 /// A set to fit and where to begin.
 #[derive(Debug, Clone)]
 struct Proposal {
@@ -48,7 +52,12 @@ impl Pool {
         self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
     }
 
-    fn take(&mut self, fit: Fit) {
+    /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
+    fn admit(&mut self, data: &Data, fit: Fit) {
+        if vanished(data, &fit) {
+            self.rejected.push(fit.hypothesis.candidates);
+            return;
+        }
         match self.fits.iter_mut().find(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
             Some(known) if fit.squares < known.squares => *known = fit,
             Some(_) => {}
@@ -78,6 +87,22 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     own.into_iter().any(|(parameter, value)| parameter.strength && *value <= parameter.lower)
 }
 
+/// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
+fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
+    let special: Vec<(Candidate, Candidate)> =
+        members.iter().filter_map(|(general, _)| Some((*general, general.generalizes()?))).collect();
+    for (general, special) in special {
+        let Some(place) = members.iter().position(|(candidate, _)| *candidate == special) else { continue };
+        let (_, own) = members.remove(place);
+        let target = members.iter_mut().find(|(candidate, _)| *candidate == general);
+        if let (Some((_, values)), Some(size)) = (target, own.first())
+            && let Some(first) = values.first_mut()
+        {
+            *first += size;
+        }
+    }
+}
+
 /// A set and a start for it: what a fit has found, with one candidate left out and others added.
 fn proposal(
     data: &Data,
@@ -96,6 +121,7 @@ fn proposal(
         .filter(|(candidate, _)| Some(*candidate) != without)
         .chain(added.iter().cloned())
         .collect();
+    absorb(&mut members);
     members.sort_by_key(|(candidate, _)| candidate.rank());
     let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
     let hypothesis = base.hypothesis.with(&candidates);
@@ -105,7 +131,7 @@ fn proposal(
     Proposal { hypothesis, point: Point { globals, starts } }
 }
 
-fn additions(dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
+fn additions(facts: &Facts, dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
     let mut coefficients = gain.coefficients.as_slice();
     gain.entries
         .iter()
@@ -113,7 +139,16 @@ fn additions(dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)>
             let entry = dictionary.entries.get(index)?;
             let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
             coefficients = rest;
-            Some((entry.candidate, dictionary.parameters(index, own)))
+            let mut parameters = dictionary.parameters(index, own);
+            // The coefficients suppose that calibration and start states have moved along, which the fit has still to do:
+            // sizes begin small and grow in its first steps, with everything else.
+            for (value, parameter) in parameters.iter_mut().zip(entry.candidate.parameters(facts)) {
+                let is_its_own_shape = parameter.strength && parameter.upper.is_finite();
+                if !parameter.shape && !is_its_own_shape {
+                    *value *= FIRST_SIZE;
+                }
+            }
+            Some((entry.candidate, parameters))
         })
         .collect()
 }
@@ -167,19 +202,41 @@ fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
     fits.into_iter().flatten().collect()
 }
 
-/// Proposals at a fit: what to add, and what a confusion or a swap would put in a member's place.
-fn around(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> Vec<Proposal> {
+/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+const WHITE: f64 = 1.5;
+
+/// Part of the threshold that the linearized gain has to promise at a white residual.
+const PROMISE: f64 = 0.5;
+
+/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
+/// show only once the first is in.
+fn promising(base: &Fit, time: f64, gain: f64, threshold: f64) -> bool {
+    let left = (base.squares - gain).max(f64::MIN_POSITIVE);
+    let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
+    time > WHITE || score > PROMISE * threshold
+}
+
+/// Proposals at a fit: what to add.
+fn around(
+    data: &Data,
+    base: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Vec<Proposal> {
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
     let size = base.hypothesis.candidates.len();
     let ranked = singles(&dictionary);
     if size < breadth.most_effects {
-        for gain in ranked.iter().take(breadth.additions) {
-            proposals.push(proposal(data, base, None, &additions(&dictionary, gain)));
+        let time = base.autocorrelation_time();
+        let worth = |gain: f64| promising(base, time, gain, threshold);
+        for gain in ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares)) {
+            proposals.push(proposal(data, base, None, &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
-            if *gain > weakest {
+            if *gain > weakest && worth(*gain) {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -187,9 +244,11 @@ fn around(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) 
     proposals
 }
 
-/// Puts each member's confusions in its place, linearized where the member is taken out.
-fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> Vec<Proposal> {
+/// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
+/// member too: begun here they often fit better than on their own.
+fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
     let mut proposals = Vec::new();
+    let mut dropped = Vec::new();
     for &member in &base.hypothesis.candidates {
         let reduced = proposal(data, base, Some(member), &[]);
         let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH) else {
@@ -205,10 +264,11 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
         let chosen =
             ranked.iter().enumerate().filter(|(place, gain)| *place < breadth.additions || is_confused(gain));
         for (_, gain) in chosen {
-            proposals.push(proposal(data, &bare, None, &additions(&dictionary, gain)));
+            proposals.push(proposal(data, &bare, None, &additions(&data.facts, &dictionary, gain)));
         }
+        dropped.push(bare);
     }
-    proposals
+    (proposals, dropped)
 }
 
 fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
@@ -220,11 +280,7 @@ fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, propos
         })
         .collect();
     for fit in fit_all(data, &fresh) {
-        if vanished(data, &fit) {
-            pool.rejected.push(fit.hypothesis.candidates.clone());
-        } else {
-            pool.take(fit);
-        }
+        pool.admit(data, fit);
     }
 }
 
@@ -244,14 +300,16 @@ pub(crate) fn search(
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return pool };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
-    for gain in ranked.iter().take(breadth.singles) {
-        proposals.push(proposal(data, calibrated, None, &additions(&dictionary, gain)));
+    let time = calibrated.autocorrelation_time();
+    let worth = |gain: f64| promising(calibrated, time, gain, threshold);
+    for gain in ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares)) {
+        proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    for (candidate, parameters, _) in &dictionary.further {
+    for (candidate, parameters, _) in dictionary.further.iter().filter(|further| worth(further.2)) {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }
-    for gain in pairs(&dictionary).iter().take(breadth.pairs) {
-        proposals.push(proposal(data, calibrated, None, &additions(&dictionary, gain)));
+    for gain in pairs(&dictionary).iter().take(breadth.pairs).filter(|gain| worth(gain.squares)) {
+        proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
     settle(data, &mut pool, &mut tried, proposals);
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
@@ -273,18 +331,28 @@ pub(crate) fn search(
         if bases.is_empty() {
             break;
         }
-        let proposals: Vec<Vec<Proposal>> = bases
+        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
             .par_iter()
             .enumerate()
             .map(|(place, base)| {
-                let mut own = around(data, base, candidates, breadth);
+                let mut own = around(data, base, candidates, breadth, threshold);
+                let mut dropped = Vec::new();
                 if place == 0 {
-                    own.extend(swaps(data, base, candidates, breadth));
+                    let (proposals, without) = swaps(data, base, candidates, breadth);
+                    own.extend(proposals);
+                    dropped = without;
                 }
-                own
+                (own, dropped)
             })
             .collect();
-        settle(data, &mut pool, &mut tried, proposals.into_iter().flatten().collect());
+        let mut proposals = Vec::new();
+        for (own, dropped) in moves {
+            proposals.extend(own);
+            for fit in dropped {
+                pool.admit(data, fit);
+            }
+        }
+        settle(data, &mut pool, &mut tried, proposals);
         let time = pool.autocorrelation_time();
         let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
         let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);

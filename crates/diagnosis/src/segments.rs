@@ -100,6 +100,13 @@ impl Data {
         (Self { segments: segments.collect(), ..self.clone() }, stride)
     }
 
+    /// The same, integrated as accurately as a noise of this size asks for.
+    pub(crate) fn for_noise(&self, noise: f64) -> Self {
+        let values = || self.segments.iter().flat_map(|segment| segment.values.iter().copied());
+        let span = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        Self { facts: self.facts.with_noise(noise, 0.5 * span), ..self.clone() }
+    }
+
     pub(crate) fn driven(&self) -> bool {
         self.inputs.iter().any(Option::is_some)
     }
@@ -292,6 +299,7 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         interval,
         inertia,
         stiffness,
+        tolerance: Facts::UNKNOWN_NOISE,
     }
 }
 
