@@ -17,6 +17,7 @@ mod description;
 mod edges;
 pub mod effects;
 mod error;
+mod export;
 mod field;
 #[cfg(test)]
 mod fixtures;
@@ -37,6 +38,7 @@ mod units;
 pub use active::Active;
 pub use description::{Class, Description, Kind, Parameter, Range};
 pub use error::DynamicsError;
+pub use export::{Export, Joint, StateExport};
 pub use field::SYSTEM_HIDDEN;
 pub use input::{Hold, Input};
 pub use law::{Hidden, Law, MOST_HIDDEN, MOST_PARAMETERS, Margins, Moment, Values};

@@ -7,11 +7,18 @@
 
 mod configuration;
 mod equation;
+mod modelica;
+mod python;
 mod repaired;
+mod robot;
+mod terms;
 
 pub use configuration::configuration;
 pub use equation::{equation_latex, equation_text};
+pub use modelica::modelica;
+pub use python::python;
 pub use repaired::Repaired;
+pub use robot::{mjcf, urdf};
 
 /// Every form with the name of its file.
 #[must_use]
@@ -20,5 +27,9 @@ pub fn files(repaired: &Repaired) -> Vec<(&'static str, String)> {
         ("repaired.toml", configuration(repaired)),
         ("equation.txt", equation_text(repaired)),
         ("equation.tex", equation_latex(repaired)),
+        ("repaired.py", python(repaired)),
+        ("repaired.mo", modelica(repaired)),
+        ("repaired.mjcf.xml", mjcf(repaired)),
+        ("repaired.urdf.xml", urdf(repaired)),
     ]
 }

@@ -21,7 +21,7 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
         chain(result),
         format!("took: {}", stages(result)),
         format!(
-            "report: {path}/report.html\nrepaired simulator: {path}/repaired.toml (and .py, .mo, .xml, equation)",
+            "report: {path}/report.html\nrepaired simulator: {path}/repaired.toml, .py, .mo, .mjcf.xml, .urdf.xml; equation.txt, equation.tex",
             path = folder.display()
         ),
     ];
