@@ -83,7 +83,7 @@ impl Measurement {
     ///
     /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
     /// answer up to (ω·T)³.
-    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64) -> Observed {
+    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
         let mut by_motion = [1.0, 0.0, 0.0];
         let mut by_parameter = [0.0; 6];
         let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
@@ -93,8 +93,8 @@ impl Measurement {
             by_motion = [1.0, -lag, lag * lag];
             *by_lag = -rate + 2.0 * lag * curvature;
         }
-        // dt/dr′ at a given stamp.
-        *by_clock = -0.5 * time * time * rate;
+        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
+        *by_clock = -0.5 * (time * time - start * start) * rate;
         if let Some((amplitude, phase)) = self.nonlinearity {
             let (sine, cosine) = (value + phase).sin_cos();
             value += amplitude * sine;
@@ -271,20 +271,20 @@ mod tests {
             saturation: Some(5.0),
         };
         let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
-        let at = full.observe(x, rate, curvature, time);
+        let at = full.observe(x, rate, curvature, time, 0.0);
         let h = 1e-6;
         let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
         let by_x = slope(
-            full.observe(x + h, rate, curvature, time).value,
-            full.observe(x - h, rate, curvature, time).value,
+            full.observe(x + h, rate, curvature, time, 0.0).value,
+            full.observe(x - h, rate, curvature, time, 0.0).value,
         );
         assert!((by_x - at.by_motion[0]).abs() < 1e-8);
         let lag =
-            |d: f64| Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time).value;
+            |d: f64| Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value;
         assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
         let phase = |d: f64| {
             Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }
-                .observe(x, rate, curvature, time)
+                .observe(x, rate, curvature, time, 0.0)
                 .value
         };
         assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);

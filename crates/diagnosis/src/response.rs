@@ -10,8 +10,8 @@ use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 
 /// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
-const MOST_STEPS: usize = 4000;
-const MOST_STEPS_PER_SAMPLE: usize = 4;
+const MOST_STEPS: usize = 1200;
+const MOST_STEPS_PER_SAMPLE: usize = 2;
 
 /// A hypothesis made ready for runs.
 pub(crate) struct Simulator<'a> {
@@ -208,9 +208,10 @@ impl<'a> Simulator<'a> {
             ),
         };
         let total = response.columns;
+        let start_time = segment.times.first().copied().unwrap_or_default();
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
             let at = |list: &Vec<f64>| list.get(row).copied().unwrap_or(0.0);
-            let observed = self.measurement.observe(at(x), at(rate), at(curvature), time);
+            let observed = self.measurement.observe(at(x), at(rate), at(curvature), time, start_time);
             residual[row] = value - observed.value;
             if !self.derivatives {
                 continue;

@@ -71,7 +71,7 @@ impl Path {
                 .zip(curvature)
                 .zip(&segment.times)
                 .map(|(((x, rate), curvature), time)| {
-                    let [slope, ..] = measurement.observe(*x, *rate, *curvature, *time).by_motion;
+                    let [slope, ..] = measurement.observe(*x, *rate, *curvature, *time, 0.0).by_motion;
                     slope
                 })
                 .collect();
