@@ -231,12 +231,22 @@ pub struct Series {
     pub time_s: Vec<f64>,
     /// What was observed.
     pub observed: Vec<f64>,
-    /// Held-out residuals (observed minus predicted) of the recalibrated simulator.
+    /// Residuals (observed minus predicted) of the given simulator; only start states were fitted.
+    pub nominal_residual: Vec<f64>,
+    /// Held-out residuals of the recalibrated simulator.
     pub recalibrated_residual: Vec<f64>,
     /// Held-out residuals with the named effects.
     pub repaired_residual: Vec<f64>,
+    /// Position and velocity of the repaired simulator, fitted to all segments.
+    pub position: Vec<f64>,
+    /// See `position`.
+    pub velocity: Vec<f64>,
+    /// Torque of the input; 0 without one.
+    pub input_torque: Vec<f64>,
     /// First sample of each segment.
     pub segment_starts: Vec<usize>,
+    /// The record, from 0, that each segment is of.
+    pub segment_records: Vec<usize>,
 }
 
 /// Time spent in a stage.

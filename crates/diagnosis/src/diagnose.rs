@@ -186,7 +186,7 @@ pub fn diagnose(
         gap: &figures,
     });
     let calibration = calibration(&work, repaired)?;
-    let series = series(&data, &held.recalibrated, &held.after);
+    let series = series(&data, [&held.nominal, &held.recalibrated, &held.after], &paths);
     let sets = weighed
         .iter()
         .map(|w| SetScore {
@@ -632,14 +632,19 @@ fn calibration(work: &Work<'_>, repaired: &Fit) -> Result<Vec<Calibrated>, Diagn
         .collect())
 }
 
-fn series(data: &Data, recalibrated: &HeldOut, repaired: &HeldOut) -> Series {
+fn series(data: &Data, [nominal, recalibrated, repaired]: [&HeldOut; 3], paths: &[Path]) -> Series {
     let mut series = Series::default();
-    for segment in &data.segments {
+    for (segment, path) in data.segments.iter().zip(paths) {
         series.segment_starts.push(series.time_s.len());
+        series.segment_records.push(segment.record);
         series.time_s.extend(&segment.times);
         series.observed.extend(&segment.values);
+        series.position.extend(&path.motion.position);
+        series.velocity.extend(&path.motion.velocity);
+        series.input_torque.extend(&path.input);
     }
     let flat = |held: &HeldOut| held.residuals.iter().flat_map(|e| e.iter().copied()).collect();
+    series.nominal_residual = flat(nominal);
     series.recalibrated_residual = flat(recalibrated);
     series.repaired_residual = flat(repaired);
     series

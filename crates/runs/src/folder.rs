@@ -25,9 +25,9 @@ pub struct RunFolder {
 pub struct Texts {
     /// The folder's own name.
     pub name: String,
-    /// `config.toml`.
+    /// `config.toml`; of a diagnosis `repaired.toml`.
     pub config: String,
-    /// `result.json`.
+    /// `result.json`; of a diagnosis `diagnosis.json`.
     pub result: String,
     /// `trace.csv`; empty where nothing was trained.
     pub trace: String,
@@ -35,6 +35,8 @@ pub struct Texts {
     pub envelope: String,
     /// `predictions.csv`; empty where nothing was predicted.
     pub predictions: String,
+    /// `series.csv`; empty but for a diagnosis.
+    pub series: String,
     /// `environment.json`.
     pub environment: String,
 }
@@ -165,13 +167,20 @@ impl RunFolder {
         // `.` and `..` have a name only once resolved.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let diagnosis = self.path.join("diagnosis.json").exists();
+        let (config, result) = if diagnosis {
+            (table("repaired.toml")?, read("diagnosis.json")?)
+        } else {
+            (read("config.toml")?, read("result.json")?)
+        };
         Ok(Texts {
             name,
-            config: read("config.toml")?,
-            result: read("result.json")?,
+            config,
+            result,
             trace: table("trace.csv")?,
             envelope: table("envelope.csv")?,
             predictions: table("predictions.csv")?,
+            series: table("series.csv")?,
             environment: read("environment.json")?,
         })
     }
