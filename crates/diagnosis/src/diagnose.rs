@@ -30,7 +30,7 @@ use seed::Seed;
 pub struct Settings {
     /// Probability with which an effect is named where there is none; 0.001 to 0.2.
     pub false_alarm: f64,
-    /// Most effects named together, 1 to 3.
+    /// Most effects named together, 1 to 5.
     pub most_effects: usize,
     /// Randomness of the bootstraps.
     pub seed: Seed,
@@ -38,9 +38,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: 3, seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: MOST_EFFECTS, seed: Seed::new(0) }
     }
 }
+
+/// Most effects that a set can hold.
+const MOST_EFFECTS: usize = 5;
 
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;
@@ -93,21 +96,22 @@ pub fn diagnose(
     let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
     lap("null");
     let breadth = Breadth {
-        most_effects: settings.most_effects.clamp(1, 3),
+        most_effects: settings.most_effects.clamp(1, MOST_EFFECTS),
         singles: 8,
         pairs: 8,
         beam: 3,
         additions: 4,
     };
     // On every stride-th sample a gain is so many times smaller; the search must not stop on that account.
-    let pool = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
+    let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
     lap("search");
-    let pool = refine(&data, &base.calibrated, &pool, REFINED);
+    let pool = refine(&data, &base.calibrated, &found, REFINED);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
 
-    let work = Work { data: &data, base: &base, pool: &pool, time, settings };
+    let thin = Thin { data: &coarse, calibrated: &coarse_base, pool: &found };
+    let work = Work { data: &data, base: &base, pool: &pool, thin, time, settings };
     let shift = work.shift()?;
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
@@ -227,8 +231,16 @@ struct Work<'a> {
     data: &'a Data,
     base: &'a Baseline,
     pool: &'a Pool,
+    thin: Thin<'a>,
     time: f64,
     settings: &'a Settings,
+}
+
+/// The same on every stride-th sample: enough for shares, and many times as fast.
+struct Thin<'a> {
+    data: &'a Data,
+    calibrated: &'a Fit,
+    pool: &'a Pool,
 }
 
 /// Held-out residuals, and the set that they and the evidence speak for.
@@ -314,10 +326,12 @@ impl<'a> Work<'a> {
                     .filter(|(index, _)| set & (1 << index) != 0)
                     .map(|(_, candidate)| *candidate)
                     .collect();
-                let known = self.pool.find(&members).cloned();
-                let fitted = known.or_else(|| without(self.data, repaired, |index| set & (1 << index) != 0));
-                let squares = fitted.unwrap_or_else(|| self.base.calibrated.clone()).segment_squares();
-                let before = self.base.calibrated.segment_squares();
+                let known = self.thin.pool.find(&members).cloned();
+                let fitted =
+                    known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
+                let calibrated = self.thin.calibrated;
+                let squares = fitted.unwrap_or_else(|| calibrated.clone()).segment_squares();
+                let before = calibrated.segment_squares();
                 before.iter().zip(squares).map(|(before, after)| before - after).collect()
             })
             .collect();

@@ -337,6 +337,7 @@ fn bank(only: Option<&str>) -> Vec<Outcome> {
                 answer.gap.recalibrated,
                 answer.verdict.equivalent
             );
+            println!("{} {hidden} {found}", if right { "right" } else { "WRONG" });
             Outcome { hidden, found, right }
         })
         .collect()
@@ -370,7 +371,7 @@ fn a_bank_of_hidden_effects() {
 #[ignore = "seconds in a release build, a minute without"]
 fn silverbox() {
     let columns = CsvColumns {
-        time: None,
+        sample_rate_hz: Some(610.35),
         angle: Some("output_v".to_owned()),
         input: Some("input_v".to_owned()),
         ..CsvColumns::default()
