@@ -30,7 +30,7 @@ use seed::Seed;
 pub struct Settings {
     /// Probability with which an effect is named where there is none; 0.001 to 0.2.
     pub false_alarm: f64,
-    /// Most effects named together, 1 to 5.
+    /// Most effects named together, 1 to 4.
     pub most_effects: usize,
     /// Randomness of the bootstraps.
     pub seed: Seed,
@@ -43,7 +43,7 @@ impl Default for Settings {
 }
 
 /// Most effects that a set can hold.
-const MOST_EFFECTS: usize = 5;
+const MOST_EFFECTS: usize = 4;
 
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;
@@ -105,7 +105,7 @@ pub fn diagnose(
     // On every stride-th sample a gain is so many times smaller; the search must not stop on that account.
     let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
     lap("search");
-    let pool = refine(&data, &base.calibrated, &found, REFINED);
+    let pool = refine(&data, &base.calibrated, &found, REFINED, stride);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
