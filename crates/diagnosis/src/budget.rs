@@ -3,6 +3,7 @@
 use crate::answer::Budget;
 use crate::dictionary::Dictionary;
 use crate::fit::solve;
+use crate::matrices::{element, ridged};
 use dynamics::Class;
 use nalgebra::DMatrix;
 
@@ -48,12 +49,11 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
     if columns.is_empty() {
         return 0.0;
     }
-    let mut products = dictionary.products.select_rows(&columns).select_columns(&columns);
-    for i in 0..columns.len() {
-        // Neighbors on a grid of shapes are nearly dependent; a small ridge shares between them.
-        products[(i, i)] *= 1.0 + 1e-4;
-    }
-    let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| dictionary.scores[c]));
+    let products = dictionary.products.select_rows(&columns).select_columns(&columns);
+    // Neighbors on a grid of shapes are nearly dependent; a small ridge shares between them.
+    let products = ridged(&products, 0..columns.len(), 1e-4);
+    let scores =
+        DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&dictionary.scores, c)));
     solve(&products, &scores).map_or(0.0, |solution| solution.dot(&scores).max(0.0))
 }
 

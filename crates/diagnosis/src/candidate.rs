@@ -35,10 +35,10 @@ pub(crate) struct Parameter {
     /// Whether it says how the effect looks rather than how large it is: a width, a frequency, a phase. It means
     /// nothing while the effect has no size.
     pub(crate) shape: bool,
+    /// Whether the effect is another, simpler one where this parameter is at its lower end: a fit that ends there rejects it
+    /// too. Stribeck friction whose excess is gone at the slowest speeds is Coulomb friction.
+    pub(crate) simpler: bool,
 }
-
-/// Parameters per candidate at most.
-pub(crate) const MOST_PARAMETERS: usize = 3;
 
 const fn any(name: &'static str) -> Parameter {
     Parameter {
@@ -48,19 +48,28 @@ const fn any(name: &'static str) -> Parameter {
         strength: false,
         circular: false,
         shape: false,
+        simpler: false,
     }
 }
 
 const fn positive(name: &'static str) -> Parameter {
-    Parameter { name, lower: 0.0, upper: f64::INFINITY, strength: true, circular: false, shape: false }
+    Parameter {
+        name,
+        lower: 0.0,
+        upper: f64::INFINITY,
+        strength: true,
+        circular: false,
+        shape: false,
+        simpler: false,
+    }
 }
 
 const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
-    Parameter { name, lower, upper, strength: false, circular: false, shape: true }
+    Parameter { name, lower, upper, strength: false, circular: false, shape: true, simpler: false }
 }
 
 const fn angle(name: &'static str) -> Parameter {
-    Parameter { name, lower: -PI, upper: PI, strength: false, circular: true, shape: true }
+    Parameter { name, lower: -PI, upper: PI, strength: false, circular: true, shape: true, simpler: false }
 }
 
 impl Candidate {
@@ -172,7 +181,7 @@ impl Candidate {
                 SystemEffect::StribeckFriction => vec![
                     Parameter { strength: false, ..positive("torque") },
                     positive("static_torque"),
-                    between("velocity", 1e-3 * facts.speed, 0.5 * facts.speed),
+                    Parameter { simpler: true, ..between("velocity", 1e-3 * facts.speed, 0.5 * facts.speed) },
                 ],
                 SystemEffect::QuadraticDrag => vec![positive("coefficient")],
                 SystemEffect::CubicStiffness | SystemEffect::AsymmetricStiffness => vec![any("coefficient")],
@@ -254,7 +263,7 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use super::{Candidate, MOST_PARAMETERS};
+    use super::Candidate;
     use crate::facts::Facts;
 
     const FACTS: Facts = Facts {
@@ -276,7 +285,6 @@ mod tests {
     fn parameters_are_the_laws_own() {
         for candidate in Candidate::ALL {
             let parameters = candidate.parameters(&FACTS);
-            assert!(parameters.len() <= MOST_PARAMETERS);
             for parameter in &parameters {
                 assert!(parameter.lower < parameter.upper, "{} {}", candidate.id(), parameter.name);
             }

@@ -5,6 +5,7 @@ use crate::candidate::{Candidate, Distortion};
 use crate::error::DiagnosisError;
 use crate::fit::Fit;
 use crate::hypothesis::Calibrated as Coefficient;
+use crate::matrices::entry;
 use crate::statistics::normal_above;
 use crate::work::Work;
 use dynamics::{SystemEffect, Units};
@@ -13,7 +14,8 @@ use record::Quantity;
 /// Standard error of a global parameter, widened for the residual's autocorrelation.
 fn interval(fit: &Fit, index: usize) -> Interval {
     let value = fit.point.globals.get(index).copied().unwrap_or_default();
-    let variance = fit.squares / fit.freedom() * fit.autocorrelation_time() * fit.inverse[(index, index)];
+    let variance =
+        fit.squares / fit.freedom() * fit.autocorrelation_time() * entry(&fit.inverse, index, index);
     let reach = normal_above(0.025) * variance.max(0.0).sqrt();
     Interval { value, interval_95: [value - reach, value + reach] }
 }

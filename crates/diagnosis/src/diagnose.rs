@@ -48,7 +48,7 @@ const REFINED: usize = 10;
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
 /// `seconds` is a stopwatch: it gives seconds since any moment. Costs are linear in the number of samples up to
-/// 30,000; longer data are thinned by whole segments, and the answer states the share used. The same input gives the
+/// 10,000; longer data are thinned by whole segments, and the answer states the share used. The same input gives the
 /// same bits with any number of threads (times apart).
 ///
 /// # Errors
@@ -82,7 +82,8 @@ pub fn diagnose(
             candidate.applies(&data.facts, data.quantity == Quantity::Position, nominal.stiffness() > 0.0)
         })
         .collect();
-    let (coarse, stride) = data.strided();
+    let (coarse, _) = data.strided();
+    let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
     let coarse_base =
         fit(&coarse, &base.calibrated.hypothesis, base.calibrated.point.clone(), Moving::All, Effort::FINAL)?;
     let dictionary = Dictionary::at(&coarse, &coarse_base, &candidates)?;
@@ -95,10 +96,10 @@ pub fn diagnose(
         beam: 3,
         additions: 4,
     };
-    // On every stride-th sample a gain is so many times smaller; the search must not stop on that account.
-    let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
+    // On fewer samples a gain is so many times smaller; the search must not stop on that account.
+    let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / finer);
     lap("search");
-    let pool = refine(&data, &base.calibrated, &found, REFINED, stride);
+    let pool = refine(&data, &base.calibrated, &found, REFINED, finer);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
@@ -149,7 +150,7 @@ pub fn diagnose(
     let noise_coarse = floor.value * time.sqrt();
     let next_experiment = closest.filter(|rival| !rival.hypothesis.candidates.is_empty()).and_then(|rival| {
         let strided = |fit: &Fit| fit.clone();
-        experiment::next(&coarse, &strided(repaired), &strided(rival), noise_coarse / (stride as f64).sqrt())
+        experiment::next(&coarse, &strided(repaired), &strided(rival), noise_coarse / finer.sqrt())
     });
     lap("identifiability");
 

@@ -3,6 +3,7 @@
 use crate::candidate::{Candidate, Distortion};
 use crate::facts::Facts;
 use crate::fit::{Fit, solve};
+use crate::matrices::{element, entry};
 use crate::projection::Projection;
 use crate::response::bent;
 use crate::segments::Data;
@@ -33,8 +34,6 @@ pub(crate) struct Dictionary {
     pub(crate) products: DMatrix<f64>,
     /// Products of the columns with the projected residual.
     pub(crate) scores: DVector<f64>,
-    /// Squares of the projected residual.
-    pub(crate) squares: f64,
     /// Candidates that no columns stand for, with parameters to begin at and about what they would take away.
     pub(crate) further: Vec<(Candidate, Vec<f64>, f64)>,
 }
@@ -267,7 +266,6 @@ impl Dictionary {
         Self {
             products: columns.tr_mul(&columns),
             scores: columns.tr_mul(&residual).column(0).clone_owned(),
-            squares: residual.norm_squared(),
             columns,
             entries,
             further,
@@ -283,7 +281,7 @@ impl Dictionary {
             .flat_map(|entry| entry.columns.clone().map(|column| (column, entry.positive)))
             .collect();
         // A size that comes out negative is zero, and the others are solved for anew.
-        let visible = |at: &usize| all.get(*at).is_some_and(|own| self.products[(own.0, own.0)] > 0.0);
+        let visible = |at: &usize| all.get(*at).is_some_and(|own| entry(&self.products, own.0, own.0) > 0.0);
         let mut kept: Vec<usize> = (0..all.len()).filter(visible).collect();
         let solution = loop {
             let columns: Vec<usize> = kept.iter().filter_map(|&at| all.get(at).map(|own| own.0)).collect();
@@ -291,12 +289,13 @@ impl Dictionary {
                 return None;
             }
             let products = self.products.select_rows(&columns).select_columns(&columns);
-            let scores = DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| self.scores[c]));
+            let scores =
+                DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&self.scores, c)));
             let solution = solve(&products, &scores)?;
             let below = |(place, at): (usize, &usize)| {
                 let positive = all.get(*at).is_some_and(|own| own.1);
                 let value = solution.get(place).copied().unwrap_or(0.0);
-                (positive && value < 0.0).then_some((place, value * products[(place, place)].sqrt()))
+                (positive && value < 0.0).then_some((place, value * entry(&products, place, place).sqrt()))
             };
             let worst = kept.iter().enumerate().filter_map(below).min_by(|a, b| a.1.total_cmp(&b.1));
             match worst {
@@ -309,7 +308,7 @@ impl Dictionary {
         for (at, value) in kept.iter().zip(solution.iter()) {
             if let (Some(slot), Some(own)) = (coefficients.get_mut(*at), all.get(*at)) {
                 *slot = *value;
-                squares += value * self.scores[own.0];
+                squares += value * element(&self.scores, own.0);
             }
         }
         let mut from = 0;

@@ -10,6 +10,7 @@
 //! diagonal); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
 
 use crate::hypothesis::Hypothesis;
+use crate::matrices::{element, entry, raised};
 use crate::response::{Prediction, Simulator};
 use crate::segments::{Data, Segment};
 use crate::settle::settle;
@@ -59,7 +60,7 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 40, small: 5e-4, sizes_first: 2, wary: true };
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2, wary: true };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
     /// For what is reported: half of 1e-8·N is far below what a probability would feel.
@@ -146,6 +147,9 @@ fn evaluate(
     Ok(Evaluation { predictions, squares })
 }
 
+/// Damping at which steps are so short that nothing comes of them.
+const MOST_DAMPING: f64 = 1e6;
+
 /// Mean square relative to the median segment's, beyond which a segment is heeded less.
 const DOUBTFUL: f64 = 2.0;
 
@@ -180,28 +184,17 @@ fn equations(predictions: &[Prediction], weights: &[f64], starts: usize, globals
     Equations { blocks, globals: total, right }
 }
 
-/// A matrix with its diagonal raised by a factor.
-fn raised(matrix: &DMatrix<f64>, damping: f64) -> DMatrix<f64> {
-    let mut raised = matrix.clone();
-    let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
-    for i in 0..matrix.nrows() {
-        // A column without any effect still gets a pivot.
-        raised[(i, i)] += damping * matrix[(i, i)] + 1e-14 * largest;
-    }
-    raised
-}
-
 /// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
 pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
     let scale: Vec<f64> =
         matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
     let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
     let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
-        matrix[(i, j)] * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
+        entry(matrix, i, j) * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
     });
-    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| right[(i, j)] * at(i));
+    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(right, i, j) * at(i));
     let solution = scaled.cholesky()?.solve(&scaled_right);
-    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| solution[(i, j)] * at(i)))
+    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(&solution, i, j) * at(i)))
 }
 
 impl Equations {
@@ -224,12 +217,14 @@ impl Equations {
         let free: Vec<usize> =
             held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
         let part = matrix.select_rows(&free).select_columns(&free);
-        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| right[i]));
+        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| element(&right, i)));
         let mut step = DVector::zeros(right.len());
         if !free.is_empty() {
             let solution = solve(&part, &part_right)?;
-            for (at, &index) in free.iter().enumerate() {
-                step[index] = solution[(at, 0)];
+            for (value, &index) in solution.iter().zip(&free) {
+                if let Some(slot) = step.get_mut(index) {
+                    *slot = *value;
+                }
             }
         }
         let mut starts = Vec::with_capacity(self.blocks.len());
@@ -238,6 +233,12 @@ impl Equations {
             starts.push(raised(&block.own, damping).cholesky()?.solve(&right));
         }
         Some((step, starts))
+    }
+
+    /// By how much a step would decrease the squares if the motion were linear in everything.
+    fn promised(&self, step: &DVector<f64>, starts: &[DVector<f64>]) -> f64 {
+        let own: f64 = self.blocks.iter().zip(starts).map(|(block, own)| block.right.dot(own)).sum();
+        self.right.dot(step) + own
     }
 }
 
@@ -276,9 +277,11 @@ pub(crate) fn fit(
         let mut held: Vec<bool> =
             parameters.iter().map(|p| moving == Moving::Starts || sizes && p.shape).collect();
         let mut trial = None;
+        let mut promised = f64::INFINITY;
         // Each round holds at least one parameter more.
         for _ in 0..=globals {
             let Some((step, own)) = system.step(damping, &held) else { break };
+            promised = system.promised(&step, &own);
             let mut next = point.clone();
             let mut fresh = false;
             let moves = next.globals.iter_mut().zip(step.iter()).zip(&parameters).zip(&mut held);
@@ -309,7 +312,9 @@ pub(crate) fn fit(
                 break;
             }
         }
-        let outcome = trial.and_then(|next| {
+        // Nothing more to be had: no need to try.
+        let done = promised <= effort.small * weighted(&at, &weights);
+        let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
             let evaluation = evaluate(&mut simulator, &data.segments, &next).ok()?;
             Some((next, evaluation))
         });
@@ -329,10 +334,11 @@ pub(crate) fn fit(
                 }
                 system = equations(&at.predictions, &weights, starts, globals);
             }
-            _ => damping = (damping * 8.0).max(1e-9),
+            _ if done => small += 1,
+            _ => damping = (damping * 10.0).max(1e-6),
         }
-        // Where no step of any length decreases the squares it is, to rounding, a minimum.
-        let ended = !sizes && (small >= 1 || damping > 1e7);
+        // Where no step of any length decreases the squares it is a minimum, if an uneven one.
+        let ended = !sizes && (small >= 1 || damping > MOST_DAMPING);
         if wary && (ended || steps >= effort.steps / 2) {
             wary = false;
             weights = vec![1.0; data.segments.len()];

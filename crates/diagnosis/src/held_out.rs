@@ -15,12 +15,6 @@ pub(crate) struct HeldOut {
 }
 
 impl HeldOut {
-    /// Mean square per degree of freedom of each segment.
-    pub(crate) fn mean_squares(&self) -> Vec<f64> {
-        let freedom = |e: &DVector<f64>| (e.len() as f64 - self.starts as f64).max(1.0);
-        self.residuals.iter().map(|e| e.norm_squared() / freedom(e)).collect()
-    }
-
     /// Mean square over all segments, each weighed by its samples.
     pub(crate) fn mean_square(&self) -> f64 {
         let squares: f64 = self.residuals.iter().map(DVector::norm_squared).sum();

@@ -168,6 +168,7 @@ impl Hypothesis {
             strength: false,
             circular: false,
             shape: false,
+            simpler: false,
         });
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
     }

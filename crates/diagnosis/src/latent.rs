@@ -6,6 +6,7 @@
 
 use crate::dictionary::torque_columns;
 use crate::fit::{Fit, solve};
+use crate::matrices::ridged;
 use crate::projection::{Projection, jacobians};
 use crate::segments::Data;
 use crate::tangent::matrix;
@@ -88,11 +89,8 @@ pub(crate) fn ceiling(data: &Data, fit: &Fit) -> Result<Vec<DVector<f64>>, Dynam
         .iter()
         .zip(&right)
         .map(|(gram, right)| {
-            let mut ridged = gram.clone();
-            for i in globals..width {
-                ridged[(i, i)] *= 1.0 + RIDGE;
-            }
-            solve(&ridged, right).unwrap_or_else(|| DMatrix::zeros(width, 1))
+            let gram = ridged(gram, globals..width, RIDGE);
+            solve(&gram, right).unwrap_or_else(|| DMatrix::zeros(width, 1))
         })
         .collect();
     let mut at = 0;

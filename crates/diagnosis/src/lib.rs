@@ -35,6 +35,7 @@ mod held_out;
 mod hypothesis;
 mod latent;
 mod maps;
+mod matrices;
 mod noise;
 mod null;
 mod observations;
@@ -51,6 +52,7 @@ mod spectrum;
 mod statistics;
 mod tangent;
 #[cfg(test)]
+#[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod trials;
 mod verdict;
 mod work;

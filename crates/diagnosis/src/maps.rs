@@ -90,7 +90,7 @@ pub(crate) fn maps(
     for ((path, before), after) in paths.iter().zip(recalibrated).zip(repaired) {
         let motion = path.motion.position.iter().zip(&path.motion.velocity).zip(&path.times);
         for (((x, v), t), (before, after)) in motion.zip(before.iter().zip(after.iter())) {
-            let mut add = |map: &mut Vec<Sample>, at: Vec<f64>| {
+            let add = |map: &mut Vec<Sample>, at: Vec<f64>| {
                 map.push(Sample { at, recalibrated: *before, repaired: *after });
             };
             add(&mut time, vec![*t]);

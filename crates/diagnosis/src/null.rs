@@ -1,6 +1,7 @@
 //! What the best of many candidates gains by chance.
 
 use crate::dictionary::Dictionary;
+use crate::matrices::{element, entry};
 use crate::search::singles;
 use crate::statistics::quantile;
 use nalgebra::{DMatrix, DVector};
@@ -24,10 +25,9 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
     // In units of the columns' own lengths: they differ by many orders of magnitude. Columns of one grid are nearly
     // dependent, so the root of their products comes from eigenvalues, not from a triangular factor.
     let scale = dictionary.products.diagonal().map(f64::sqrt);
-    let of = |list: &DVector<f64>, i: usize| list.get(i).copied().unwrap_or(0.0);
     let cosines = DMatrix::from_fn(width, width, |i, j| {
-        let length = of(&scale, i) * of(&scale, j);
-        if length > 0.0 { dictionary.products[(i, j)] / length } else { 0.0 }
+        let length = element(&scale, i) * element(&scale, j);
+        if length > 0.0 { entry(&dictionary.products, i, j) / length } else { 0.0 }
     });
     let eigen = cosines.symmetric_eigen();
     let mut factor = eigen.eigenvectors;

@@ -2,6 +2,7 @@
 //! rests on them.
 
 use crate::answer::Series;
+use crate::matrices::set;
 use dynamics::Coefficients;
 use record::Quantity;
 use std::f64::consts::PI;
@@ -217,7 +218,7 @@ fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
     let values = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     for (row, (time, _)) in points.iter().enumerate() {
         for power in 0..=degree {
-            matrix[(row, power)] = (time / reach).powi(power as i32);
+            set(&mut matrix, row, power, (time / reach).powi(power as i32));
         }
     }
     let normal = matrix.tr_mul(&matrix).cholesky()?;

@@ -1,6 +1,5 @@
 //! The best sets once more, on every sample and to convergence.
 
-use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::score::score;
 use crate::search::{Pool, vanished};
@@ -15,36 +14,40 @@ const FEWEST: usize = 3;
 const HOPELESS: f64 = 60.0;
 
 /// Refits the best `most` sets of a pool on other data with the same segments, and as many more that differ from the very
-/// best in one member: its rivals. The calibrated simulator, fitted there already, comes first.
-pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, stride: usize) -> Pool {
+/// best in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
+pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, finer: f64) -> Pool {
     let time = pool.autocorrelation_time();
     let ranked: Vec<&Fit> =
         pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
-    let score_of = |fit: &Fit| stride as f64 * score(fit, time);
-    let highest = ranked.first().map_or(0.0, |fit| score_of(fit));
-    let ranked: Vec<&Fit> = ranked
-        .into_iter()
-        .enumerate()
-        .filter(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
-        .map(|(_, fit)| fit)
-        .collect();
-    let best: &[Candidate] = ranked.first().map_or(&[], |fit| &fit.hypothesis.candidates);
-    let rival = |fit: &Fit| {
-        let own = &fit.hypothesis.candidates;
-        own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
-    };
-    let further = ranked.iter().skip(most).copied().filter(|fit| rival(fit)).take(most);
-    let chosen: Vec<&Fit> = ranked.iter().take(most).copied().chain(further).collect();
-    let refined: Vec<Option<Fit>> = chosen
-        .par_iter()
-        .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
-        .collect();
-    let (gone, fits): (Vec<Fit>, Vec<Fit>) =
-        refined.into_iter().flatten().partition(|fit| vanished(data, fit));
-    let mut rejected = pool.rejected.clone();
-    rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+    let score_of = |fit: &Fit| finer * score(fit, time);
     let mut all = vec![calibrated.clone()];
-    all.extend(fits);
+    let mut rejected = pool.rejected.clone();
+    let mut waiting = ranked.as_slice();
+    // Where none of the best survives on every sample, the next ones have their turn.
+    while let (1, [best, ..]) = (all.len(), waiting) {
+        let highest = score_of(best);
+        let near = waiting
+            .iter()
+            .enumerate()
+            .take_while(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
+            .count();
+        let (batch, rest) = waiting.split_at(near);
+        waiting = rest;
+        let rival = |fit: &Fit| {
+            let (own, best) = (&fit.hypothesis.candidates, &best.hypothesis.candidates);
+            own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
+        };
+        let further = batch.iter().skip(most).filter(|fit| rival(fit)).take(most);
+        let chosen: Vec<&Fit> = batch.iter().take(most).chain(further).copied().collect();
+        let refined: Vec<Option<Fit>> = chosen
+            .par_iter()
+            .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
+            .collect();
+        let (gone, fits): (Vec<Fit>, Vec<Fit>) =
+            refined.into_iter().flatten().partition(|fit| vanished(data, fit));
+        rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+        all.extend(fits);
+    }
     Pool { fits: all, rejected }
 }
 
@@ -66,9 +69,4 @@ pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> 
     let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
     let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
     fit(data, &hypothesis, Point { globals, starts }, Moving::All, Effort::FINAL).ok()
-}
-
-/// The best of two fits of the same set.
-pub(crate) fn better<'a>(one: &'a Fit, other: &'a Fit, time: f64) -> &'a Fit {
-    if score(one, time) >= score(other, time) { one } else { other }
 }

@@ -3,6 +3,7 @@
 use crate::candidate::{Candidate, Distortion};
 use crate::facts::Facts;
 use crate::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
+use crate::matrices::set;
 use crate::segments::{Data, Segment};
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{DynamicsError, SystemEffect};
@@ -11,7 +12,7 @@ use record::Quantity;
 
 /// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
 const MOST_STEPS: usize = 1200;
-const MOST_STEPS_PER_SAMPLE: usize = 2;
+const MOST_STEPS_PER_SAMPLE: usize = 3;
 
 /// A hypothesis made ready for runs.
 pub(crate) struct Simulator<'a> {
@@ -27,6 +28,8 @@ pub(crate) struct Simulator<'a> {
     columns: Vec<Option<usize>>,
     derivatives: bool,
     times: Vec<f64>,
+    /// Integration steps of all runs so far.
+    pub(crate) steps: usize,
 }
 
 /// A segment's response.
@@ -82,12 +85,17 @@ impl<'a> Simulator<'a> {
             }
         }
         let lag = measurement.lag.is_some();
-        let longest = data.segments.iter().map(|segment| segment.times.len()).max().unwrap_or(0);
+        let seconds = |segment: &Segment| match segment.times.as_slice() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        };
+        // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
+        let longest = data.segments.iter().map(seconds).fold(0.0, f64::max) / facts.interval;
         let settings = Settings {
             tolerance: facts.tolerance,
             velocity: true,
             acceleration: lag || !derivatives || data.quantity != Quantity::Position,
-            most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest,
+            most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest as usize,
             ..Settings::default()
         };
         let system = hypothesis.system(facts, point)?;
@@ -103,6 +111,7 @@ impl<'a> Simulator<'a> {
             columns,
             derivatives,
             times: Vec::new(),
+            steps: 0,
         })
     }
 
@@ -139,7 +148,9 @@ impl<'a> Simulator<'a> {
         self.times.extend(segment.times.iter().map(|time| self.measurement.true_time(*time)));
         let state = self.state(segment, start);
         let input = self.data.inputs.get(segment.record).and_then(Option::as_ref);
-        self.model.run_into(state, input, &self.times, &mut self.response)
+        let outcome = self.model.run_into(state, input, &self.times, &mut self.response);
+        self.steps += self.response.steps;
+        outcome
     }
 
     /// The full state at a segment's start. Hidden states that are not fitted are relaxed where the record begins;
@@ -212,7 +223,9 @@ impl<'a> Simulator<'a> {
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
             let at = |list: &Vec<f64>| list.get(row).copied().unwrap_or(0.0);
             let observed = self.measurement.observe(at(x), at(rate), at(curvature), time, start_time);
-            residual[row] = value - observed.value;
+            if let Some(slot) = residual.get_mut(row) {
+                *slot = value - observed.value;
+            }
             if !self.derivatives {
                 continue;
             }
@@ -226,10 +239,10 @@ impl<'a> Simulator<'a> {
                 sum
             };
             for column in 0..starts {
-                jacobian[(row, column)] = through(column);
+                set(&mut jacobian, row, column, through(column));
             }
             for (number, (source, column)) in self.sources.iter().zip(&self.columns).enumerate() {
-                jacobian[(row, starts + number)] = match (column, *source) {
+                let value = match (column, *source) {
                     (Some(column), _) => through(*column),
                     (None, Source::Candidate(index, parameter)) => {
                         let which = sensor_parameter(self.hypothesis.candidates.get(index), parameter);
@@ -237,6 +250,7 @@ impl<'a> Simulator<'a> {
                     }
                     (None, Source::Nominal(_)) => 0.0,
                 };
+                set(&mut jacobian, row, starts + number, value);
             }
         }
         self.combine_stribeck(&mut jacobian, starts);

@@ -79,12 +79,13 @@ impl Pool {
     }
 }
 
-/// A strength at zero: the candidate is not there.
+/// A size at zero, or a shape at which the candidate is a simpler one: it is not there.
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parameters = fit.hypothesis.parameters(&data.facts);
     let calibrated = fit.hypothesis.calibrated.len();
     let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
-    own.into_iter().any(|(parameter, value)| parameter.strength && *value <= parameter.lower)
+    own.into_iter()
+        .any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
 }
 
 /// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
@@ -223,6 +224,7 @@ fn around(
     candidates: &[Candidate],
     breadth: &Breadth,
     threshold: f64,
+    best: bool,
 ) -> Vec<Proposal> {
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
@@ -236,7 +238,8 @@ fn around(
         }
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
-            if *gain > weakest && worth(*gain) {
+            // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
+            if (best || *gain > weakest) && worth(*gain) {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -358,7 +361,7 @@ pub(crate) fn search(
             .par_iter()
             .enumerate()
             .map(|(place, base)| {
-                let mut own = around(data, base, candidates, breadth, threshold);
+                let mut own = around(data, base, candidates, breadth, threshold, place == 0);
                 let mut dropped = Vec::new();
                 if place == 0 {
                     own.extend(generalized(data, base, candidates));

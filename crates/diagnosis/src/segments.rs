@@ -5,6 +5,7 @@
 
 use crate::error::DiagnosisError;
 use crate::facts::Facts;
+use crate::matrices::element;
 use crate::observations::Observations;
 use crate::period::swing;
 use crate::statistics::{median, quantile};
@@ -25,8 +26,8 @@ const FEWEST_PER_SEGMENT: usize = 24;
 const FEWEST_SAMPLES: usize = 50;
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// Most samples that the search for effects looks at; longer data are thinned by whole segments.
-pub(crate) const MOST_SEARCHED: usize = 30_000;
+/// Most samples that are looked at; longer data are thinned by whole segments, so that the time of an answer is bounded.
+pub(crate) const MOST_SEARCHED: usize = 10_000;
 
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
@@ -398,7 +399,7 @@ fn guess(
     });
     let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
     let fit = design.svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
-    let (offset, cosine, sine) = (fit[0], fit[1], fit[2]);
+    let [offset, cosine, sine] = [0, 1, 2].map(|index| element(&fit, index));
     match (quantity, period_s.is_some()) {
         (Quantity::Position, true) => [offset + cosine, omega * sine],
         (Quantity::Position, false) => [offset, cosine],

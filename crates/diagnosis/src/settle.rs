@@ -7,6 +7,7 @@
 
 use crate::fit::extended;
 use crate::hypothesis::Hypothesis;
+use crate::matrices::raised;
 use crate::response::{Prediction, Simulator};
 use crate::segments::Segment;
 use crate::statistics::{mean, median};
@@ -58,12 +59,7 @@ fn descend(
     let mut damping = 1e-4;
     for _ in 0..STEPS {
         let own = at.jacobian.columns(0, count);
-        let mut matrix = own.tr_mul(&own);
-        let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
-        for i in 0..count {
-            matrix[(i, i)] += damping * matrix[(i, i)] + 1e-14 * largest;
-        }
-        let step = matrix.cholesky()?.solve(&own.tr_mul(&at.residual));
+        let step = raised(&own.tr_mul(&own), damping).cholesky()?.solve(&own.tr_mul(&at.residual));
         let next: Vec<f64> = start.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
         let trial = simulator.predict(segment, &next).ok();
         let (before, after) = (at.residual.norm_squared(), trial.as_ref().map(|t| t.residual.norm_squared()));

@@ -153,12 +153,6 @@ impl Path {
         self.propagate(Vector2::zeros(), torque, quantity)
     }
 
-    /// The response to a unit start position and to a unit start velocity.
-    pub(crate) fn starts(&self, quantity: Quantity) -> [Vec<f64>; 2] {
-        let none = vec![0.0; self.len()];
-        [Vector2::new(1.0, 0.0), Vector2::new(0.0, 1.0)].map(|start| self.propagate(start, &none, quantity))
-    }
-
     fn propagate(&self, start: Vector2<f64>, torque: &[f64], quantity: Quantity) -> Vec<f64> {
         let mut state = start;
         let mut column = Vec::with_capacity(self.len());
@@ -167,9 +161,9 @@ impl Path {
         let rows = torque.iter().zip(&self.gain).zip(self.stiffness.iter().zip(&self.damping));
         for ((&torque, gain), (stiffness, damping)) in rows {
             let value = match quantity {
-                Quantity::Position => state[0],
-                Quantity::Velocity => state[1],
-                Quantity::Acceleration => (torque - stiffness * state[0] - damping * state[1]) / self.inertia,
+                Quantity::Position => state.x,
+                Quantity::Velocity => state.y,
+                Quantity::Acceleration => (torque - stiffness * state.x - damping * state.y) / self.inertia,
             };
             column.push(value * gain);
             if let (Some(step), Some(&after)) = (steps.next(), next.next()) {

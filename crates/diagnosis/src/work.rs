@@ -9,6 +9,7 @@ use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit, Moving, Point, fit};
 use crate::held_out::{HeldOut, interleaved, last_third};
 use crate::hypothesis::{Calibrated as Coefficient, Hypothesis};
+use crate::matrices::entry;
 use crate::refine::without;
 use crate::search::Pool;
 use crate::segments::Data;
@@ -70,7 +71,7 @@ impl<'a> Work<'a> {
         let nominal = &base.hypothesis.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
-        let error = (shifted.squares / shifted.freedom() * time * shifted.inverse[(0, 0)]).sqrt();
+        let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
         let reach = normal_above(0.025) * error;
         Ok((enough && needed).then(|| Shift {
             torque: Interval {
