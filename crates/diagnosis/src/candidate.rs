@@ -30,8 +30,6 @@ pub(crate) struct Parameter {
     /// Whether the effect is gone where this parameter is 0 (and 0 is its bound): a fit that ends there
     /// rejects the effect.
     pub(crate) strength: bool,
-    /// An angle: full turns do not count.
-    pub(crate) circular: bool,
     /// Whether it says how the effect looks rather than how large it is: a width, a frequency, a phase. It means
     /// nothing while the effect has no size.
     pub(crate) shape: bool,
@@ -46,30 +44,24 @@ const fn any(name: &'static str) -> Parameter {
         lower: f64::NEG_INFINITY,
         upper: f64::INFINITY,
         strength: false,
-        circular: false,
         shape: false,
         simpler: false,
     }
 }
 
 const fn positive(name: &'static str) -> Parameter {
-    Parameter {
-        name,
-        lower: 0.0,
-        upper: f64::INFINITY,
-        strength: true,
-        circular: false,
-        shape: false,
-        simpler: false,
-    }
+    Parameter { name, lower: 0.0, upper: f64::INFINITY, strength: true, shape: false, simpler: false }
 }
 
 const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
-    Parameter { name, lower, upper, strength: false, circular: false, shape: true, simpler: false }
+    Parameter { name, lower, upper, strength: false, shape: true, simpler: false }
 }
 
-const fn angle(name: &'static str) -> Parameter {
-    Parameter { name, lower: -PI, upper: PI, strength: false, circular: true, shape: true, simpler: false }
+/// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Polar {
+    size: usize,
+    angle: usize,
 }
 
 impl Candidate {
@@ -185,7 +177,7 @@ impl Candidate {
                 ],
                 SystemEffect::QuadraticDrag => vec![positive("coefficient")],
                 SystemEffect::CubicStiffness | SystemEffect::AsymmetricStiffness => vec![any("coefficient")],
-                SystemEffect::Gravity => vec![positive("torque"), angle("angle")],
+                SystemEffect::Gravity => vec![any("torque"), any("angle")],
                 SystemEffect::ConstantTorque => vec![any("torque")],
                 SystemEffect::Backlash => {
                     vec![Parameter { strength: true, shape: false, ..between("half_width", 0.0, 0.9 * a) }]
@@ -200,9 +192,9 @@ impl Candidate {
                 ],
                 SystemEffect::StiffnessDrift | SystemEffect::DampingDrift => vec![any("rate")],
                 SystemEffect::PeriodicForcing => vec![
-                    positive("torque"),
+                    any("torque"),
                     between("frequency", PI / facts.duration, PI / facts.interval),
-                    angle("phase"),
+                    any("phase"),
                 ],
                 SystemEffect::FlexibleCoupling => vec![
                     Parameter { upper: 1e2 * facts.inertia, ..positive("inertia") },
@@ -228,7 +220,7 @@ impl Candidate {
                 }]
             }
             Self::Chain(Distortion::Nonlinearity) => {
-                vec![Parameter { upper: 0.9, ..positive("amplitude") }, angle("phase")]
+                vec![any("amplitude"), any("phase")]
             }
             Self::Chain(Distortion::Drift) => vec![any("rate")],
             Self::Chain(Distortion::Clock) => {
@@ -241,15 +233,57 @@ impl Candidate {
         }
     }
 
-    /// The law's parameters from a fit's. They differ only for Stribeck friction, whose second is fitted as the
-    /// excess of the static torque, so that it stays at least the first.
-    pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
-        match (self, fitted) {
-            (Self::System(SystemEffect::StribeckFriction), &[torque, excess, velocity]) => {
-                vec![torque, torque + excess, velocity]
+    fn polar(self) -> Option<Polar> {
+        match self {
+            Self::System(SystemEffect::Gravity) | Self::Chain(Distortion::Nonlinearity) => {
+                Some(Polar { size: 0, angle: 1 })
             }
-            _ => fitted.to_vec(),
+            Self::System(SystemEffect::PeriodicForcing) => Some(Polar { size: 0, angle: 2 }),
+            _ => None,
         }
+    }
+
+    /// The law's parameters from a fit's. They differ where the law has a size and an angle, which are fitted as (size·cos,
+    /// size·sin), and for Stribeck friction, whose second is fitted as the excess of the static torque, so that it
+    /// stays at least the first.
+    pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
+        let mut values = fitted.to_vec();
+        if let Some(Polar { size, angle }) = self.polar()
+            && let (Some(&p), Some(&q)) = (fitted.get(size), fitted.get(angle))
+        {
+            for (place, value) in [(size, p.hypot(q)), (angle, q.atan2(p))] {
+                if let Some(slot) = values.get_mut(place) {
+                    *slot = value;
+                }
+            }
+        }
+        if let (Self::System(SystemEffect::StribeckFriction), [torque, excess, _]) =
+            (self, values.as_mut_slice())
+        {
+            *excess += *torque;
+        }
+        values
+    }
+
+    /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.
+    pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
+        if self == Self::System(SystemEffect::StribeckFriction) {
+            return vec![(1, 0, 1.0)];
+        }
+        let Some(Polar { size, angle }) = self.polar() else { return Vec::new() };
+        let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
+        let (p, q) = (at(size), at(angle));
+        let length = p.hypot(q);
+        if length == 0.0 {
+            return vec![(angle, angle, 0.0)];
+        }
+        let (cosine, sine) = (p / length, q / length);
+        vec![
+            (size, size, cosine),
+            (size, angle, sine),
+            (angle, size, -sine / length),
+            (angle, angle, cosine / length),
+        ]
     }
 
     /// Hidden state variables that a segment in the middle of a record cannot know and has to fit.

@@ -31,10 +31,11 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     for (index, size) in sizes.iter().enumerate() {
         let around = sizes.get(index.saturating_sub(2)..(index + 3).min(sizes.len())).unwrap_or_default();
         let largest = around.iter().copied().fold(0.0, f64::max);
-        if *size > limit && *size >= largest {
-            if let Some(slot) = kept.get_mut(index + 2) {
-                *slot = false;
-            }
+        if *size > limit
+            && *size >= largest
+            && let Some(slot) = kept.get_mut(index + 2)
+        {
+            *slot = false;
         }
     }
     // A smooth motion that is sampled coarsely has no outliers just because a cubic cannot follow it.

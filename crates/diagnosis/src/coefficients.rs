@@ -5,21 +5,43 @@ use crate::candidate::{Candidate, Distortion};
 use crate::error::DiagnosisError;
 use crate::fit::Fit;
 use crate::hypothesis::Calibrated as Coefficient;
-use crate::matrices::entry;
+use crate::matrices::{entry, set};
 use crate::statistics::normal_above;
 use crate::work::Work;
-use dynamics::{SystemEffect, Units};
+use dynamics::Units;
+use nalgebra::DMatrix;
 use record::Quantity;
 
-/// Standard error of a global parameter, widened for the residual's autocorrelation.
-fn interval(fit: &Fit, index: usize) -> Interval {
-    let value = fit.point.globals.get(index).copied().unwrap_or_default();
-    let variance =
-        fit.squares / fit.freedom() * fit.autocorrelation_time() * entry(&fit.inverse, index, index);
-    let reach = normal_above(0.025) * variance.max(0.0).sqrt();
+/// Variance that the inverse of the normal equations is a multiple of: the residual's, for as many samples as its
+/// autocorrelation leaves.
+fn variance(fit: &Fit) -> f64 {
+    fit.squares / fit.freedom() * fit.autocorrelation_time()
+}
+
+fn around(value: f64, error: f64) -> Interval {
+    let reach = normal_above(0.025) * error;
     Interval { value, interval_95: [value - reach, value + reach] }
 }
 
+/// A global parameter with its interval.
+fn interval(fit: &Fit, index: usize) -> Interval {
+    let value = fit.point.globals.get(index).copied().unwrap_or_default();
+    around(value, (variance(fit) * entry(&fit.inverse, index, index)).max(0.0).sqrt())
+}
+
+/// Standard errors of a law's parameters, whose fitted ones begin at a place among the globals.
+fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64]) -> Vec<f64> {
+    let count = fitted.len();
+    let mut change = DMatrix::identity(count, count);
+    for (row, column, slope) in candidate.slopes(fitted) {
+        set(&mut change, row, column, slope);
+    }
+    let own = DMatrix::from_fn(count, count, |i, j| entry(&fit.inverse, at + i, at + j));
+    let covariance = &change * own * change.transpose() * variance(fit);
+    covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
+}
+
+/// What a fit says of an effect's parameters.
 pub(crate) fn parameters(work: &Work<'_>, fit: &Fit, candidate: Candidate) -> Vec<ParameterEstimate> {
     let facts = &work.data.facts;
     let units = fit.hypothesis.nominal.units();
@@ -27,24 +49,19 @@ pub(crate) fn parameters(work: &Work<'_>, fit: &Fit, candidate: Candidate) -> Ve
     for own in &fit.hypothesis.candidates {
         let parameters = own.parameters(facts);
         if *own == candidate {
-            let mut estimates: Vec<ParameterEstimate> = parameters
+            let fitted = fit.point.globals.get(at..at + parameters.len()).unwrap_or_default();
+            let spread = spread(fit, *own, at, fitted);
+            return parameters
                 .iter()
+                .zip(own.values(fitted))
+                .zip(spread)
                 .enumerate()
-                .map(|(index, parameter)| ParameterEstimate {
+                .map(|(index, ((parameter, value), error))| ParameterEstimate {
                     name: parameter.name,
                     unit: unit(candidate, index, units, work.data.quantity),
-                    estimate: interval(fit, at + index),
+                    estimate: around(value, error),
                 })
                 .collect();
-            // The second parameter of Stribeck friction is fitted as an excess over the first.
-            if candidate == Candidate::System(SystemEffect::StribeckFriction) {
-                let first = estimates.first().map_or(0.0, |estimate| estimate.estimate.value);
-                if let Some(second) = estimates.get_mut(1) {
-                    second.estimate.value += first;
-                    second.estimate.interval_95 = second.estimate.interval_95.map(|end| end + first);
-                }
-            }
-            return estimates;
         }
         at += parameters.len();
     }

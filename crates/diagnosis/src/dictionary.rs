@@ -330,17 +330,10 @@ impl Dictionary {
     /// The parameters that an entry's coefficients stand for.
     pub(crate) fn parameters(&self, entry: usize, coefficients: &[f64]) -> Vec<f64> {
         let Some(entry) = self.entries.get(entry) else { return Vec::new() };
-        let polar = |p: f64, q: f64| (p.hypot(q), q.atan2(p));
         match (entry.candidate, entry.shape.as_slice(), coefficients) {
             (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v], &[p, q]) => vec![p, q, v],
-            (Candidate::System(SystemEffect::Gravity), _, &[p, q])
-            | (Candidate::Chain(Distortion::Nonlinearity), _, &[p, q]) => {
-                let (size, angle) = polar(p, q);
-                vec![size, angle]
-            }
             (Candidate::System(SystemEffect::PeriodicForcing), &[_, frequency, _], &[p, q]) => {
-                let (size, angle) = polar(p, q);
-                vec![size, frequency, angle]
+                vec![p, frequency, q]
             }
             (Candidate::System(SystemEffect::Hysteresis), &[_, displacement], &[c]) => vec![c, displacement],
             (Candidate::System(SystemEffect::EndStop), &[angle, ..], &[c]) => vec![angle, c, 0.0],
@@ -358,11 +351,14 @@ impl Dictionary {
     }
 }
 
+/// A torque as a function of position, velocity and time.
+pub(crate) type Torque = Box<dyn Fn(f64, f64, f64) -> f64 + Sync>;
+
 /// The response to torques that are functions of the motion, projected: for what has no name.
 pub(crate) fn torque_columns(
     data: &Data,
     fit: &Fit,
-    torques: &[Box<dyn Fn(f64, f64, f64) -> f64 + Sync>],
+    torques: &[Torque],
 ) -> Result<Vec<Vec<f64>>, DynamicsError> {
     let paths = Path::of(data, fit)?;
     Ok(torques

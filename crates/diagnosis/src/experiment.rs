@@ -48,10 +48,12 @@ fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
     let calibrated = model.hypothesis.calibrated.len();
     let mut at = calibrated;
     for candidate in &model.hypothesis.candidates {
-        if *candidate == GRAVITY {
-            if let Some(angle) = point.get_mut(at + 1) {
-                *angle += tilt;
-            }
+        if *candidate == GRAVITY
+            && let Some([p, q]) = point.get_mut(at..at + 2)
+        {
+            // The pair (size·cos, size·sin) turns with the mount.
+            let (sine, cosine) = tilt.sin_cos();
+            (*p, *q) = (*p * cosine - *q * sine, *p * sine + *q * cosine);
         }
         at += candidate.parameters(&data.facts).len();
     }

@@ -17,7 +17,6 @@ use crate::settle::settle;
 use crate::statistics::{autocorrelation_time, median};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::TAU;
 
 /// Where a fit is: global parameters, and a start state for each segment.
 #[derive(Debug, Clone, PartialEq)]
@@ -288,7 +287,7 @@ pub(crate) fn fit(
             for (((value, step), parameter), held) in moves {
                 let wanted = *value + step;
                 let outside = wanted < parameter.lower || wanted > parameter.upper;
-                if outside && !parameter.circular && !*held {
+                if outside && !*held {
                     let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
                     // At the end already: hold it and solve again. Otherwise go there.
                     if *value == end {
@@ -297,9 +296,6 @@ pub(crate) fn fit(
                     *value = end;
                 } else {
                     *value = wanted;
-                }
-                if parameter.circular {
-                    *value -= TAU * (*value / TAU).round();
                 }
             }
             for (start, step) in next.starts.iter_mut().zip(own) {
@@ -371,7 +367,7 @@ pub(crate) fn fit(
         .globals
         .iter()
         .zip(&parameters)
-        .map(|(value, p)| !p.circular && (*value <= p.lower || *value >= p.upper))
+        .map(|(value, p)| *value <= p.lower || *value >= p.upper)
         .collect();
     Ok(Fit {
         hypothesis: hypothesis.clone(),

@@ -166,7 +166,6 @@ impl Hypothesis {
             },
             upper: f64::INFINITY,
             strength: false,
-            circular: false,
             shape: false,
             simpler: false,
         });
@@ -225,7 +224,7 @@ impl Hypothesis {
     pub(crate) fn measurement(&self, facts: &Facts, point: &[f64]) -> Measurement {
         let mut measurement = Measurement::default();
         for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
-            match (candidate, own) {
+            match (candidate, candidate.values(own).as_slice()) {
                 (Candidate::Chain(Distortion::Lag), &[lag]) => measurement.lag = Some(lag),
                 (Candidate::Chain(Distortion::Nonlinearity), &[amplitude, phase]) => {
                     measurement.nonlinearity = Some((amplitude, phase));

@@ -4,7 +4,7 @@
 //! order, its coefficients fitted to interleaved segments and scored on the others. Where it beats the best named
 //! effects clearly, something without a name is at work; where it does not, nothing smooth is left.
 
-use crate::dictionary::torque_columns;
+use crate::dictionary::{Torque, torque_columns};
 use crate::fit::{Fit, solve};
 use crate::matrices::ridged;
 use crate::projection::{Projection, jacobians};
@@ -12,8 +12,6 @@ use crate::segments::Data;
 use crate::tangent::matrix;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
-
-type Torque = Box<dyn Fn(f64, f64, f64) -> f64 + Sync>;
 
 /// Highest total degree in position and velocity.
 const DEGREE: i32 = 5;

@@ -253,23 +253,28 @@ impl<'a> Simulator<'a> {
                 set(&mut jacobian, row, starts + number, value);
             }
         }
-        self.combine_stribeck(&mut jacobian, starts);
+        self.combine(&mut jacobian, starts);
         Ok(Prediction { residual, jacobian })
     }
 
-    /// The excess of Stribeck friction moves the static torque alone, its first parameter both.
-    fn combine_stribeck(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
+    /// From derivatives by the laws' parameters to those by the fit's.
+    fn combine(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
         if !self.derivatives {
             return;
         }
-        for (number, source) in self.sources.iter().enumerate() {
-            let Source::Candidate(index, 0) = *source else { continue };
-            let stribeck = Candidate::System(SystemEffect::StribeckFriction);
-            if self.hypothesis.candidates.get(index) == Some(&stribeck) {
-                let excess = jacobian.column(starts + number + 1).clone_owned();
-                let mut torque = jacobian.column_mut(starts + number);
-                torque += excess;
+        let parts = self.hypothesis.parts(self.facts(), &self.point);
+        let mut at = starts + self.hypothesis.calibrated.len();
+        for (candidate, part) in self.hypothesis.candidates.iter().zip(parts) {
+            let slopes = candidate.slopes(part);
+            if !slopes.is_empty() {
+                let law = jacobian.columns(at, part.len()).clone_owned();
+                let mut change = DMatrix::identity(part.len(), part.len());
+                for (row, column, slope) in slopes {
+                    set(&mut change, row, column, slope);
+                }
+                jacobian.columns_mut(at, part.len()).copy_from(&(law * change));
             }
+            at += part.len();
         }
     }
 
