@@ -30,7 +30,7 @@ use seed::Seed;
 pub struct Settings {
     /// Probability with which an effect is named where there is none; 0.001 to 0.2.
     pub false_alarm: f64,
-    /// Most effects named together, 1 to 3.
+    /// Most effects named together, 1 to 4.
     pub most_effects: usize,
     /// Randomness of the bootstraps.
     pub seed: Seed,
@@ -38,9 +38,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: 3, seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: MOST_EFFECTS, seed: Seed::new(0) }
     }
 }
+
+/// Most effects that a set can hold.
+const MOST_EFFECTS: usize = 4;
 
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;
@@ -93,21 +96,22 @@ pub fn diagnose(
     let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
     lap("null");
     let breadth = Breadth {
-        most_effects: settings.most_effects.clamp(1, 3),
+        most_effects: settings.most_effects.clamp(1, MOST_EFFECTS),
         singles: 8,
         pairs: 8,
         beam: 3,
         additions: 4,
     };
     // On every stride-th sample a gain is so many times smaller; the search must not stop on that account.
-    let pool = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
+    let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / stride as f64);
     lap("search");
-    let pool = refine(&data, &base.calibrated, &pool, REFINED);
+    let pool = refine(&data, &base.calibrated, &found, REFINED, stride);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
 
-    let work = Work { data: &data, base: &base, pool: &pool, time, settings };
+    let thin = Thin { data: &coarse, calibrated: &coarse_base, pool: &found };
+    let work = Work { data: &data, base: &base, pool: &pool, thin, time, settings };
     let shift = work.shift()?;
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
@@ -115,8 +119,6 @@ pub fn diagnose(
     let floor = noise::floor(&data, &repaired.residuals);
     let ceiling = latent::ceiling(&data, repaired)?;
     lap("latent torque");
-    let third =
-        [last_third(&data, &base.calibrated, Moving::All)?, last_third(&data, repaired, Moving::All)?];
     let unit = records.first().map_or("", |record| record.unit);
     let figures = gap(
         &Stages {
@@ -126,7 +128,7 @@ pub fn diagnose(
             ceiling: &ceiling,
         },
         floor,
-        third,
+        held.last_third,
         unit,
         &settings.seed,
     );
@@ -229,8 +231,16 @@ struct Work<'a> {
     data: &'a Data,
     base: &'a Baseline,
     pool: &'a Pool,
+    thin: Thin<'a>,
     time: f64,
     settings: &'a Settings,
+}
+
+/// The same on every stride-th sample: enough for shares, and many times as fast.
+struct Thin<'a> {
+    data: &'a Data,
+    calibrated: &'a Fit,
+    pool: &'a Pool,
 }
 
 /// Held-out residuals, and the set that they and the evidence speak for.
@@ -238,6 +248,8 @@ struct Held<'a> {
     nominal: HeldOut,
     recalibrated: HeldOut,
     after: HeldOut,
+    /// Mean squares on the last third, recalibrated and repaired.
+    last_third: [f64; 2],
     repaired: &'a Fit,
 }
 
@@ -280,19 +292,24 @@ impl<'a> Work<'a> {
     fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
         let nominal = interleaved(self.data, &self.base.nominal, Moving::Starts)?;
         let recalibrated = interleaved(self.data, &self.base.calibrated, Moving::All)?;
+        let third = last_third(self.data, &self.base.calibrated, Moving::All)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
         for w in weighed.iter().take(4) {
             if w.fit.hypothesis.candidates.is_empty() {
                 break;
             }
-            let after = interleaved(self.data, w.fit, Moving::All)?;
+            // A set whose motion cannot be followed from parts of the data predicts nothing.
+            let Ok(after) = interleaved(self.data, w.fit, Moving::All) else { continue };
+            let Ok(later) = last_third(self.data, w.fit, Moving::All) else { continue };
             if after.mean_square() < recalibrated.mean_square() {
-                return Ok(Held { nominal, recalibrated, after, repaired: w.fit });
+                let last_third = [third, later];
+                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit });
             }
         }
         let repaired = calibrated
             .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
-        Ok(Held { nominal, after: recalibrated.clone(), recalibrated, repaired })
+        let after = recalibrated.clone();
+        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired })
     }
 
     /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its interval from a
@@ -309,10 +326,12 @@ impl<'a> Work<'a> {
                     .filter(|(index, _)| set & (1 << index) != 0)
                     .map(|(_, candidate)| *candidate)
                     .collect();
-                let known = self.pool.find(&members).cloned();
-                let fitted = known.or_else(|| without(self.data, repaired, |index| set & (1 << index) != 0));
-                let squares = fitted.unwrap_or_else(|| self.base.calibrated.clone()).segment_squares();
-                let before = self.base.calibrated.segment_squares();
+                let known = self.thin.pool.find(&members).cloned();
+                let fitted =
+                    known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
+                let calibrated = self.thin.calibrated;
+                let squares = fitted.unwrap_or_else(|| calibrated.clone()).segment_squares();
+                let before = calibrated.segment_squares();
                 before.iter().zip(squares).map(|(before, after)| before - after).collect()
             })
             .collect();

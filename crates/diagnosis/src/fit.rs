@@ -55,7 +55,7 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2 };
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 5e-4, sizes_first: 2 };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0 };
     /// For what is reported: half of 1e-8·N is far below what a probability would feel.

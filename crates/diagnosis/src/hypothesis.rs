@@ -279,8 +279,9 @@ mod tests {
             full.observe(x - h, rate, curvature, time, 0.0).value,
         );
         assert!((by_x - at.by_motion[0]).abs() < 1e-8);
-        let lag =
-            |d: f64| Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value;
+        let lag = |d: f64| {
+            Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value
+        };
         assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
         let phase = |d: f64| {
             Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }

@@ -7,12 +7,27 @@ use crate::search::{Pool, vanished};
 use crate::segments::Data;
 use rayon::prelude::*;
 
+/// Sets that are refined in any case.
+const FEWEST: usize = 3;
+
+/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil, and nobody
+/// would mistake it for the best.
+const HOPELESS: f64 = 60.0;
+
 /// Refits the best `most` sets of a pool on other data with the same segments, and as many more that differ from the very
 /// best in one member: its rivals. The calibrated simulator, fitted there already, comes first.
-pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize) -> Pool {
+pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, stride: usize) -> Pool {
     let time = pool.autocorrelation_time();
     let ranked: Vec<&Fit> =
         pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
+    let score_of = |fit: &Fit| stride as f64 * score(fit, time);
+    let highest = ranked.first().map_or(0.0, |fit| score_of(fit));
+    let ranked: Vec<&Fit> = ranked
+        .into_iter()
+        .enumerate()
+        .filter(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
+        .map(|(_, fit)| fit)
+        .collect();
     let best: &[Candidate] = ranked.first().map_or(&[], |fit| &fit.hypothesis.candidates);
     let rival = |fit: &Fit| {
         let own = &fit.hypothesis.candidates;

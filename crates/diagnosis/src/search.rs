@@ -261,8 +261,8 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
             let entry = gain.entries.first().and_then(|index| dictionary.entries.get(*index));
             entry.is_some_and(|entry| confused.contains(&entry.candidate))
         };
-        let chosen =
-            ranked.iter().enumerate().filter(|(place, gain)| *place < breadth.additions || is_confused(gain));
+        let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
+        let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
         for (_, gain) in chosen {
             proposals.push(proposal(data, &bare, None, &additions(&data.facts, &dictionary, gain)));
         }

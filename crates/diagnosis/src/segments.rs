@@ -31,6 +31,9 @@ pub(crate) const MOST_SEARCHED: usize = 30_000;
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
 
+/// Part of its largest excursion that a motion counts as visible.
+const VISIBLE: f64 = 0.02;
+
 /// Factor between measured and nominal period from which on they are not the same system.
 const ANOTHER_SYSTEM: f64 = 2.0;
 
@@ -140,10 +143,9 @@ pub(crate) fn cut(
         inputs.push(input(record)?);
         let times: Vec<f64> = only(&record.times_s, kept);
         let values: Vec<f64> = only(&record.values, kept);
-        let count = count(record, nominal, period_s, times.len());
-        let length = record.duration_s() / count as f64;
+        let (count, length, end) = cuts(record, nominal, period_s, &times, &values);
         let mut own: Vec<(Vec<f64>, Vec<f64>)> = vec![(Vec::new(), Vec::new()); count];
-        for (&time, &value) in times.iter().zip(&values) {
+        for (&time, &value) in times.iter().zip(&values).take_while(|(time, _)| **time <= end) {
             let at = ((time / length) as usize).min(count - 1);
             if let Some((times, values)) = own.get_mut(at) {
                 times.push(time);
@@ -207,15 +209,20 @@ fn check(
     }
     let nominal_s = TAU / omega;
     let swing = swing(&record.times_s, &record.values);
-    let found = swing.map_or(0.0, |swing| swing.cycles);
-    let period_s = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s);
-    let Some(measured_s) = period_s else {
+    let cycles = swing.map_or(0.0, |swing| swing.cycles);
+    let spans = record.duration_s() / nominal_s;
+    if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
         return Err(DiagnosisError::TooFewCycles {
             record: number,
-            found,
+            found: cycles.max(spans),
             needed: FEWEST_CYCLES,
             period_s: nominal_s,
         });
+    }
+    // A swing that friction stops within a few half periods has no period of its own to compare.
+    let Some(measured_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
+    else {
+        return Ok(None);
     };
     let ratio = (measured_s / nominal_s).max(nominal_s / measured_s);
     if ratio >= ANOTHER_SYSTEM {
@@ -245,8 +252,17 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
     Ok(Some(Input::new(times, kept, Hold::Linear)?))
 }
 
-/// Number of segments of a record.
-fn count(record: &Observations, nominal: &Nominal, period_s: Option<f64>, samples: usize) -> usize {
+/// Number of segments of a record, their length, and where the last ends.
+///
+/// A swing that comes to rest within two segments is cut into two all the same, and of the rest that follows only as much
+/// is kept as there was motion: a body at rest says once what holds it.
+fn cuts(
+    record: &Observations,
+    nominal: &Nominal,
+    period_s: Option<f64>,
+    times: &[f64],
+    values: &[f64],
+) -> (usize, f64, f64) {
     let omega = nominal.angular_frequency();
     let wanted = match period_s {
         Some(period) => PERIODS * period,
@@ -254,8 +270,23 @@ fn count(record: &Observations, nominal: &Nominal, period_s: Option<f64>, sample
         None if nominal.damping() > 0.0 => TIME_CONSTANTS * nominal.inertia() / nominal.damping(),
         None => record.duration_s() / 20.0,
     };
-    let by_length = (record.duration_s() / wanted).round() as usize;
-    by_length.min(samples / FEWEST_PER_SEGMENT).max(2)
+    let moving = moving_until(record, times, values);
+    let most = (times.len() / FEWEST_PER_SEGMENT).max(2);
+    if record.input.is_none() && moving < 1.5 * wanted && 2.0 * moving < record.duration_s() {
+        return (2, 0.5 * moving, 2.0 * moving);
+    }
+    let count = ((record.duration_s() / wanted).round() as usize).min(most).max(2);
+    (count, record.duration_s() / count as f64, record.duration_s())
+}
+
+/// When the last visible motion ends.
+fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
+    let last = values.get(values.len() - values.len() / 10..).unwrap_or_default();
+    let rest = median(last);
+    let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
+    let visible = (3.0 * record.resolution.unwrap_or(0.0)).max(VISIBLE * span);
+    let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
+    moving.map_or(0.0, |(time, _)| *time)
 }
 
 fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> Facts {

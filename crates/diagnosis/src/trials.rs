@@ -1,9 +1,12 @@
 //! Trials on simulated and on measured records.
 
 use crate::{Diagnosis, Observations, Settings, Status, diagnose};
+use dynamics::chain::{Chain, Observed, SampledMotion};
 use dynamics::reference::{Tolerance, simulate};
-use dynamics::{Active, Nominal, Start, System};
+use dynamics::{Active, Coordinate, Nominal, Start, System};
+use rand::RngExt;
 use rand_distr::{Distribution, StandardNormal};
+use rayon::prelude::*;
 use record::{Clock, ClockChoice, CsvColumns, Format, Quantity, ReadOptions, Record, read_file};
 use seed::Seed;
 use std::path::{Path, PathBuf};
@@ -201,10 +204,7 @@ const CASES: &[(&str, &[f64])] = &[
 #[ignore = "a minute in a release build"]
 fn every_effect_is_found() {
     let mut missed = Vec::new();
-    let wanted = std::env::var("CASE").ok();
-    for (number, case) in
-        CASES.iter().enumerate().filter(|(_, case)| wanted.as_deref().is_none_or(|id| id == case.0))
-    {
+    for (number, case) in CASES.iter().enumerate() {
         let observations = record(&system(&[*case]), 25.0, 1e-3, 0.0, number as u64, &plain);
         let answer = answer(&[observations], &nominal());
         println!("== {}", case.0);
@@ -231,4 +231,154 @@ fn clean_records_lack_nothing() {
         println!("{:?}", shifted.verdict);
         assert_eq!(shifted.verdict.status, Status::Calibration);
     }
+}
+
+/// Effects of the measuring chain, each several times the noise of 1 mrad.
+const CHAINS: &[(&str, &[f64])] = &[
+    ("sensor_quantization", &[0.02]),
+    ("sensor_saturation", &[0.55]),
+    ("sensor_nonlinearity", &[0.02, 0.5]),
+    ("sensor_drift", &[4e-4]),
+    ("timestamp_batching", &[0.062, 0.002]),
+    ("timestamp_jitter", &[1e-3]),
+    ("clock_drift", &[0.0, 1e-4]),
+    ("dropouts", &[0.05, 6.0]),
+    ("outliers", &[0.01, 0.1]),
+];
+
+/// A record through a measuring chain, read as a file's would be.
+fn through(system: &System, release: f64, chain: &Chain, seed: u64) -> Observations {
+    let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
+    let motion = simulate(system, Start::release(release), None, &times, &Tolerance::default()).unwrap();
+    let sampled = SampledMotion {
+        times_s: &times,
+        position: &motion.position,
+        velocity: &motion.velocity,
+        acceleration: &motion.acceleration,
+    };
+    let seed = Seed::new(seed);
+    let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
+    let round = |value: f64| (value * 1e6).round() / 1e6;
+    let stamps = samples.stamps_s.iter().map(|stamp| round(*stamp)).collect();
+    let values = samples.values.iter().map(|value| round(*value)).collect();
+    let record = Record::new(stamps, values, None, Quantity::Position, "rad").unwrap();
+    let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+    Observations::new(&record, &clock)
+}
+
+/// What is hidden in a case, what the answer was, and whether it is right.
+struct Outcome {
+    hidden: &'static str,
+    found: String,
+    right: bool,
+}
+
+/// Ten records of each effect, of sizes over a factor of four, releases over a factor of two, nominal simulators off by up to
+/// 10 % in half of them; and a hundred without any effect.
+fn bank(only: Option<&str>) -> Vec<Outcome> {
+    let cases: Vec<(&'static str, &[f64])> = CASES.iter().chain(CHAINS).copied().collect();
+    let wanted = |id: &str| only.is_none_or(|only| only == id);
+    let mut jobs: Vec<(&'static str, &[f64], u64)> = Vec::new();
+    for (id, values) in cases.into_iter().filter(|case| wanted(case.0)) {
+        jobs.extend((0..10).map(|seed| (id, values, seed)));
+    }
+    if wanted("none") {
+        jobs.extend((0..100).map(|seed| ("none", &[][..], seed)));
+    }
+    jobs.par_iter()
+        .map(|&(hidden, values, number)| {
+            let mut generator = Seed::new(7).child(hidden).child(&number.to_string()).generator();
+            let mut draw = |low: f64, high: f64| -> f64 { generator.random_range(low..high) };
+            let size = 2.0_f64.powf(draw(-1.0, 1.0));
+            let release = draw(0.45, 0.9);
+            let is_chain = CHAINS.iter().any(|case| case.0 == hidden);
+            let mut values = values.to_vec();
+            // The first parameter is the size of all but those whose first is a place or a time.
+            let sized = !matches!(hidden, "end_stop" | "sensor_saturation" | "timestamp_batching" | "clock_drift");
+            if let (Some(first), true) = (values.first_mut(), sized) {
+                *first *= size;
+            }
+            match (hidden, values.as_mut_slice()) {
+                ("stribeck_friction", [_, second, _]) | ("clock_drift", [_, second]) => *second *= size,
+                ("end_stop" | "sensor_saturation", [place, ..]) => *place = release * draw(0.7, 0.9),
+                _ => {}
+            }
+            let off = if number % 2 == 0 { [1.0, 1.0] } else { [draw(0.9, 1.1), draw(0.9, 1.1)] };
+            let truth = nominal();
+            let believed =
+                Nominal::new(1.0, off[0] * truth.damping(), off[1] * truth.stiffness(), 0.0).unwrap();
+            let active = || vec![Active::new(hidden, &values).unwrap()];
+            let none = hidden == "none";
+            let own = if is_chain || none { vec![] } else { active() };
+            let distortion = if is_chain { active() } else { vec![] };
+            let system = System::new(truth, own).unwrap();
+            let chain = Chain::new(Observed::Position, 1e-3, distortion).unwrap();
+            let observations = through(&system, release, &chain, number);
+            let clock = std::time::Instant::now();
+            let seconds = || clock.elapsed().as_secs_f64();
+            let answer = match diagnose(&[observations], &believed, &Settings::default(), &seconds) {
+                Ok(answer) => answer,
+                Err(error) => return Outcome { hidden, found: format!("{number} {values:?} {error}"), right: false },
+            };
+            let effects = &answer.verdict.effects;
+            let named = |id: &str| effects.contains(&id) || answer.verdict.equivalent.iter().any(|c| c.contains(&id));
+            let right = match hidden {
+                "none" => matches!(answer.verdict.status, Status::None | Status::Calibration),
+                id => effects.first() == Some(&id) || effects.len() == 1 && named(id),
+            };
+            let seconds: f64 = answer.stages.iter().map(|stage| stage.seconds).sum();
+            let found = format!(
+                "{number} {values:.4?} release {release:.2} -> {:?} {:?} {:.2} ratio {:.2} recalibrated {:.1e} {seconds:.1} s \
+                 eq {:?}",
+                answer.verdict.status,
+                effects,
+                answer.verdict.confidence,
+                answer.gap.ratio_to_floor.value,
+                answer.gap.recalibrated,
+                answer.verdict.equivalent
+            );
+            println!("{} {hidden} {found}", if right { "right" } else { "WRONG" });
+            Outcome { hidden, found, right }
+        })
+        .collect()
+}
+
+/// `cargo test --release -p diagnosis trials::a_bank_of_hidden_effects -- --ignored --nocapture`
+#[test]
+#[ignore = "minutes in a release build"]
+fn a_bank_of_hidden_effects() {
+    let outcomes = bank(option_env!("HIDDEN"));
+    let mut ids: Vec<&str> = outcomes.iter().map(|outcome| outcome.hidden).collect();
+    ids.dedup();
+    let mut short = Vec::new();
+    for id in ids {
+        let own: Vec<&Outcome> = outcomes.iter().filter(|outcome| outcome.hidden == id).collect();
+        let right = own.iter().filter(|outcome| outcome.right).count();
+        println!("== {id} {right} of {}", own.len());
+        for outcome in own.iter().filter(|outcome| !outcome.right) {
+            println!("   {}", outcome.found);
+        }
+        let needed = if id == "none" { 98 } else { 9 };
+        if right < needed {
+            short.push(format!("{id}: {right} of {}", own.len()));
+        }
+    }
+    assert!(short.is_empty(), "{short:?}");
+}
+
+/// As [`rig`].
+#[test]
+#[ignore = "seconds in a release build, a minute without"]
+fn silverbox() {
+    let columns = CsvColumns {
+        sample_rate_hz: Some(610.35),
+        angle: Some("output_v".to_owned()),
+        input: Some("input_v".to_owned()),
+        ..CsvColumns::default()
+    };
+    try_measured(
+        "silverbox/record.csv",
+        "silverbox/nominal.toml",
+        &ReadOptions { columns, ..ReadOptions::default() },
+    );
 }

@@ -10,7 +10,7 @@ use crate::statistics::chi_squared_above;
 pub(crate) const TEMPERATURE: f64 = 1.0;
 
 /// Prior odds of a set of so many effects, each size as a whole, against none.
-const PRIOR_ODDS: [f64; 4] = [1.0, 1.0, 0.5, 0.25];
+const PRIOR_ODDS: [f64; 6] = [1.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 
 /// Share of the excess variance left by the best named effects, and explained by a free latent torque, at which
 /// `unknown` is as likely as not.

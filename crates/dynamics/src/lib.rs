@@ -1,8 +1,10 @@
-//! The ground under diagnosis and trials: a nominal oscillator, the effects that a simulator may lack, and
-//! integrators.
+//! The ground under diagnosis and trials: a nominal oscillator, the effects that a simulator may lack, two
+//! integrators, and the measuring chain.
 //!
 //! A [`Nominal`] oscillator and [`Active`] effects of the [`registry`] make a [`System`].
-//! [`reference::simulate`] gives its motion to twelve digits.
+//! [`reference::simulate`] gives its motion to twelve digits, with its events and the work of every effect;
+//! [`sensitivity::Model`] gives it fast, with exact derivatives, for fitting. A [`chain::Chain`] makes of a motion
+//! what a file says of it.
 //!
 //! # Units
 //! SI: seconds, radians or meters, N m or N, kg m² or kg. Where only the motion is known everything is
@@ -17,6 +19,8 @@ mod description;
 mod edges;
 pub mod effects;
 mod error;
+#[cfg(test)]
+mod event_tests;
 mod export;
 mod field;
 #[cfg(test)]

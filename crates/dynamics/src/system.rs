@@ -95,20 +95,32 @@ impl System {
         self.effects.iter().map(|active| active.effect().description().hidden_states).sum()
     }
 
-    /// Refuses a release from rest inside the dead zone of the spring: nothing would move.
+    /// Refuses a release from rest inside the dead zone of the spring where nothing else pulls: nothing would
+    /// move.
     ///
     /// # Errors
     /// [`DynamicsError::ReleaseInsideDeadZone`].
     pub fn check_release(&self, start: Start) -> Result<(), DynamicsError> {
+        let effect = |wanted: SystemEffect| {
+            self.effects.iter().find(|active| active.effect() == Effect::System(wanted))
+        };
+        let Some(half_width) = effect(SystemEffect::Backlash).and_then(|active| active.value("half_width"))
+        else {
+            return Ok(());
+        };
         let release = (start.position - self.nominal.rest_angle()).abs();
-        let backlash =
-            self.effects.iter().find(|active| active.id() == SystemEffect::Backlash.description().id);
-        match backlash.and_then(|active| active.value("half_width")) {
-            Some(half_width) if start.velocity == 0.0 && half_width >= release => {
-                Err(DynamicsError::ReleaseInsideDeadZone { half_width, release })
-            }
-            _ => Ok(()),
+        if start.velocity != 0.0 || release > half_width || effect(SystemEffect::PeriodicForcing).is_some() {
+            return Ok(());
         }
+        let field = self.field();
+        let hidden = field.relaxed(start.position, start.velocity);
+        let state = State { time: 0.0, position: start.position, velocity: 0.0, hidden, input: 0.0 };
+        // The spring's own torque and what the dead zone takes off it cancel, but for rounding.
+        let spring = field.spring(&state).abs();
+        if field.torque(&state, &field.moving(&state, 0.0)).abs() <= 1e-12 * spring {
+            return Err(DynamicsError::ReleaseInsideDeadZone { half_width, release });
+        }
+        Ok(())
     }
 
     pub(crate) fn field(&self) -> Field<f64> {
@@ -127,6 +139,9 @@ impl System {
         self.field().terms.iter().find_map(|term| term.effect.input_delay(&term.values)).unwrap_or(0.0)
     }
 }
+
+/// Excess of the torque over the dry friction's hold that counts as balance, relative to the hold.
+pub(crate) const BALANCE: f64 = 1e-12;
 
 fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
     match active.effect() {
@@ -165,7 +180,8 @@ impl Field<f64> {
         let stuck = self.moving(state, 0.0);
         let torque = self.torque(state, &stuck);
         match self.holding_torque() {
-            Some(holding) if torque.abs() <= holding => stuck,
+            // A balance to rounding holds: whether it is about to break is seen from how the torque goes on.
+            Some(holding) if torque.abs() <= holding * (1.0 + BALANCE) => stuck,
             _ if torque < 0.0 => self.moving(state, -1.0),
             _ => self.moving(state, 1.0),
         }

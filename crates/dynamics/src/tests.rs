@@ -1,7 +1,10 @@
 //! The registry against the vocabulary, and every law against what its description says.
 
 use crate::scalar::{Complex, Dual, Scalar};
-use crate::{Class, Coefficients, Kind, MOST_HIDDEN, Moment, REGISTRY, SystemEffect, Values};
+use crate::{
+    Active, Class, Coefficients, Kind, MOST_HIDDEN, Moment, Nominal, REGISTRY, Start, System, SystemEffect,
+    Values,
+};
 use std::collections::BTreeSet;
 
 /// The public vocabulary: those in the system, then those in the measuring chain.
@@ -242,4 +245,44 @@ fn the_contact_never_pulls() {
             }
         }
     }
+}
+
+/// Nominal coefficients, an effect, and the words that refuse them.
+type Refused<'a> = ([f64; 4], (&'a str, &'a [f64]), &'a str);
+
+#[test]
+fn impossible_parameters_are_named_with_their_range() {
+    let refusal = |nominal: [f64; 4], effects: &[(&str, &[f64])]| {
+        let [inertia, damping, stiffness, rest_angle] = nominal;
+        let system = Nominal::new(inertia, damping, stiffness, rest_angle).and_then(|nominal| {
+            let effects = effects.iter().map(|(id, values)| Active::new(id, values));
+            System::new(nominal, effects.collect::<Result<_, _>>()?)
+        });
+        let released = system.and_then(|system| system.check_release(Start::release(0.3)));
+        released.unwrap_err().to_string()
+    };
+    let plain = [1.0, 0.2, 484.0, 0.0];
+    let above = "expected a finite number above 0";
+    let cases: &[Refused<'_>] = &[
+        ([-1.0, 0.2, 484.0, 0.0], ("gravity", &[1.0, 0.0]), &format!("nominal `inertia` is -1; {above}")),
+        (
+            [1.0, 0.2, f64::NAN, 0.0],
+            ("gravity", &[1.0, 0.0]),
+            "nominal `stiffness` is NaN; expected a finite",
+        ),
+        (plain, ("periodic_forcing", &[1.0, 0.0, 0.0]), &format!("`frequency` is 0; {above}")),
+        (plain, ("coulomb_friction", &[-0.1]), "`torque` is -0.1; expected a finite number"),
+        (plain, ("stribeck_friction", &[0.5, 0.4, 1.0]), "`static_torque` is 0.4, but must be at least 0.5"),
+        (plain, ("backlash", &[0.31]), "the dead zone of `backlash`, ±0.31, is wider than the release, 0.3"),
+        (plain, ("end_stop", &[0.0, 1e4, 0.1]), "`angle` is 0, but must be above or below 0"),
+        (plain, ("sensor_lag", &[0.1]), "`sensor_lag` belongs to the measuring chain"),
+        (plain, ("gravity", &[1.0]), "`gravity` takes 2 values, not 1"),
+        (plain, ("columb_friction", &[1.0]), "unknown effect `columb_friction`; known are coulomb_friction"),
+    ];
+    for (nominal, effect, expected) in cases {
+        let message = refusal(*nominal, &[*effect]);
+        assert!(message.contains(expected), "no `{expected}` in: {message}");
+    }
+    let twice = refusal(plain, &[("coulomb_friction", &[0.1]), ("coulomb_friction", &[0.2])]);
+    assert_eq!(twice, "`coulomb_friction` is given twice; add its parameters up in one");
 }

@@ -59,25 +59,33 @@ fn effects(output: Output) {
         console::result(&json!({ "effects": rows }).to_string());
         return;
     }
-    let rows = descriptions()
-        .map(|effect| {
-            let parameters: Vec<String> = effect
-                .parameters
-                .iter()
-                .map(|parameter| {
-                    format!("{} {} [{}]", parameter.name, parameter.symbol, parameter.quantity.unit(SI))
-                })
-                .collect();
-            vec![
-                effect.id.to_owned(),
-                kind(effect.kind).to_owned(),
-                effect.equation.to_owned(),
-                parameters.join(", "),
-                effect.tell_tale.to_owned(),
-            ]
-        })
-        .collect();
-    console::result(&table(&["id", "acts in", "what it adds", "parameters", "tell-tale"], rows));
+    let entries: Vec<String> = descriptions().map(entry).collect();
+    console::result(&entries.join("\n\n"));
+}
+
+/// An effect as a paragraph of short lines: a table of all this is wider than a screen.
+fn entry(effect: &Description) -> String {
+    let mut lines = vec![
+        format!(
+            "{}: {}, in {}, {}",
+            effect.id,
+            effect.title,
+            kind(effect.kind),
+            class_in_words(effect.class)
+        ),
+        format!("  law            {}", effect.equation),
+    ];
+    for parameter in effect.parameters {
+        let (name, symbol, unit) = (parameter.name, parameter.symbol, parameter.quantity.unit(SI));
+        let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
+        let (range, meaning) = (parameter.range, parameter.meaning);
+        lines.push(format!("  {name:<14} {symbol}{unit}, {range}: {meaning}"));
+    }
+    lines.push(format!("  tell-tale      {}", effect.tell_tale));
+    if !effect.confused_with.is_empty() {
+        lines.push(format!("  confused with  {}", effect.confused_with.join(", ")));
+    }
+    lines.join("\n")
 }
 
 /// The units that listings show: of an angle, with the inertia known.
@@ -98,6 +106,10 @@ fn class(class: Class) -> &'static str {
         Class::Sensor => "sensor",
         Class::Clock => "clock",
     }
+}
+
+fn class_in_words(of: Class) -> String {
+    class(of).replace('_', "-")
 }
 
 fn effect_json(effect: &Description) -> serde_json::Value {

@@ -41,7 +41,7 @@ const DESCRIPTION: Description = Description {
 /// ż = (θ̇ − |θ̇|·z)/δ. A stretch of motion in one direction brings z to that direction within a few δ;
 /// stiffness τ_h/δ at small displacement.
 ///
-/// Regions: 0 while z builds up, 1 once it lies within [`SATURATED`] of the direction of motion. It is then put
+/// Regions: 0 while z builds up, 1 once it lies within 1e-13 of the direction of motion. It is then put
 /// there: the equation, which has become stiff, is replaced by what it tends to.
 #[derive(Debug, Clone, Copy)]
 pub struct Hysteresis;

@@ -49,7 +49,7 @@ const DESCRIPTION: Description = Description {
 /// Dry friction that falls off with speed: −[τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²)]·sign(θ̇), holding at rest against up
 /// to τ_s.
 ///
-/// Regions: 1 below [`FAST`]·v_s, 0 above, where the excess is below rounding and left out. So narrow a peak at
+/// Regions: 1 below 6.01·v_s, 0 above, where the excess is below rounding and left out. So narrow a peak at
 /// slow speed cannot slip between the steps of an integrator.
 #[derive(Debug, Clone, Copy)]
 pub struct StribeckFriction;

@@ -16,6 +16,7 @@
 //! that is computed in sixty lines.
 
 mod gauss;
+mod landing;
 mod motion;
 mod recorder;
 mod run;

@@ -2,6 +2,7 @@
 
 use super::Tolerance;
 use super::gauss::Gauss;
+use super::landing::Landing;
 use super::motion::{Event, Happening, Motion};
 use super::recorder::Recorder;
 use super::step::{LENGTH, Solved, Step, Vector, state};
@@ -25,28 +26,18 @@ pub(crate) enum Stepping {
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
 /// Iterations of the stage equations beyond which a step counts as too large.
-const MOST_ITERATIONS: usize = 30;
-
-/// How a step towards an edge ended.
-enum Landing {
-    /// On the edge.
-    OnTheEdge,
-    /// The edge lies where the step begins.
-    AtOnce,
-    /// The stage equations were not solved.
-    Failed,
-}
+pub(super) const MOST_ITERATIONS: usize = 30;
 
 /// A simulation under way.
 pub(crate) struct Run<'a> {
-    field: Field<f64>,
-    directed: bool,
-    gauss: Gauss,
+    pub(super) field: Field<f64>,
+    pub(super) directed: bool,
+    pub(super) gauss: Gauss,
     stepping: Stepping,
-    drive: Drive<'a>,
+    pub(super) drive: Drive<'a>,
     time: f64,
     vector: Vector,
-    mode: Mode,
+    pub(super) mode: Mode,
     /// Largest size so far of each state variable.
     scale: Vector,
     /// Size of the next step, in seconds.
@@ -203,7 +194,7 @@ impl<'a> Run<'a> {
     }
 
     /// The sizes that errors are measured by; a variable that has not moved yet counts by how far it would.
-    fn scale_with(&self, size: f64) -> Vector {
+    pub(super) fn scale_with(&self, size: f64) -> Vector {
         let rates =
             |time, vector: &Vector| super::step::rates(&self.field, &self.mode, &self.drive, time, vector);
         let now = rates(self.time, &self.vector);
@@ -249,87 +240,6 @@ impl<'a> Run<'a> {
             before += lower * torque;
         }
         f64::max(last.abs(), 0.1 * before.abs()) / holding
-    }
-
-    /// The edge that the step meets first, and the part of the step at which its polynomial meets it.
-    fn first_edge(&self, step: &Step) -> Option<(Edge, f64)> {
-        let mut margins: Vec<(Edge, f64)> = Vec::with_capacity(8);
-        let begin = state(step.from, &step.begin, self.drive.torque(step.from));
-        self.field.edges(self.directed, &begin, &self.mode, |edge, margin| margins.push((edge, margin)));
-        if margins.is_empty() {
-            return None;
-        }
-        let end = step.at(1.0);
-        let stages = self.gauss.nodes.iter().copied().zip(step.stages.iter().copied());
-        let mut from = 0.0;
-        for (tau, vector) in stages.chain([(1.0, end)]) {
-            let time = step.from + tau * step.size;
-            let state = state(time, &vector, self.drive.torque(time));
-            let mut first: Option<(Edge, f64)> = None;
-            let mut number = 0;
-            self.field.edges(self.directed, &state, &self.mode, |edge, margin| {
-                let Some((_, last)) = margins.get_mut(number) else { return };
-                number += 1;
-                if margin < 0.0 {
-                    // A reversal counts only once the motion has got under way.
-                    let met = match (edge, *last > 0.0) {
-                        (_, true) => Some(self.root(step, edge, from, tau)),
-                        (Edge::Reversal, false) => None,
-                        (_, false) => Some(from),
-                    };
-                    if let Some(met) = met
-                        && first.is_none_or(|(_, other)| met < other)
-                    {
-                        first = Some((edge, met));
-                    }
-                }
-                *last = margin;
-            });
-            if first.is_some() {
-                return first;
-            }
-            from = tau;
-        }
-        None
-    }
-
-    fn margin(&self, step: &Step, edge: Edge, tau: f64) -> f64 {
-        let time = step.from + tau * step.size;
-        let state = state(time, &step.at(tau), self.drive.torque(time));
-        self.field.distance(self.directed, &state, &self.mode, edge).unwrap_or(f64::INFINITY)
-    }
-
-    /// The zero of a margin on the polynomial, between a place where it is positive and one where it is
-    /// negative.
-    fn root(&self, step: &Step, edge: Edge, from: f64, to: f64) -> f64 {
-        crate::root::bracketed(from, to, |tau| self.margin(step, edge, tau))
-    }
-
-    /// Solves the step anew so that it ends on the edge.
-    fn land(&self, step: &mut Step, edge: Edge, tau: f64) -> Landing {
-        let mut size = tau * step.size;
-        let resolution = f64::EPSILON * step.from.abs().max(size);
-        if size <= resolution {
-            return Landing::AtOnce;
-        }
-        let scale = self.scale_with(size);
-        for _ in 0..4 {
-            step.size = size;
-            // Twice the iterations: what a slightly longer step took must be enough here.
-            let iterations = 2 * MOST_ITERATIONS;
-            let solved = step.solve(&self.gauss, &self.field, &self.mode, &self.drive, &scale, iterations);
-            if matches!(solved, Solved::TooLarge) {
-                return Landing::Failed;
-            }
-            let (inner, outer) = (self.margin(step, edge, 0.999), self.margin(step, edge, 1.0));
-            let slope = (outer - inner) / (0.001 * size);
-            let correction = -outer / slope;
-            if !correction.is_finite() || correction.abs() > 0.01 * size || correction.abs() <= resolution {
-                break;
-            }
-            size += correction;
-        }
-        Landing::OnTheEdge
     }
 
     fn accept(&mut self, step: &Step, edge: Option<Edge>, times: &[f64]) -> Result<(), DynamicsError> {

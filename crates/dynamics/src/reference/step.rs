@@ -85,7 +85,9 @@ impl Step {
                 let new = rates(field, mode, drive, self.from + node * self.size, &stage);
                 let Some(rate) = self.rates.get_mut(number) else { continue };
                 for ((old, new), scale) in rate.iter_mut().zip(new).zip(scale).take(self.length) {
-                    change = change.max((*old - new).abs() * self.size / scale.max(f64::MIN_POSITIVE));
+                    let moved = (*old - new).abs() * self.size / scale.max(f64::MIN_POSITIVE);
+                    // `max` passes over what is not a number.
+                    change = if moved.is_finite() { change.max(moved) } else { f64::INFINITY };
                     *old = new;
                 }
                 if let Some(slot) = self.stages.get_mut(number) {

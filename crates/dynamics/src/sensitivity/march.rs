@@ -2,11 +2,11 @@
 
 use super::columns::Coupling;
 use super::free::Place;
-use super::graph::{Graph, INPUT, MOST_STATES, STATE, TIME};
+use super::graph::{INPUT, MOST_STATES, STATE, TIME};
 use super::model::Model;
 use super::response::{FullState, Response};
 use super::series::{LENGTH, Series, slope, value};
-use crate::edges::Edge;
+use super::step_size::expand;
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
 use crate::input::Input;
@@ -15,35 +15,25 @@ use crate::system::{Drive, Start};
 /// Steps in a row without any time passing, beyond which the march is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
 
-/// Parts of a step at which the sign of a margin is looked at.
-const LOOKS: u32 = 8;
-
-/// Parts of a step at which its defect is looked at.
-const PARTS: [f64; 2] = [1.0, 0.6];
-
-/// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
-const MOST_DEFECT: f64 = 20.0;
-
-/// A coefficient of a margin this small, relative to all, is rounding: the step begins on the edge.
-const ON_THE_EDGE: f64 = 1e-12;
-
 /// A run under way.
 pub(crate) struct March<'a> {
-    model: &'a mut Model,
-    drive: Drive<'a>,
-    times: &'a [f64],
-    response: &'a mut Response,
-    next: usize,
-    time: f64,
-    state: [f64; MOST_STATES],
-    mode: Mode,
+    pub(super) model: &'a mut Model,
+    pub(super) drive: Drive<'a>,
+    pub(super) times: &'a [f64],
+    pub(super) response: &'a mut Response,
+    pub(super) next: usize,
+    pub(super) time: f64,
+    pub(super) state: [f64; MOST_STATES],
+    pub(super) mode: Mode,
     /// Largest size so far of each state variable.
-    scale: [f64; MOST_STATES],
+    pub(super) scale: [f64; MOST_STATES],
     /// Size of the last step, in seconds.
-    size: f64,
-    end: f64,
+    pub(super) size: f64,
+    pub(super) end: f64,
     /// Position beyond which the motion counts as running away.
-    bound: f64,
+    pub(super) bound: f64,
+    /// Steps since time has last passed.
+    pub(super) at_once: usize,
 }
 
 impl<'a> March<'a> {
@@ -75,6 +65,7 @@ impl<'a> March<'a> {
             size: 0.0,
             end,
             bound: Start { position: start.position, velocity: start.velocity }.bound(),
+            at_once: 0,
             model,
         };
         march.mode = march.model.field.mode(&march.point());
@@ -127,13 +118,12 @@ impl<'a> March<'a> {
     }
 
     pub(super) fn run(mut self) -> Result<(), DynamicsError> {
-        let mut at_once = 0;
         while self.next < self.times.len() {
             self.cross_knots();
             let before = self.time;
             self.step()?;
-            at_once = if self.time > before { 0 } else { at_once + 1 };
-            if at_once > MOST_EVENTS_AT_ONCE {
+            self.at_once = if self.time > before { 0 } else { self.at_once + 1 };
+            if self.at_once > MOST_EVENTS_AT_ONCE {
                 return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: 0.0 });
             }
             self.response.steps += 1;
@@ -151,14 +141,14 @@ impl<'a> March<'a> {
         Ok(())
     }
 
-    fn point(&self) -> State<f64> {
+    pub(super) fn point(&self) -> State<f64> {
         let [position, velocity, hidden @ ..] = self.state;
         let input = if self.drive.is_present() { self.drive.torque(self.time) } else { 0.0 };
         State { time: self.time, position, velocity, hidden, input }
     }
 
     /// Rates of the state at the present point, in the present mode.
-    fn rates(&self) -> [f64; MOST_STATES] {
+    pub(super) fn rates(&self) -> [f64; MOST_STATES] {
         let point = self.point();
         let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
         let mut rates = [0.0; MOST_STATES];
@@ -209,13 +199,16 @@ impl<'a> March<'a> {
             let [first, ..] = series;
             *first = value;
         }
-        let degree = expand(graph, &mut series, states, most, room, &self.scale, settings.tolerance);
+        // While stuck the state's own series say nothing about the torque's.
+        let reach = if self.mode.sticks() { f64::INFINITY } else { room };
+        let degree = expand(graph, &mut series, states, most, reach, &self.scale, settings.tolerance);
         let mut size = self.step_size(&series, degree, number).min(room);
-        while size > f64::EPSILON * self.time.abs()
-            && PARTS.into_iter().any(|part| self.defect(&series, degree, part * size) > MOST_DEFECT)
-        {
-            size *= 0.7;
+        // The first step's guess of how far the variables get may have been too long.
+        while self.response.steps == 0 && size < 0.5 * self.size {
+            self.size = size;
+            size = self.step_size(&series, degree, number).min(room);
         }
+        size = self.without_defect(&series, degree, size);
         if size <= f64::EPSILON * self.time.abs() && room > 4.0 * f64::EPSILON * self.time.abs() {
             return Err(DynamicsError::StepTooSmall { time_s: self.time, step_s: size });
         }
@@ -243,71 +236,6 @@ impl<'a> March<'a> {
             self.cross(edge, number);
         }
         Ok(())
-    }
-
-    /// The largest step for which the last two coefficients of every series are below the tolerance, and
-    /// those behind them fall off.
-    fn step_size(&self, series: &[Series; MOST_STATES], degree: usize, number: usize) -> f64 {
-        let mut tails = Tails::default();
-        for (series, &scale) in series.iter().zip(&self.scale).take(self.model.states) {
-            tails.take(series, degree, self.reach(series, scale));
-        }
-        if self.mode.sticks()
-            && let Some(piece) = self.model.graphs.get(number)
-        {
-            // Nothing moves but the torque: the step has to resolve it, or a break-away is missed.
-            let holding = self.model.field.holding_torque().unwrap_or(1.0).abs();
-            for (_, node) in &piece.graph.edges {
-                tails.take(piece.graph.series(*node), degree, holding);
-            }
-        }
-        tails.step_size(degree, self.model.settings.tolerance)
-    }
-
-    /// The size that errors of a variable are measured by: its largest so far, or, where it has not moved yet, how
-    /// far its first terms take it.
-    fn reach(&self, series: &Series, scale: f64) -> f64 {
-        let [_, first, second, third, ..] = series;
-        let time = self.size;
-        scale.max(first.abs() * time).max(second.abs() * time * time).max(third.abs() * time * time * time)
-    }
-
-    /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
-    /// tolerance. The coefficients alone do not betray a narrow peak ahead; this does.
-    fn defect(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> f64 {
-        let states = self.model.states;
-        let mut end = [0.0; MOST_STATES];
-        for (slot, series) in end.iter_mut().zip(series).take(states) {
-            *slot = value(series.get(..=degree).unwrap_or_default(), size);
-        }
-        let [position, velocity, hidden @ ..] = end;
-        let time = self.time + size;
-        let input = if self.drive.is_present() { self.drive.torque(time) } else { 0.0 };
-        let point = State { time, position, velocity, hidden, input };
-        let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
-        let rates = [velocity, acceleration].into_iter().chain(hidden);
-        let defects = series.iter().zip(rates).zip(&self.scale).take(states);
-        defects
-            .map(|((series, rate), &scale)| {
-                let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
-                let defect = slope(series.get(..=degree).unwrap_or_default(), size) - rate;
-                defect.abs() * size / (scale * self.model.settings.tolerance)
-            })
-            .fold(0.0, f64::max)
-    }
-
-    /// The edge that the step meets first, and when after its beginning.
-    fn first_edge(&self, number: usize, degree: usize, size: f64) -> Option<(Edge, f64)> {
-        let piece = self.model.graphs.get(number)?;
-        let mut first: Option<(Edge, f64)> = None;
-        for &(edge, node) in &piece.graph.edges {
-            let margin = piece.graph.series(node).get(..=degree).unwrap_or_default();
-            let until = first.map_or(size, |(_, time)| time);
-            if let Some(time) = crossing(margin, until, 4.0 * f64::EPSILON * self.time.abs()) {
-                first = Some((edge, time));
-            }
-        }
-        first
     }
 
     /// Solves the variational equation along the step.
@@ -384,203 +312,12 @@ impl<'a> March<'a> {
             self.next += 1;
         }
     }
-
-    /// Passes to the piece behind an edge; the columns jump where the force does.
-    fn cross(&mut self, edge: Edge, number: usize) {
-        self.response.events += 1;
-        if edge == Edge::Reversal {
-            let [_, velocity, ..] = &mut self.state;
-            *velocity = 0.0;
-        }
-        let before = self.rates();
-        let old = self.mode;
-        self.mode = self.model.field.behind(&self.point(), &old, edge);
-        let after = self.rates();
-        let [_, _, hidden @ ..] = &mut self.state;
-        self.model.field.settle(&self.mode, hidden);
-        let rates = before.iter().zip(&after);
-        let jumps = rates
-            .into_iter()
-            .any(|(before, after)| (before - after).abs() > 1e-12 * before.abs().max(after.abs()));
-        if jumps && !self.model.free.is_empty() {
-            self.shift(edge, number);
-            for column in 0..self.model.free.len() {
-                let shift = self.model.shifts.get(column).copied().unwrap_or(0.0);
-                for (variable, (before, after)) in before.iter().zip(after).enumerate().skip(1) {
-                    if let Some(slot) = self.model.columns.first_mut(column, variable) {
-                        *slot += (before - after) * shift;
-                    }
-                }
-            }
-        }
-        if self.mode.sticks() {
-            for column in 0..self.model.free.len() {
-                if let Some(slot) = self.model.columns.first_mut(column, 1) {
-                    *slot = 0.0;
-                }
-            }
-        }
-    }
-
-    /// How much later each free quantity makes the event: −δm/ṁ with the margin m of the edge.
-    fn shift(&mut self, edge: Edge, number: usize) {
-        let point = self.point();
-        let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
-        let Model { graphs, states, free, columns, shifts, .. } = &mut *self.model;
-        let Some(piece) = graphs.get_mut(number) else { return };
-        let graph = &mut piece.graph;
-        let Some(&(_, node)) = graph.edges.iter().find(|(other, _)| *other == edge) else { return };
-        graph.set_leaf(TIME, point.time, 1.0);
-        graph.set_leaf(INPUT, raw.0, raw.1);
-        for (variable, &value) in self.state.iter().enumerate().take(*states) {
-            graph.set_leaf(STATE + variable, value, 0.0);
-        }
-        graph.extend(0);
-        for variable in 0..*states {
-            let rate = graph.rates.get(variable).map_or(0.0, |&node| graph.coefficient(node, 0));
-            graph.set_state(variable, 1, rate);
-        }
-        graph.extend(1);
-        let speed = graph.coefficient(node, 1);
-        graph.differentiate(node, 0);
-        for (column, (shift, place)) in shifts.iter_mut().zip(free.iter()).enumerate() {
-            let mut moved: f64 = (0..*states)
-                .map(|state| {
-                    graph.derivative(STATE + state).first().unwrap_or(&0.0) * columns.first(column, state)
-                })
-                .sum();
-            moved += match *place {
-                Place::Leaf(leaf) => graph.derivative(leaf).first().copied().unwrap_or(0.0),
-                Place::Delay(_) => -raw.1 * graph.derivative(INPUT).first().unwrap_or(&0.0),
-                Place::Start(_) => 0.0,
-            };
-            // An edge that is only touched has no side to be shifted to.
-            *shift = if speed == 0.0 { 0.0 } else { -moved / speed };
-        }
-    }
-}
-
-/// The largest of the last coefficients of several series, the highest degree first, each relative to its scale.
-#[derive(Debug, Default)]
-struct Tails([f64; 4]);
-
-impl Tails {
-    fn take(&mut self, series: &Series, degree: usize, scale: f64) {
-        let last = series.get(..=degree).unwrap_or_default().iter().rev();
-        for (largest, coefficient) in self.0.iter_mut().zip(last) {
-            *largest = largest.max(coefficient.abs() / scale.max(f64::MIN_POSITIVE));
-        }
-    }
-
-    fn step_size(&self, degree: usize, tolerance: f64) -> f64 {
-        let [last, second, third, fourth] = self.0;
-        let root = |coefficient: f64, degree: usize| {
-            if coefficient > 0.0 {
-                (tolerance / coefficient).powf(1.0 / degree as f64)
-            } else {
-                f64::INFINITY
-            }
-        };
-        let size = root(last, degree).min(root(second, degree - 1));
-        // Small last terms do not bound the rest where terms still grow with the degree, as before a narrow
-        // peak: two degrees have to gain a factor of four.
-        let (late, early) = (last * size + second, third * size + fourth);
-        let growth = late * size * size / early.max(f64::MIN_POSITIVE);
-        if size.is_finite() && growth > 0.25 { size * (0.25 / growth).sqrt() } else { size }
-    }
 }
 
 fn put(list: &mut [f64], index: usize, value: f64) {
     if let Some(slot) = list.get_mut(index) {
         *slot = value;
     }
-}
-
-/// Expands the state into its series. Where the step cannot be long (`room`), a lower degree may do: it
-/// returns the degree used.
-fn expand(
-    graph: &mut Graph,
-    series: &mut [Series; MOST_STATES],
-    states: usize,
-    most: usize,
-    room: f64,
-    scale: &[f64; MOST_STATES],
-    tolerance: f64,
-) -> usize {
-    let mut small = 0;
-    let mut power = 1.0;
-    for degree in 0..most {
-        graph.extend(degree);
-        let divisor = 1.0 / (degree + 1) as f64;
-        power *= room;
-        let mut negligible = true;
-        for (variable, (series, scale)) in series.iter_mut().zip(scale).enumerate().take(states) {
-            let rate = graph.rates.get(variable).copied();
-            let coefficient = rate.map_or(0.0, |node| graph.coefficient(node, degree)) * divisor;
-            graph.set_state(variable, degree + 1, coefficient);
-            if let Some(slot) = series.get_mut(degree + 1) {
-                *slot = coefficient;
-            }
-            negligible &= coefficient.abs() * power <= 0.1 * tolerance * scale;
-        }
-        small = if negligible { small + 1 } else { 0 };
-        if small >= 2 && degree >= 3 {
-            graph.extend(degree + 1);
-            return degree + 1;
-        }
-    }
-    graph.extend(most);
-    most
-}
-
-/// When a margin, positive now, first becomes negative within a time; 0 where it is about to. `resolution` is
-/// how exactly the present time is known.
-fn crossing(margin: &[f64], until: f64, resolution: f64) -> Option<f64> {
-    let mut power = 1.0;
-    let mut total = 0.0;
-    for coefficient in margin {
-        total += coefficient.abs() * power;
-        power *= until;
-    }
-    let (first, rest) = margin.split_first()?;
-    // The rest cannot outweigh the first.
-    if *first > total - first.abs() {
-        return None;
-    }
-    // On the edge itself the lowest coefficients are rounding; what counts is how the margin goes on.
-    let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
-    while lowest.abs() * power
-        <= ON_THE_EDGE * total + rest.first().map_or(0.0, |next| next.abs() * power * resolution)
-    {
-        margin = rest;
-        (lowest, rest) = match rest.split_first() {
-            Some((first, rest)) => (*first, rest),
-            None => return None,
-        };
-        power *= until;
-    }
-    if lowest < 0.0 {
-        return Some(0.0);
-    }
-    let mut from = 0.0;
-    let mut falling = true;
-    for look in 1..=LOOKS {
-        let to = until * f64::from(look) / f64::from(LOOKS);
-        let still_falling = slope(margin, to) < 0.0;
-        if value(margin, to) < 0.0 {
-            return Some(crate::root::bracketed(from, to, |time| value(margin, time)));
-        }
-        if falling && !still_falling {
-            // A short visit behind the edge, between two looks.
-            let lowest = crate::root::bracketed(from, to, |time| -slope(margin, time));
-            if value(margin, lowest) < 0.0 {
-                return Some(crate::root::bracketed(from, lowest, |time| value(margin, time)));
-            }
-        }
-        falling = still_falling;
-        from = to;
-    }
-    None
 }
 
 const _: () = assert!(MOST_STATES == 2 + SYSTEM_HIDDEN);

@@ -27,6 +27,7 @@
 
 mod adjoint;
 mod columns;
+mod crossing;
 mod expression;
 mod free;
 mod graph;
@@ -34,7 +35,9 @@ mod march;
 mod model;
 mod program;
 mod response;
+mod saltation;
 mod series;
+mod step_size;
 
 pub use free::Free;
 pub use model::{Model, Settings};

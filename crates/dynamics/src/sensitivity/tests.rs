@@ -322,3 +322,27 @@ fn what_cannot_be_free_is_named() {
         "nominal `inertia` is -1; expected a finite number above 0"
     );
 }
+
+#[test]
+fn the_series_has_the_order_of_its_degree() {
+    // A swinging pendulum with damping, in steps of one size: with a tolerance this wide nothing else cuts them.
+    let nominal = Nominal::new(1.0, 0.3, 2.0, 0.1).unwrap();
+    let system = with(nominal, &[("gravity", &[9.0, 0.2]), ("cubic_stiffness", &[1.5])]);
+    let start = Start { position: 1.2, velocity: 0.5 };
+    let exact = simulate(&system, start, None, &[0.0, 2.0], &Tolerance::default()).unwrap().position[1];
+    for (degree, steps) in [(2, 3200), (3, 800), (4, 400)] {
+        let error = |steps: usize| {
+            let settings = Settings { tolerance: 1e9, degree, ..Settings::default() };
+            let mut model = Model::new(&system, &[], settings).unwrap();
+            let at = |step: usize| 2.0 * step as f64 / steps as f64;
+            let end = (0..steps).fold(FullState::from(start), |state, step| {
+                let response = model.run(state, None, &[at(step), at(step + 1)]).unwrap();
+                assert!(response.steps == 1, "{}", response.steps);
+                response.end
+            });
+            (end.position - exact).abs()
+        };
+        let order = (error(steps) / error(2 * steps)).log2();
+        assert!((order - degree as f64).abs() < 0.05, "degree {degree}: order {order}");
+    }
+}

@@ -1,0 +1,83 @@
+//! Passing to the next piece: how the columns jump at an event.
+
+use super::free::Place;
+use super::graph::{INPUT, STATE, TIME};
+use super::march::March;
+use super::model::Model;
+use crate::edges::Edge;
+
+impl March<'_> {
+    /// Passes to the piece behind an edge; the columns jump where the force does.
+    pub(super) fn cross(&mut self, edge: Edge, number: usize) {
+        self.response.events += 1;
+        if edge == Edge::Reversal {
+            let [_, velocity, ..] = &mut self.state;
+            *velocity = 0.0;
+        }
+        let before = self.rates();
+        let old = self.mode;
+        self.mode = self.model.field.behind(&self.point(), &old, edge);
+        let after = self.rates();
+        let [_, _, hidden @ ..] = &mut self.state;
+        self.model.field.settle(&self.mode, hidden);
+        let rates = before.iter().zip(&after);
+        let jumps = rates
+            .into_iter()
+            .any(|(before, after)| (before - after).abs() > 1e-12 * before.abs().max(after.abs()));
+        if jumps && !self.model.free.is_empty() {
+            self.shift(edge, number);
+            for column in 0..self.model.free.len() {
+                let shift = self.model.shifts.get(column).copied().unwrap_or(0.0);
+                for (variable, (before, after)) in before.iter().zip(after).enumerate().skip(1) {
+                    if let Some(slot) = self.model.columns.first_mut(column, variable) {
+                        *slot += (before - after) * shift;
+                    }
+                }
+            }
+        }
+        if self.mode.sticks() {
+            for column in 0..self.model.free.len() {
+                if let Some(slot) = self.model.columns.first_mut(column, 1) {
+                    *slot = 0.0;
+                }
+            }
+        }
+    }
+
+    /// How much later each free quantity makes the event: −δm/ṁ with the margin m of the edge.
+    fn shift(&mut self, edge: Edge, number: usize) {
+        let point = self.point();
+        let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
+        let Model { graphs, states, free, columns, shifts, .. } = &mut *self.model;
+        let Some(piece) = graphs.get_mut(number) else { return };
+        let graph = &mut piece.graph;
+        let Some(&(_, node)) = graph.edges.iter().find(|(other, _)| *other == edge) else { return };
+        graph.set_leaf(TIME, point.time, 1.0);
+        graph.set_leaf(INPUT, raw.0, raw.1);
+        for (variable, &value) in self.state.iter().enumerate().take(*states) {
+            graph.set_leaf(STATE + variable, value, 0.0);
+        }
+        graph.extend(0);
+        for variable in 0..*states {
+            let rate = graph.rates.get(variable).map_or(0.0, |&node| graph.coefficient(node, 0));
+            graph.set_state(variable, 1, rate);
+        }
+        graph.extend(1);
+        let speed = graph.coefficient(node, 1);
+        graph.differentiate(node, 0);
+        for (column, (shift, place)) in shifts.iter_mut().zip(free.iter()).enumerate() {
+            let mut moved: f64 = (0..*states)
+                .map(|state| {
+                    graph.derivative(STATE + state).first().unwrap_or(&0.0) * columns.first(column, state)
+                })
+                .sum();
+            moved += match *place {
+                Place::Leaf(leaf) => graph.derivative(leaf).first().copied().unwrap_or(0.0),
+                Place::Delay(_) => -raw.1 * graph.derivative(INPUT).first().unwrap_or(&0.0),
+                Place::Start(_) => 0.0,
+            };
+            // An edge that is only touched has no side to be shifted to.
+            *shift = if speed == 0.0 { 0.0 } else { -moved / speed };
+        }
+    }
+}

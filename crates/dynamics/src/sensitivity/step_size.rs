@@ -1,0 +1,144 @@
+//! How far a step by Taylor series reaches.
+
+use super::graph::{Graph, MOST_STATES};
+use super::march::March;
+use super::series::{Series, slope, value};
+use crate::field::State;
+
+/// Parts of a step at which its defect is looked at.
+const PARTS: [f64; 2] = [1.0, 0.6];
+
+/// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
+const MOST_DEFECT: f64 = 20.0;
+
+impl March<'_> {
+    /// The largest step for which the last two coefficients of every series are below the tolerance, and
+    /// those behind them fall off.
+    pub(super) fn step_size(&self, series: &[Series; MOST_STATES], degree: usize, number: usize) -> f64 {
+        let mut tails = Tails::default();
+        for (series, &scale) in series.iter().zip(&self.scale).take(self.model.states) {
+            tails.take(series, degree, self.reach(series, scale));
+        }
+        if self.mode.sticks()
+            && let Some(piece) = self.model.graphs.get(number)
+        {
+            // Nothing moves but the torque: the step has to resolve it, or a break-away is missed.
+            let holding = self.model.field.holding_torque().unwrap_or(1.0).abs();
+            for (_, node) in &piece.graph.edges {
+                tails.take(piece.graph.series(*node), degree, holding);
+            }
+        }
+        tails.step_size(degree, self.model.settings.tolerance)
+    }
+
+    /// The size that errors of a variable are measured by: its largest so far, or, where it has not moved yet, how
+    /// far its first terms take it.
+    fn reach(&self, series: &Series, scale: f64) -> f64 {
+        let [_, first, second, third, ..] = series;
+        let time = self.size;
+        scale.max(first.abs() * time).max(second.abs() * time * time).max(third.abs() * time * time * time)
+    }
+
+    /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
+    /// tolerance. The coefficients alone do not betray a narrow peak ahead; this does.
+    fn defect(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> f64 {
+        let states = self.model.states;
+        let mut end = [0.0; MOST_STATES];
+        for (slot, series) in end.iter_mut().zip(series).take(states) {
+            *slot = value(series.get(..=degree).unwrap_or_default(), size);
+        }
+        let [position, velocity, hidden @ ..] = end;
+        let time = self.time + size;
+        let input = if self.drive.is_present() { self.drive.torque(time) } else { 0.0 };
+        let point = State { time, position, velocity, hidden, input };
+        let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
+        let rates = [velocity, acceleration].into_iter().chain(hidden);
+        let defects = series.iter().zip(rates).zip(&self.scale).take(states);
+        defects
+            .map(|((series, rate), &scale)| {
+                let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
+                let defect = slope(series.get(..=degree).unwrap_or_default(), size) - rate;
+                defect.abs() * size / (scale * self.model.settings.tolerance)
+            })
+            .fold(0.0, |largest: f64, part| if part.is_finite() { largest.max(part) } else { f64::INFINITY })
+    }
+
+    /// A step shortened until the equation of motion holds along it.
+    pub(super) fn without_defect(&self, series: &[Series; MOST_STATES], degree: usize, mut size: f64) -> f64 {
+        while size > f64::EPSILON * self.time.abs()
+            && PARTS.into_iter().any(|part| self.defect(series, degree, part * size) > MOST_DEFECT)
+        {
+            size *= 0.7;
+        }
+        size
+    }
+}
+
+/// The largest of the last coefficients of several series, the highest degree first, each relative to its scale.
+#[derive(Debug, Default)]
+struct Tails([f64; 4]);
+
+impl Tails {
+    fn take(&mut self, series: &Series, degree: usize, scale: f64) {
+        let last = series.get(..=degree).unwrap_or_default().iter().rev();
+        for (largest, coefficient) in self.0.iter_mut().zip(last) {
+            let part = coefficient.abs() / scale.max(f64::MIN_POSITIVE);
+            // `max` passes over what is not a number.
+            *largest = if part.is_finite() { largest.max(part) } else { f64::INFINITY };
+        }
+    }
+
+    fn step_size(&self, degree: usize, tolerance: f64) -> f64 {
+        let [last, second, third, fourth] = self.0;
+        let root = |coefficient: f64, degree: usize| {
+            if coefficient > 0.0 {
+                (tolerance / coefficient).powf(1.0 / degree as f64)
+            } else {
+                f64::INFINITY
+            }
+        };
+        let size = root(last, degree).min(root(second, degree - 1));
+        // Small last terms do not bound the rest where terms still grow with the degree, as before a narrow
+        // peak: two degrees have to gain a factor of four.
+        let (late, early) = (last * size + second, third * size + fourth);
+        let growth = late * size * size / early.max(f64::MIN_POSITIVE);
+        if size.is_finite() && growth > 0.25 { size * (0.25 / growth).sqrt() } else { size }
+    }
+}
+
+/// Expands the state into its series. Where the step cannot be long (`room`), a lower degree may do: it
+/// returns the degree used.
+pub(super) fn expand(
+    graph: &mut Graph,
+    series: &mut [Series; MOST_STATES],
+    states: usize,
+    most: usize,
+    room: f64,
+    scale: &[f64; MOST_STATES],
+    tolerance: f64,
+) -> usize {
+    let mut small = 0;
+    let mut power = 1.0;
+    for degree in 0..most {
+        graph.extend(degree);
+        let divisor = 1.0 / (degree + 1) as f64;
+        power *= room;
+        let mut negligible = true;
+        for (variable, (series, scale)) in series.iter_mut().zip(scale).enumerate().take(states) {
+            let rate = graph.rates.get(variable).copied();
+            let coefficient = rate.map_or(0.0, |node| graph.coefficient(node, degree)) * divisor;
+            graph.set_state(variable, degree + 1, coefficient);
+            if let Some(slot) = series.get_mut(degree + 1) {
+                *slot = coefficient;
+            }
+            negligible &= coefficient.abs() * power <= 0.1 * tolerance * scale;
+        }
+        small = if negligible { small + 1 } else { 0 };
+        if small >= 2 && degree >= 3 {
+            graph.extend(degree + 1);
+            return degree + 1;
+        }
+    }
+    graph.extend(most);
+    most
+}
