@@ -72,7 +72,7 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
 fn settings(arguments: &DiagnoseArguments) -> Settings {
     Settings {
         false_alarm: arguments.false_alarm,
-        most_effects: usize::from(arguments.most_effects),
+        most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
         seed: Seed::new(arguments.seed),
     }
 }

@@ -59,11 +59,8 @@ fn gap(result: &DiagnosisResult) -> String {
         row("ceiling: a free torque on top", gap.ceiling, String::new()),
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
-    if !same {
-        if let Some(repaired) = rows.get_mut(2).and_then(|row| row.last_mut()) {
-            repaired
-                .push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
-        }
+    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same) {
+        note.push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
     }
     table(&["held-out error", "RMS", "floors", ""], rows)
 }
