@@ -31,7 +31,7 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
             "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
              that were not fitted{rest}.",
             lacking(found),
-            percent(gap.closure.value)
+            if gap.closure.value >= 1.0 { "all".to_owned() } else { percent(gap.closure.value) }
         ),
         Status::Unknown => format!(
             "Something is missing that no known effect explains: the best named model leaves {floor}, and a torque \
