@@ -48,6 +48,11 @@ const MOST_EFFECTS: usize = 4;
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;
 
+/// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's
+/// name and adds to the false alarms.
+const OFF_BY_CHANCE: f64 = 0.01;
+const SHIFTED_BY_CHANCE: f64 = 0.001;
+
 /// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
 /// other in one of twenty records.
 const DISTINCT: f64 = 3.29;
@@ -148,6 +153,7 @@ pub fn diagnose(
         &base.nominal,
         base.calibrated.autocorrelation_time(),
         base.calibrated.globals(),
+        OFF_BY_CHANCE,
     );
 
     let (rivals, closest) = work.rivals(repaired);
@@ -272,8 +278,8 @@ impl<'a> Work<'a> {
             Point { globals: hypothesis.nominal_point(), starts: self.base.nominal.point.starts.clone() };
         let shifted = fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL)?;
         let time = base.autocorrelation_time();
-        let enough = !significant(base, &shifted, time, base.globals() - 1);
-        let needed = significant(&shifted, &self.base.nominal, time, 1);
+        let enough = !significant(base, &shifted, time, base.globals() - 1, OFF_BY_CHANCE);
+        let needed = significant(&shifted, &self.base.nominal, time, 1, SHIFTED_BY_CHANCE);
         let nominal = &base.hypothesis.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
@@ -316,7 +322,7 @@ impl<'a> Work<'a> {
     /// bootstrap over segments.
     fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
         let count = repaired.hypothesis.candidates.len();
-        let worths: Vec<Vec<f64>> = (0..1_usize << count)
+        let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
             .map(|set| {
                 let members: Vec<Candidate> = repaired
                     .hypothesis
@@ -335,6 +341,18 @@ impl<'a> Work<'a> {
                 before.iter().zip(squares).map(|(before, after)| before - after).collect()
             })
             .collect();
+        // A set explains at least what its subsets do; where its own fit ended in a hollow, the best of theirs stands.
+        for set in 0..worths.len() {
+            let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
+            let subsets = (0..count).map(|member| set & !(1 << member));
+            let best = subsets.max_by(|a, b| total(*a).total_cmp(&total(*b))).unwrap_or(set);
+            if total(best) > total(set) {
+                let better = worths.get(best).cloned();
+                if let (Some(slot), Some(better)) = (worths.get_mut(set), better) {
+                    *slot = better;
+                }
+            }
+        }
         let by_segment = |pick: &[usize]| -> Vec<f64> {
             shapley(count, &|set| {
                 let own = worths.get(set);

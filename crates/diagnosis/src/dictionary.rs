@@ -68,7 +68,7 @@ const SECOND_BODY: f64 = 0.02;
 const SECOND_DAMPING: f64 = 0.05;
 
 /// The shapes that a candidate is tried at, as parameters of the fit with unit coefficients.
-fn shapes(candidate: Candidate, facts: &Facts) -> Vec<Vec<f64>> {
+pub(crate) fn shapes(candidate: Candidate, facts: &Facts) -> Vec<Vec<f64>> {
     let grid = |scale: f64, parts: &[f64]| -> Vec<f64> { parts.iter().map(|part| part * scale).collect() };
     let of = |values: Vec<f64>, make: &dyn Fn(f64) -> Vec<f64>| values.into_iter().map(make).collect();
     match candidate {

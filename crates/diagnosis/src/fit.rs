@@ -13,7 +13,7 @@ use crate::hypothesis::Hypothesis;
 use crate::response::{Prediction, Simulator};
 use crate::segments::{Data, Segment};
 use crate::settle::settle;
-use crate::statistics::autocorrelation_time;
+use crate::statistics::{autocorrelation_time, median};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -51,15 +51,19 @@ pub(crate) struct Effort {
     /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
     /// has still to grow says nothing about them.
     sizes_first: usize,
+    /// Whether segments that fit much worse than others are heeded less until the others are fitted: friction that
+    /// is not yet right stops the motion half a swing too early or too late somewhere, and that one segment would
+    /// hold all coefficients.
+    wary: bool,
 }
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 40, small: 5e-4, sizes_first: 2 };
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 5e-4, sizes_first: 2, wary: true };
     /// For parts held out: begun at the fit to all, there is not far to go.
-    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0 };
+    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
     /// For what is reported: half of 1e-8·N is far below what a probability would feel.
-    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0 };
+    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0, wary: false };
 }
 
 /// What is moved.
@@ -142,19 +146,35 @@ fn evaluate(
     Ok(Evaluation { predictions, squares })
 }
 
-fn equations(predictions: &[Prediction], starts: usize, globals: usize) -> Equations {
+/// Mean square relative to the median segment's, beyond which a segment is heeded less.
+const DOUBTFUL: f64 = 2.0;
+
+/// Weights of the segments: 1 up to [`DOUBTFUL`], falling with the mean square beyond.
+fn trust(predictions: &[Prediction]) -> Vec<f64> {
+    let squares = |p: &Prediction| p.residual.norm_squared() / p.residual.len().max(1) as f64;
+    let own: Vec<f64> = predictions.iter().map(squares).collect();
+    let usual = median(&own).max(f64::MIN_POSITIVE);
+    own.into_iter().map(|square| (DOUBTFUL * usual / square.max(f64::MIN_POSITIVE)).min(1.0)).collect()
+}
+
+fn weighted(evaluation: &Evaluation, weights: &[f64]) -> f64 {
+    evaluation.predictions.iter().zip(weights).map(|(p, weight)| weight * p.residual.norm_squared()).sum()
+}
+
+/// Normal equations of the weighted segments.
+fn equations(predictions: &[Prediction], weights: &[f64], starts: usize, globals: usize) -> Equations {
     let mut total = DMatrix::zeros(globals, globals);
     let mut right = DVector::zeros(globals);
     let mut blocks = Vec::with_capacity(predictions.len());
-    for prediction in predictions {
+    for (prediction, &weight) in predictions.iter().zip(weights) {
         let own = prediction.jacobian.columns(0, starts);
         let shared = prediction.jacobian.columns(starts, globals);
-        total += shared.tr_mul(&shared);
-        right += shared.tr_mul(&prediction.residual);
+        total += weight * shared.tr_mul(&shared);
+        right += weight * shared.tr_mul(&prediction.residual);
         blocks.push(Block {
-            own: own.tr_mul(&own),
-            shared: own.tr_mul(&shared),
-            right: own.tr_mul(&prediction.residual),
+            own: weight * own.tr_mul(&own),
+            shared: weight * own.tr_mul(&shared),
+            right: weight * own.tr_mul(&prediction.residual),
         });
     }
     Equations { blocks, globals: total, right }
@@ -245,8 +265,10 @@ pub(crate) fn fit(
     let mut converged = false;
     let mut small = 0;
     let mut steps = 0;
-    let mut system = equations(&at.predictions, starts, globals);
     let uneven = !hypothesis.smooth();
+    let mut wary = uneven && effort.wary;
+    let mut weights = if wary { trust(&at.predictions) } else { vec![1.0; data.segments.len()] };
+    let mut system = equations(&at.predictions, &weights, starts, globals);
     let mut settled = false;
     while steps < effort.steps {
         steps += 1;
@@ -292,26 +314,39 @@ pub(crate) fn fit(
             Some((next, evaluation))
         });
         match outcome {
-            Some((next, evaluation)) if evaluation.squares <= at.squares => {
-                let decrease = at.squares - evaluation.squares;
-                small = if decrease <= effort.small * at.squares { small + 1 } else { 0 };
+            Some((next, evaluation)) if weighted(&evaluation, &weights) <= weighted(&at, &weights) => {
+                let before = weighted(&at, &weights);
+                let decrease = before - weighted(&evaluation, &weights);
+                small = if decrease <= effort.small * before { small + 1 } else { 0 };
                 point = next;
                 at = evaluation;
+                if wary {
+                    weights = trust(&at.predictions);
+                }
                 damping = (damping * 0.1).max(1e-12);
                 if small == 0 {
                     settled = false;
                 }
-                system = equations(&at.predictions, starts, globals);
+                system = equations(&at.predictions, &weights, starts, globals);
             }
             _ => damping = (damping * 8.0).max(1e-9),
         }
         // Where no step of any length decreases the squares it is, to rounding, a minimum.
         let ended = !sizes && (small >= 1 || damping > 1e7);
+        if wary && (ended || steps >= effort.steps / 2) {
+            wary = false;
+            weights = vec![1.0; data.segments.len()];
+            settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)?;
+            at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+            system = equations(&at.predictions, &weights, starts, globals);
+            (small, damping, settled) = (0, 1e-4, true);
+            continue;
+        }
         if uneven && !settled && (ended || damping > 1e-2) {
             settled = true;
             if settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)? {
                 at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
-                system = equations(&at.predictions, starts, globals);
+                system = equations(&at.predictions, &weights, starts, globals);
                 (small, damping) = (0, 1e-4);
                 continue;
             }
@@ -321,7 +356,7 @@ pub(crate) fn fit(
             break;
         }
     }
-    let system = equations(&at.predictions, starts, globals);
+    let system = equations(&at.predictions, &vec![1.0; data.segments.len()], starts, globals);
     let inverse = system
         .reduced(0.0)
         .and_then(|(matrix, _)| solve(&matrix, &DMatrix::identity(globals, globals)))

@@ -6,7 +6,7 @@
 //! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
 
 use crate::candidate::Candidate;
-use crate::dictionary::{Dictionary, Gain};
+use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
@@ -244,6 +244,29 @@ fn around(
     proposals
 }
 
+/// Puts a member's generalization in its place at each of its shapes, with half the member's size beyond it. The
+/// linearization cannot tell these: at the special case the shape means nothing.
+fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
+    let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
+    let mut proposals = Vec::new();
+    for (&special, part) in base.hypothesis.candidates.iter().zip(parts) {
+        let Some(size) = part.first() else { continue };
+        for &general in candidates.iter().filter(|general| general.generalizes() == Some(special)) {
+            for shape in shapes(general, &data.facts) {
+                let parameters = general.parameters(&data.facts);
+                let values = parameters.iter().zip(shape).enumerate();
+                let values = values.map(|(place, (parameter, shape))| match place {
+                    0 => *size,
+                    _ if parameter.strength => 0.5 * size,
+                    _ => shape,
+                });
+                proposals.push(proposal(data, base, Some(special), &[(general, values.collect())]));
+            }
+        }
+    }
+    proposals
+}
+
 /// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
 /// member too: begun here they often fit better than on their own.
 fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
@@ -272,13 +295,13 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
 }
 
 fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
-    let fresh: Vec<Proposal> = proposals
-        .into_iter()
-        .filter(|proposal| {
-            let set: Vec<usize> = proposal.hypothesis.candidates.iter().map(|c| c.rank()).collect();
-            tried.insert(set)
-        })
-        .collect();
+    let set = |proposal: &Proposal| -> Vec<usize> {
+        proposal.hypothesis.candidates.iter().map(|c| c.rank()).collect()
+    };
+    // A set may come with several shapes to begin from, but only in one round.
+    let fresh: Vec<Proposal> =
+        proposals.into_iter().filter(|proposal| !tried.contains(&set(proposal))).collect();
+    tried.extend(fresh.iter().map(set));
     for fit in fit_all(data, &fresh) {
         pool.admit(data, fit);
     }
@@ -338,6 +361,7 @@ pub(crate) fn search(
                 let mut own = around(data, base, candidates, breadth, threshold);
                 let mut dropped = Vec::new();
                 if place == 0 {
+                    own.extend(generalized(data, base, candidates));
                     let (proposals, without) = swaps(data, base, candidates, breadth);
                     own.extend(proposals);
                     dropped = without;

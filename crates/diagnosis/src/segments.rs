@@ -31,6 +31,9 @@ pub(crate) const MOST_SEARCHED: usize = 30_000;
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
 
+/// Steps of the sensor that a motion has to span to be seen.
+const FEW_STEPS: f64 = 3.5;
+
 /// Part of its largest excursion that a motion counts as visible.
 const VISIBLE: f64 = 0.02;
 
@@ -157,12 +160,23 @@ pub(crate) fn cut(
             if times.len() < FEWEST_PER_SEGMENT / 2 {
                 continue;
             }
+            if at > 1 && swings_within(&values, record.resolution) {
+                continue;
+            }
             let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
             segments.push(Segment { record: number, first: at == 0, times, values, guess });
         }
     }
     let resolution = first.resolution;
     Ok(Data { segments, inputs, quantity: first.quantity, facts, period_s, resolution })
+}
+
+/// Whether all values lie on a few neighboring steps of the sensor: what the motion does between them is not seen, and
+/// rounding follows it instead of being noise.
+fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    resolution.is_some_and(|step| highest - lowest <= FEW_STEPS * step)
 }
 
 fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {

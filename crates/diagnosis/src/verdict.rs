@@ -90,9 +90,9 @@ pub(crate) fn unknown(share: f64, standard_errors: f64) -> f64 {
     (odds / (1.0 + odds)).clamp(0.01, 0.99)
 }
 
-/// Whether fitting `parameters` coefficients improves a fit more than chance does in one of a hundred records.
-pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize) -> bool {
-    2.0 * ratio(better, worse, time) > chi_squared_above(parameters as f64, 0.01)
+/// Whether fitting `parameters` coefficients improves a fit more than chance does with a given probability.
+pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize, chance: f64) -> bool {
+    2.0 * ratio(better, worse, time) > chi_squared_above(parameters as f64, chance)
 }
 
 #[cfg(test)]
