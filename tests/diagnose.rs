@@ -332,7 +332,7 @@ fn another_system_and_other_units_are_refused() {
     let other = NOMINAL.replace("484.0", "100.0");
     refused(&decay(800, 0.7), &other, &[], "this is not the same system, or the units are wrong");
     refused(&decay(800, 0.7), NOMINAL, &["--time-unit", "ms"], "this is not the same system");
-    refused(&decay(800, 40.0), NOMINAL, &[], "look like degrees. Set unit = \"deg\"");
+    refused(&decay(800, 40.0), NOMINAL, &[], "look like degrees. Set --unit deg");
     let drive = format!("coordinate = \"displacement\"\n{NOMINAL}");
     refused(
         &decay(800, 0.7),

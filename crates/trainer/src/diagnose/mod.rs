@@ -44,6 +44,10 @@ struct Answer {
 }
 
 fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
+    if let Some(path) = &arguments.out {
+        // Better to know before the work than after it; the folder itself is made once there is an answer.
+        RunFolder::check_free(path)?;
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
