@@ -22,6 +22,8 @@ mod budget;
 mod calibrate;
 mod candidate;
 mod chain_statistics;
+mod coefficients;
+mod conclusion;
 mod diagnose;
 mod dictionary;
 mod error;
@@ -51,6 +53,7 @@ mod tangent;
 #[cfg(test)]
 mod trials;
 mod verdict;
+mod work;
 
 pub use answer::{
     Budget, Calibrated, Cell, Detectability, Diagnosis, EffectProbability, Experiment, Finding, Gap,
