@@ -6,6 +6,8 @@ use report::format::{interval, quantity, significant};
 use runs::result::{CalibratedRow, DiagnosisResult, EffectRow, MapCell, WithInterval};
 use std::path::Path;
 
+/// Distance in noise units from which on two explanations are told apart.
+const DISTINCT: f64 = 3.29;
 /// Effects listed; the rest is counted.
 const MOST_EFFECTS: usize = 6;
 
@@ -129,10 +131,10 @@ fn apart(result: &DiagnosisResult) -> String {
             _ => "nothing here that could not be told apart".to_owned(),
         });
     }
-    let distance = result
-        .next_experiment
-        .distance
-        .map_or_else(String::new, |distance| format!(" (predicted distance {})", significant(distance, 2)));
+    let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
+        let enough = if distance < DISTINCT { ", too little by itself" } else { "" };
+        format!(" (predicted distance {}{enough})", significant(distance, 2))
+    });
     lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
     lines.join("\n")
 }
