@@ -2,7 +2,6 @@
 //! rests on them.
 
 use crate::answer::Series;
-use crate::matrices::set;
 use dynamics::Coefficients;
 use record::Quantity;
 use std::f64::consts::PI;
@@ -214,13 +213,10 @@ fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
     if points.len() <= degree || reach == 0.0 {
         return None;
     }
-    let mut matrix = nalgebra::DMatrix::<f64>::zeros(points.len(), degree + 1);
     let values = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
-    for (row, (time, _)) in points.iter().enumerate() {
-        for power in 0..=degree {
-            set(&mut matrix, row, power, (time / reach).powi(power as i32));
-        }
-    }
+    let power =
+        |row: usize, power: usize| points.get(row).map_or(0.0, |(time, _)| (time / reach).powi(power as i32));
+    let matrix = nalgebra::DMatrix::<f64>::from_fn(points.len(), degree + 1, power);
     let normal = matrix.tr_mul(&matrix).cholesky()?;
     let solved = normal.solve(&matrix.tr_mul(&values));
     let mut coefficients = [0.0; 4];

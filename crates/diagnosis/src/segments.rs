@@ -33,7 +33,7 @@ pub(crate) const MOST_SEARCHED: usize = 10_000;
 const SEARCHED_PER_PERIOD: f64 = 20.0;
 
 /// Steps of the sensor that a motion has to span to be seen.
-const FEW_STEPS: f64 = 3.5;
+const FEW_STEPS: f64 = 2.5;
 
 /// Part of its largest excursion that a motion counts as visible.
 const VISIBLE: f64 = 0.02;

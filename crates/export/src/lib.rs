@@ -12,6 +12,8 @@ mod python;
 mod repaired;
 mod robot;
 mod terms;
+#[cfg(test)]
+mod tests;
 
 pub use configuration::configuration;
 pub use equation::{equation_latex, equation_text};

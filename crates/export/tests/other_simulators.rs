@@ -87,6 +87,16 @@ fn distance(found: &[f64], own: &[f64]) -> f64 {
     (squares / own.iter().map(|b| (b - mean).powi(2)).sum::<f64>()).sqrt()
 }
 
+/// A fresh folder of this name below cargo's own for tests.
+fn scratch(name: &str) -> std::path::PathBuf {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    if folder.exists() {
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+    std::fs::create_dir_all(&folder).unwrap();
+    folder
+}
+
 /// Runs a script with a folder as its argument; each line that it prints is one case's positions. `None`, loudly, where
 /// what it imports is not there.
 fn run(script: &str, folder: &std::path::Path, needs: &str) -> Option<Vec<Vec<f64>>> {
@@ -134,15 +144,15 @@ for path in sorted(pathlib.Path(sys.argv[1]).glob("*.xml")):
 fn the_python_function_moves_as_our_own_simulation_does() {
     let known = REGISTRY.iter().filter(|effect| matches!(effect, Effect::System(_))).count();
     assert_eq!(CASES.len(), known, "an effect without a case");
-    let folder = tempfile::tempdir().unwrap();
+    let folder = scratch("scipy");
     let mut cases: Vec<Vec<(&str, &[f64])>> = CASES.iter().map(|case| vec![*case]).collect();
     cases.push(Vec::new());
     cases.push(vec![CASES[0], CASES[5], CASES[2]]);
     for (index, case) in cases.iter().enumerate() {
-        let name = folder.path().join(format!("case_{index:02}.py"));
+        let name = folder.join(format!("case_{index:02}.py"));
         std::fs::write(name, python(&repaired(case))).unwrap();
     }
-    let Some(found) = run(SCIPY, folder.path(), "import scipy.integrate") else { return };
+    let Some(found) = run(SCIPY, &folder, "import scipy.integrate") else { return };
     assert_eq!(found.len(), cases.len());
     let bare = own(&repaired(&[]));
     for (case, found) in cases.iter().zip(&found) {
@@ -161,16 +171,16 @@ fn the_python_function_moves_as_our_own_simulation_does() {
 
 #[test]
 fn the_mujoco_joint_moves_as_our_own_simulation_does() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = scratch("mujoco");
     let cases: [&[(&str, &[f64])]; 5] =
         [&[], &[CASES[0]], &[CASES[5]], &[CASES[6]], &[CASES[0], CASES[5], CASES[6]]];
     for (index, case) in cases.iter().enumerate() {
-        let name = folder.path().join(format!("case_{index:02}.xml"));
+        let name = folder.join(format!("case_{index:02}.xml"));
         let text = mjcf(&repaired(case));
         assert!(!text.contains("Not part of it"), "{text}");
         std::fs::write(name, text).unwrap();
     }
-    let Some(found) = run(MUJOCO, folder.path(), "import mujoco") else { return };
+    let Some(found) = run(MUJOCO, &folder, "import mujoco") else { return };
     for (case, found) in cases.iter().zip(&found) {
         let off = distance(found, &own(&repaired(case)));
         assert!(off < 0.01, "{case:?}: {off}");

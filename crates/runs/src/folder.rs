@@ -77,6 +77,18 @@ impl RunFolder {
         Ok(Self { path: path.to_owned() })
     }
 
+    /// Whether [`RunFolder::create_at`] would take this folder, before there is anything to put in it.
+    ///
+    /// # Errors
+    /// [`RunError::Occupied`] where it holds something; [`RunError::Io`] where it is no folder.
+    pub fn check_free(path: &Path) -> Result<(), RunError> {
+        if !path.exists() {
+            return Ok(());
+        }
+        let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
+        if entries.next().is_some() { Err(RunError::Occupied { path: path.to_owned() }) } else { Ok(()) }
+    }
+
     /// A folder that is there already.
     #[must_use]
     pub fn open(path: &Path) -> Self {
@@ -221,6 +233,8 @@ mod tests {
         folder.write("model/x.bin", b"1").unwrap();
         let again = RunFolder::create_at(folder.path());
         assert!(matches!(again, Err(RunError::Occupied { .. })));
+        assert!(matches!(RunFolder::check_free(folder.path()), Err(RunError::Occupied { .. })));
+        assert!(RunFolder::check_free(&root.path().join("absent")).is_ok());
         assert_eq!(std::fs::read(folder.path().join("model/x.bin")).unwrap(), b"1");
     }
 

@@ -72,7 +72,7 @@ pub(crate) struct Output {
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
     /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
-    Diagnose(DiagnoseArguments),
+    Diagnose(Box<DiagnoseArguments>),
     /// Lists what there is to choose from
     List {
         /// What to list

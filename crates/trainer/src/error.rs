@@ -50,7 +50,7 @@ pub(crate) enum TrainerError {
     /// A record named on the command line of a diagnosis, where options name columns.
     #[error("{}", options_in(.0))]
     DiagnosedRecord(RecordError),
-    #[error("{file}: {source}")]
+    #[error("{file}: {}", source.to_string().replace("unit = \"deg\"", "--unit deg"))]
     Diagnosis { file: String, source: DiagnosisError },
     #[error(
         "{file}: the nominal simulator has an input_gain, so an input drives the system, but the record has no input \

@@ -7,6 +7,8 @@ use crate::plot::Hue;
 
 /// Below this share a stretch of the bar has no room for its number.
 const LEAST_LABELED: f64 = 0.08;
+/// A share below this rounds to zero.
+const LEAST_SHOWN: f64 = 5e-4;
 
 /// One stretch of the bar.
 pub(super) struct Share {
@@ -34,7 +36,7 @@ pub(super) fn shares(budget: &BudgetShares) -> Vec<Share> {
         ("clock", "distorts the times", budget.clock, Hue::Fourth),
     ]
     .into_iter()
-    .filter(|(_, _, share, _)| share.is_finite() && *share > 0.0)
+    .filter(|(_, _, share, _)| share.is_finite() && *share >= LEAST_SHOWN)
     .map(|(name, meaning, share, hue)| Share {
         name,
         meaning,

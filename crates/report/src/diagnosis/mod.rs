@@ -6,6 +6,8 @@ mod maps;
 mod portrait;
 mod record;
 mod tables;
+#[cfg(test)]
+mod tests;
 
 use askama::Template;
 use runs::result::DiagnosisResult;
@@ -86,10 +88,13 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
 }
 
 fn headline(result: &DiagnosisResult) -> Verdict {
+    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    let [ratio, _] = result.gap.ratio_to_floor_interval_95;
+    let explained = if ratio.powi(2) > 2.0 { Tone::Caution } else { Tone::Good };
     let (tone, label) = match result.verdict.status.as_str() {
-        "none" => (Tone::Good, "Nothing is missing"),
-        "calibration" => (Tone::Good, "Only calibration"),
-        "effect" => (Tone::Good, "Missing effect"),
+        "none" => (explained, "Nothing is missing"),
+        "calibration" => (explained, "Only calibration"),
+        "effect" => (explained, "Missing effect"),
         "unknown" => (Tone::Caution, "Unknown: a gap without a name"),
         _ => (Tone::Caution, "Verdict not known to this report"),
     };

@@ -1,4 +1,6 @@
 //! What a diagnosis found: the content of `diagnosis.json`.
+//!
+//! A number that is not finite is `null` there and reads as no number.
 
 use super::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
@@ -104,6 +106,7 @@ pub struct EffectRow {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ParameterRow {
     /// The estimate.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub value: f64,
     /// Symbol of its unit.
     pub unit: String,
@@ -118,16 +121,22 @@ pub struct GapSummary {
     /// Unit of the root mean squares.
     pub unit: String,
     /// The given simulator; only start states fitted.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub nominal: f64,
     /// Recalibrated.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub recalibrated: f64,
     /// With the named effects.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
     /// With a free latent torque on top.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub ceiling: f64,
     /// The noise floor, measured from the residual.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub noise_floor: f64,
     /// 95 % interval of the noise floor.
+    #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub noise_floor_interval_95: [f64; 2],
     /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀.
     pub closure: WithInterval,
@@ -165,14 +174,19 @@ pub struct GapMaps {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BudgetShares {
     /// Takes energy out.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub dissipative: f64,
     /// Depends on position.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub conservative: f64,
     /// Depends on time.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub time_dependent: f64,
     /// Distorts the values.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub sensor: f64,
     /// Distorts the times.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub clock: f64,
 }
 
@@ -182,10 +196,13 @@ pub struct MapCell {
     /// Lower and upper bound along each axis of the map.
     pub bounds: Vec<[f64; 2]>,
     /// Root mean square of the recalibrated simulator's held-out residual in the cell.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub value: f64,
     /// The same with the named effects.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
     /// What noise alone exceeds with 5 % probability in any cell of the map at all.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub band: f64,
     /// Whether the value lies above the band.
     pub significant: bool,
@@ -205,6 +222,7 @@ pub struct ChainSummary {
     /// The sensor's step, where the values lie on a lattice.
     pub resolution: Option<f64>,
     /// Standard deviation of the noise.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub noise: f64,
     /// What was found.
     pub findings: Vec<ChainFinding>,
@@ -349,8 +367,10 @@ pub struct Backbone {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct BackbonePoint {
     /// Half the distance between successive turning points, in the observed unit.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub amplitude: f64,
     /// Angular frequency in rad/s.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub frequency: f64,
     /// Rate at which the amplitude falls, in 1/s.
     pub decay_rate: Option<f64>,
@@ -362,8 +382,10 @@ pub struct SurfaceCell {
     /// Lower and upper bound of position and velocity.
     pub bounds: [[f64; 2]; 2],
     /// Mean measured acceleration.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub measured: f64,
     /// What of it the recalibrated simulator lacks.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub missing: f64,
     /// Samples in the cell.
     pub samples: usize,
@@ -383,8 +405,10 @@ pub struct SeriesRow {
     /// What the given simulator says.
     pub nominal: f64,
     /// What the recalibrated simulator says, fitted elsewhere.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub recalibrated: f64,
     /// What the repaired simulator says, fitted elsewhere.
+    #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
 }
 

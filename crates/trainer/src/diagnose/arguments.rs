@@ -47,9 +47,9 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: Reading,
-    /// Most effects named together
-    #[arg(long, value_name = "N", default_value_t = 3, value_parser = clap::value_parser!(u8).range(1..=3))]
-    pub(crate) most_effects: u8,
+    /// Most effects named together, 1 to 4 [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub(crate) most_effects: Option<u8>,
     /// Probability with which an effect is named where there is none
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
     pub(crate) false_alarm: f64,

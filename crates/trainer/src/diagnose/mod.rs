@@ -44,6 +44,10 @@ struct Answer {
 }
 
 fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
+    if let Some(path) = &arguments.out {
+        // Better to know before the work than after it; the folder itself is made once there is an answer.
+        RunFolder::check_free(path)?;
+    }
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
@@ -72,7 +76,7 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
 fn settings(arguments: &DiagnoseArguments) -> Settings {
     Settings {
         false_alarm: arguments.false_alarm,
-        most_effects: usize::from(arguments.most_effects),
+        most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
         seed: Seed::new(arguments.seed),
     }
 }

@@ -12,6 +12,12 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
     } else {
         format!("{} {}", format::significant(gap.repaired, 3), gap.unit)
     };
+    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    let rest = if gap.ratio_to_floor.interval_95.first().is_some_and(|low| low.powi(2) > 2.0) {
+        "; most of what is left is still not noise"
+    } else {
+        ""
+    };
     match found.verdict.status {
         Status::None => format!(
             "Nothing is missing: the simulator as given explains what was recorded, down to {floor} on parts that \
@@ -19,12 +25,13 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
         ),
         Status::Calibration => format!(
             "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
-             on parts that were not fitted, and no effect is missing."
+             on parts that were not fitted, and no effect is missing{rest}."
         ),
         Status::Effect => format!(
-            "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts that were not fitted.",
+            "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
+             that were not fitted{rest}.",
             lacking(found),
-            percent(gap.closure.value)
+            if gap.closure.value >= 1.0 { "all".to_owned() } else { percent(gap.closure.value) }
         ),
         Status::Unknown => format!(
             "Something is missing that no known effect explains: the best named model leaves {floor}, and a torque \

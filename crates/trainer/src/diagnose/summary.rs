@@ -6,6 +6,8 @@ use report::format::{interval, quantity, significant};
 use runs::result::{CalibratedRow, DiagnosisResult, EffectRow, MapCell, WithInterval};
 use std::path::Path;
 
+/// Distance in noise units from which on two explanations are told apart.
+const DISTINCT: f64 = 3.29;
 /// Effects listed; the rest is counted.
 const MOST_EFFECTS: usize = 6;
 
@@ -59,11 +61,8 @@ fn gap(result: &DiagnosisResult) -> String {
         row("ceiling: a free torque on top", gap.ceiling, String::new()),
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
-    if !same {
-        if let Some(repaired) = rows.get_mut(2).and_then(|row| row.last_mut()) {
-            repaired
-                .push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
-        }
+    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same) {
+        note.push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
     }
     table(&["held-out error", "RMS", "floors", ""], rows)
 }
@@ -132,10 +131,10 @@ fn apart(result: &DiagnosisResult) -> String {
             _ => "nothing here that could not be told apart".to_owned(),
         });
     }
-    let distance = result
-        .next_experiment
-        .distance
-        .map_or_else(String::new, |distance| format!(" (predicted distance {})", significant(distance, 2)));
+    let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
+        let enough = if distance < DISTINCT { ", too little by itself" } else { "" };
+        format!(" (predicted distance {}{enough})", significant(distance, 2))
+    });
     lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
     lines.join("\n")
 }
