@@ -28,7 +28,7 @@ use seed::Seed;
 pub struct Settings {
     /// Probability with which an effect is named where there is none; 0.001 to 0.2.
     pub false_alarm: f64,
-    /// Most effects named together, 1 to 4.
+    /// Most effects named together, 1 to 5.
     pub most_effects: usize,
     /// Randomness of the bootstraps.
     pub seed: Seed,
@@ -36,12 +36,12 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: MOST_EFFECTS, seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: 3, seed: Seed::new(0) }
     }
 }
 
 /// Most effects that a set can hold.
-const MOST_EFFECTS: usize = 4;
+const MOST_EFFECTS: usize = 5;
 
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;

@@ -10,7 +10,7 @@
 //! 3. Every candidate's first-order effect on the observed values, at many shapes, is projected on what calibration and start
 //!    states cannot imitate (`tangent`, `dictionary`, `projection`); what the best of them gains by chance is drawn
 //!    (`null`).
-//! 4. Sets of up to three are searched and fitted in full (`search`, `refine`), scored by tempered evidence (`score`), and
+//! 4. Sets of a few are searched and fitted in full (`search`, `refine`), scored by tempered evidence (`score`), and
 //!    have to predict held-out segments (`held_out`).
 //! 5. A free latent torque says what is left without a name (`latent`, `verdict`).
 //! 6. Shares, maps, rivals and the next experiment follow (`budget`, `maps`, `experiment`).

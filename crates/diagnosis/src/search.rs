@@ -37,6 +37,10 @@ pub(crate) struct Breadth {
     pub(crate) additions: usize,
 }
 
+/// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
+const NEAR: f64 = 1.5;
+const POLISHED: usize = 6;
+
 /// Part of its linearized size that an effect begins a fit with.
 const FIRST_SIZE: f64 = 1e-3;
 
@@ -392,5 +396,23 @@ pub(crate) fn search(
             break;
         }
     }
+    polish(data, &mut pool);
     pool
+}
+
+/// Fits whose steps were spent before they converged, and that are among the closest to the data all the same, go on: a
+/// second body converges slowly and would be judged by where it had got to.
+fn polish(data: &Data, pool: &mut Pool) {
+    let smallest = pool.fits.iter().map(|fit| fit.squares).fold(f64::INFINITY, f64::min);
+    let mut near: Vec<Fit> =
+        pool.fits.iter().filter(|fit| !fit.converged && fit.squares < NEAR * smallest).cloned().collect();
+    near.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    near.truncate(POLISHED);
+    let polished: Vec<Option<Fit>> = near
+        .par_iter()
+        .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
+        .collect();
+    for fit in polished.into_iter().flatten() {
+        pool.admit(data, fit);
+    }
 }
