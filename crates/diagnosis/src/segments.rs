@@ -173,11 +173,11 @@ pub(crate) fn cut(
 }
 
 /// Whether all values lie on a few neighboring steps of the sensor: what the motion does between them is not seen, and
-/// rounding follows it instead of being noise.
+/// rounding follows it instead of being noise. What does not change at all is at rest, and that says something.
 fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    resolution.is_some_and(|step| highest - lowest <= FEW_STEPS * step)
+    highest > lowest && resolution.is_some_and(|step| highest - lowest <= FEW_STEPS * step)
 }
 
 fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
