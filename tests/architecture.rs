@@ -10,13 +10,13 @@ use std::process::Command;
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
         "record" | "seed" | "settings" | "dynamics" => 0,
-        "envelope" | "truth" => 1,
+        "envelope" | "export" | "truth" => 1,
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,
         "oracle" => 4,
         "scoring" | "experiment" | "runs" => 5,
-        "conformance" => 3,
+        "conformance" | "diagnosis" => 3,
         "registry" => 5,
         "report" => 6,
         "trainer" => 7,

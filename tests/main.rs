@@ -15,6 +15,7 @@
 mod architecture;
 mod bad_input;
 mod comparison;
+mod diagnose;
 mod documents;
 mod honesty;
 mod measured_records;

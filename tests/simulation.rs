@@ -99,6 +99,12 @@ fn the_shipped_record_is_what_its_configuration_gives() {
     let made = std::fs::read(folder.path().join("records/record-000.csv")).unwrap();
     let shipped = std::fs::read(root().join("experiments/default-record/record.csv")).unwrap();
     assert!(made == shipped, "run `trainer simulate configs/default-record.toml` and copy the record");
+    let nominal = |path: std::path::PathBuf| std::fs::read_to_string(path).unwrap();
+    assert_eq!(
+        nominal(folder.path().join("records/nominal.toml")),
+        nominal(root().join("experiments/default-record/nominal.toml")),
+        "and what is believed of it"
+    );
 }
 
 /// The twin of the paper's rig, through the paper's pipeline: within 3 % of its decay rate, 0.02 of its R² and

@@ -2,6 +2,7 @@
 
 use crate::description::Description;
 use crate::error::DynamicsError;
+use crate::export::Export;
 use crate::nominal::{Coefficients, Nominal};
 use crate::scalar::Scalar;
 
@@ -49,6 +50,9 @@ pub type Margins<S> = [Option<S>; 2];
 pub trait Law {
     /// What is known about it.
     const DESCRIPTION: &'static Description;
+
+    /// What it looks like in other simulators.
+    const EXPORT: Export;
 
     /// Whether the law depends on the direction of motion: a reversal then ends its smooth piece.
     const DIRECTED: bool = false;

@@ -21,6 +21,7 @@ pub mod effects;
 mod error;
 #[cfg(test)]
 mod event_tests;
+mod export;
 mod field;
 #[cfg(test)]
 mod fixtures;
@@ -41,6 +42,7 @@ mod units;
 pub use active::Active;
 pub use description::{Class, Description, Kind, Parameter, Range};
 pub use error::DynamicsError;
+pub use export::{Export, Joint, StateExport};
 pub use field::SYSTEM_HIDDEN;
 pub use input::{Hold, Input};
 pub use law::{Hidden, Law, MOST_HIDDEN, MOST_PARAMETERS, Margins, Moment, Values};

@@ -8,6 +8,7 @@ use crate::chain::{self, Extent, Observed, Sampled, SampledMotion, Samples, Step
 use crate::description::Description;
 use crate::effects;
 use crate::error::DynamicsError;
+use crate::export::Export;
 use crate::law::{Hidden, Law, Margins, Moment, Values};
 use crate::nominal::Nominal;
 use crate::scalar::Scalar;
@@ -30,6 +31,12 @@ macro_rules! system_effects {
             #[must_use]
             pub const fn description(self) -> &'static Description {
                 match self { $(Self::$name => effects::$name::DESCRIPTION,)+ }
+            }
+
+            /// As [`Law::EXPORT`].
+            #[must_use]
+            pub const fn export(self) -> Export {
+                match self { $(Self::$name => effects::$name::EXPORT,)+ }
             }
 
             /// As [`Law::DIRECTED`].

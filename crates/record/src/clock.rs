@@ -61,7 +61,8 @@ pub struct StampStatistics {
     /// Median time between groups, in seconds.
     pub group_interval_s: f64,
     /// Where no stamp is repeated: steps longer than 1.5 times the median step by more than the stamps
-    /// are rounded to. Samples are missing there.
+    /// are rounded to. Samples are missing there. None where it is jitter that makes steps long: their neighbors
+    /// are then as much too short.
     pub gaps: usize,
     /// The decimal step that stamps are rounded to, in seconds, where there is one.
     pub rounding_s: Option<f64>,
@@ -281,11 +282,26 @@ fn statistics(stamps: &[f64], ends: &[(f64, f64)], line: &Line) -> StampStatisti
         groups: ends.len(),
         largest_group: largest_group as usize,
         group_interval_s: median,
-        gaps: if repeated == 0 { steps.iter().filter(|&&step| step > long).count() } else { 0 },
+        gaps: if repeated == 0 { gaps(&steps, median, long) } else { 0 },
         rounding_s,
         deviation_s: (line.squares() / ends.len() as f64).sqrt(),
         largest_deviation_s: line.residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
     }
+}
+
+/// Steps longer than `long`, unless it is jitter that makes them so.
+///
+/// A stamp that is late by e makes its step longer by e and the next one shorter by as much: over all long steps the
+/// neighbors are short by as much as these are long. A missing sample leaves its neighbors as they are.
+fn gaps(steps: &[f64], median: f64, long: f64) -> usize {
+    let (mut count, mut excess, mut made_up) = (0, 0.0, 0.0);
+    for (index, step) in steps.iter().enumerate().filter(|(_, step)| **step > long) {
+        count += 1;
+        excess += step - median;
+        let before = index.checked_sub(1).and_then(|before| steps.get(before));
+        made_up += before.into_iter().chain(steps.get(index + 1)).map(|other| median - other).sum::<f64>();
+    }
+    if made_up > 0.5 * excess { 0 } else { count }
 }
 
 /// Lag-one autocorrelation about the mean; 0 for a constant series.
@@ -369,6 +385,23 @@ mod tests {
         let clock = auto_of(stamps, &[0.3; 2000]);
         assert_eq!(clock.kind, ClockKind::Host, "{}", clock.reason);
         assert!(clock.reason.contains("do not tell"), "{}", clock.reason);
+    }
+
+    #[test]
+    fn strong_jitter_is_no_gap() {
+        let even: Vec<f64> = (0..2000).map(|i| i as f64 * 0.01).collect();
+        let stamps = (0..2000).map(|i| i as f64 * 0.01 + 0.009 * noise(i)).collect();
+        let clock = auto_of(stamps, &even);
+        assert_eq!(clock.statistics.gaps, 0);
+        assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+    }
+
+    #[test]
+    fn gaps_are_seen_through_jitter() {
+        let stamps = (0..2000).filter(|i| i % 97 != 3).map(|i| i as f64 * 0.01 + 0.001 * noise(i)).collect();
+        let clock = auto(stamps);
+        assert_eq!(clock.statistics.gaps, 21);
+        assert_eq!(clock.kind, ClockKind::Host, "{}", clock.reason);
     }
 
     #[test]

@@ -6,12 +6,13 @@
 //!
 //! What was run decides the page: [`render_run`] shows one estimator's estimate,
 //! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
-//! did not see. The tables of the latter two [`comparison_markdown`] and [`prediction_markdown`] give as
+//! did not see, [`render_diagnosis`] where the gap between a simulator and records lies. The tables of the latter two [`comparison_markdown`] and [`prediction_markdown`] give as
 //! Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod comparison;
+mod diagnosis;
 mod error;
 mod figures;
 pub mod format;
@@ -27,16 +28,17 @@ mod verdict;
 mod sample;
 
 pub use error::ReportError;
+pub use verdict::in_a_sentence;
 
 /// The texts of the files in a run folder.
 #[derive(Debug, Clone, Copy)]
 pub struct RunTexts<'a> {
     /// Name of the run, as its folder is called.
     pub name: &'a str,
-    /// `config.toml`: the resolved settings. Shown as it is; may be empty.
+    /// `config.toml`: the resolved settings; of a diagnosis `repaired.toml`. Shown as it is; may be empty.
     pub config: &'a str,
-    /// `result.json`: see [`runs::result::EstimationResult`],
-    /// [`runs::result::ComparisonResult`] and [`runs::result::PredictionResult`].
+    /// `result.json`: see [`runs::result::EstimationResult`], [`runs::result::ComparisonResult`] and
+    /// [`runs::result::PredictionResult`]; of a diagnosis `diagnosis.json`: [`runs::result::DiagnosisResult`].
     pub result: &'a str,
     /// `trace.csv`: see [`runs::result::TraceRow`]. Empty for a method that takes no steps, and
     /// for a comparison.
@@ -45,6 +47,8 @@ pub struct RunTexts<'a> {
     pub envelope: &'a str,
     /// `predictions.csv`: see [`runs::result::PredictionCsvRow`]. Empty but for a study of prediction.
     pub predictions: &'a str,
+    /// `series.csv`: see [`runs::result::SeriesRow`]. Empty but for a diagnosis.
+    pub series: &'a str,
     /// `environment.json`: what the run was made with. Shown as it is; may be empty.
     pub environment: &'a str,
 }
@@ -61,6 +65,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Estimate => render_run(texts),
         parse::Task::Compare => render_comparison(texts),
         parse::Task::Predict => render_prediction(texts),
+        parse::Task::Diagnose => render_diagnosis(texts),
     }
 }
 
@@ -90,6 +95,15 @@ pub fn render_comparison(texts: &RunTexts<'_>) -> Result<String, ReportError> {
 /// As [`render`], and where the run was asked for something else.
 pub fn render_prediction(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     prediction::render(texts, &parse::parse_prediction(texts)?)
+}
+
+/// The report on a diagnosis, whose result is `diagnosis.json` and whose `config` is the repaired simulator.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
+pub fn render_diagnosis(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    diagnosis::render(texts, &parse::parse_diagnosis(texts)?)
 }
 
 /// The verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its

@@ -1,8 +1,8 @@
 //! From the texts of a run folder to typed values.
 
 use runs::result::{
-    ComparisonResult, EnvelopeRow, EstimationResult, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
-    TraceRow,
+    ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, PredictionCsvRow,
+    PredictionResult, RESULT_SCHEMA, SeriesRow, TraceRow,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -29,12 +29,19 @@ pub(crate) struct Prediction {
     pub(crate) rows: Vec<PredictionCsvRow>,
 }
 
+/// The parsed content of the folder of a diagnosis.
+pub(crate) struct Diagnosis {
+    pub(crate) result: DiagnosisResult,
+    pub(crate) series: Vec<SeriesRow>,
+}
+
 /// What a run was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
     Estimate,
     Compare,
     Predict,
+    Diagnose,
 }
 
 impl Task {
@@ -44,6 +51,7 @@ impl Task {
             Self::Estimate => "estimate",
             Self::Compare => "compare",
             Self::Predict => "predict",
+            Self::Diagnose => "diagnose",
         }
     }
 }
@@ -86,6 +94,14 @@ pub(crate) fn prediction_result(text: &str) -> Result<PredictionResult, ReportEr
     result(text, Task::Predict)
 }
 
+pub(crate) fn parse_diagnosis(texts: &RunTexts<'_>) -> Result<Diagnosis, ReportError> {
+    Ok(Diagnosis {
+        result: result(texts.result, Task::Diagnose)?,
+        // Without its series a diagnosis has fewer plots.
+        series: table("series.csv", texts.series)?,
+    })
+}
+
 fn envelope(text: &str) -> Result<Vec<EnvelopeRow>, ReportError> {
     let rows: Vec<EnvelopeRow> = table("envelope.csv", text)?;
     if rows.is_empty() { Err(ReportError::Empty { file: "envelope.csv" }) } else { Ok(rows) }
@@ -110,6 +126,9 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     // The tag first: a result of another schema is to be named as such, not by the first field
     // that it happens to lack.
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
+    if tag.schema == DIAGNOSIS_SCHEMA {
+        return Ok(Task::Diagnose);
+    }
     if tag.schema != RESULT_SCHEMA {
         return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });
     }

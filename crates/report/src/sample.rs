@@ -58,6 +58,7 @@ impl Sample {
             trace: &or(&self.trace_text, table(&self.trace)),
             envelope: &or(&self.envelope_text, table(&self.envelope)),
             predictions: "",
+            series: "",
             environment: &self.environment,
         })
     }

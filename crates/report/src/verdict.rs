@@ -110,8 +110,9 @@ fn comparison(result: &EstimationResult) -> String {
 
 /// A title as it stands inside a sentence: its first letter small, unless its first word is a name or
 /// holds another capital.
-pub(crate) fn in_a_sentence(title: &str) -> String {
-    const NAMES: [&str; 4] = ["Bayesian", "Gaussian", "Levenberg", "Newton"];
+#[must_use]
+pub fn in_a_sentence(title: &str) -> String {
+    const NAMES: [&str; 6] = ["Bayesian", "Coulomb", "Gaussian", "Levenberg", "Newton", "Stribeck"];
     let is_end = |letter: char| !letter.is_alphabetic();
     let word = title.split(is_end).next().unwrap_or_default();
     let mut rest = title.chars();

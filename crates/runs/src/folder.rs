@@ -25,9 +25,9 @@ pub struct RunFolder {
 pub struct Texts {
     /// The folder's own name.
     pub name: String,
-    /// `config.toml`.
+    /// `config.toml`; of a diagnosis `repaired.toml`.
     pub config: String,
-    /// `result.json`.
+    /// `result.json`; of a diagnosis `diagnosis.json`.
     pub result: String,
     /// `trace.csv`; empty where nothing was trained.
     pub trace: String,
@@ -35,6 +35,8 @@ pub struct Texts {
     pub envelope: String,
     /// `predictions.csv`; empty where nothing was predicted.
     pub predictions: String,
+    /// `series.csv`; empty but for a diagnosis.
+    pub series: String,
     /// `environment.json`.
     pub environment: String,
 }
@@ -73,6 +75,18 @@ impl RunFolder {
             return Err(RunError::Occupied { path: path.to_owned() });
         }
         Ok(Self { path: path.to_owned() })
+    }
+
+    /// Whether [`RunFolder::create_at`] would take this folder, before there is anything to put in it.
+    ///
+    /// # Errors
+    /// [`RunError::Occupied`] where it holds something; [`RunError::Io`] where it is no folder.
+    pub fn check_free(path: &Path) -> Result<(), RunError> {
+        if !path.exists() {
+            return Ok(());
+        }
+        let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
+        if entries.next().is_some() { Err(RunError::Occupied { path: path.to_owned() }) } else { Ok(()) }
     }
 
     /// A folder that is there already.
@@ -165,13 +179,20 @@ impl RunFolder {
         // `.` and `..` have a name only once resolved.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        let diagnosis = self.path.join("diagnosis.json").exists();
+        let (config, result) = if diagnosis {
+            (table("repaired.toml")?, read("diagnosis.json")?)
+        } else {
+            (read("config.toml")?, read("result.json")?)
+        };
         Ok(Texts {
             name,
-            config: read("config.toml")?,
-            result: read("result.json")?,
+            config,
+            result,
             trace: table("trace.csv")?,
             envelope: table("envelope.csv")?,
             predictions: table("predictions.csv")?,
+            series: table("series.csv")?,
             environment: read("environment.json")?,
         })
     }
@@ -212,6 +233,8 @@ mod tests {
         folder.write("model/x.bin", b"1").unwrap();
         let again = RunFolder::create_at(folder.path());
         assert!(matches!(again, Err(RunError::Occupied { .. })));
+        assert!(matches!(RunFolder::check_free(folder.path()), Err(RunError::Occupied { .. })));
+        assert!(RunFolder::check_free(&root.path().join("absent")).is_ok());
         assert_eq!(std::fs::read(folder.path().join("model/x.bin")).unwrap(), b"1");
     }
 

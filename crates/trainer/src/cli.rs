@@ -1,10 +1,11 @@
 //! The arguments.
 
+use crate::diagnose::arguments::DiagnoseArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
-/// Estimates the damping of oscillators from records, and compares every estimate with closed-form
-/// least squares.
+/// Estimates the damping of oscillators from records, compared with closed-form least squares, and
+/// diagnoses the gap between a simulator and records.
 #[derive(Debug, Parser)]
 #[command(
     name = "trainer",
@@ -18,6 +19,7 @@ Examples:
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
   trainer configs/pinn.toml --json | jq .estimate.zeta
+  trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer list estimators
   trainer list effects
@@ -69,6 +71,8 @@ pub(crate) struct Output {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
+    Diagnose(Box<DiagnoseArguments>),
     /// Lists what there is to choose from
     List {
         /// What to list

@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
 use estimator::FitError;
 use oracle::OracleError;
@@ -46,6 +47,31 @@ pub(crate) enum TrainerError {
     NothingToFit,
     #[error("{file}: system {system}, record {record}: {source}")]
     Generation { file: String, system: usize, record: usize, source: GenerationError },
+    /// A record named on the command line of a diagnosis, where options name columns.
+    #[error("{}", options_in(.0))]
+    DiagnosedRecord(RecordError),
+    #[error("{file}: {}", source.to_string().replace("unit = \"deg\"", "--unit deg"))]
+    Diagnosis { file: String, source: DiagnosisError },
+    #[error(
+        "{file}: the nominal simulator has an input_gain, so an input drives the system, but the record has no input \
+         column; name it with --input (the header has {columns})"
+    )]
+    MissingInput { file: String, columns: String },
+    #[error(
+        "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \
+         with --angle, its unit with --unit, or set `coordinate` in the nominal simulator's file"
+    )]
+    OtherUnit { file: String, found: &'static str, expected: &'static str },
+    #[error(
+        "{file}: cannot be used: {problem}; expected a TOML file with inertia, damping, stiffness and rest_angle"
+    )]
+    Nominal { file: String, problem: String },
+    #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
+    Cases { folder: String, problem: String },
+    #[error(
+        "{folder}: there is no case in it; expected a folder for each, holding record-*.csv and nominal.toml"
+    )]
+    NoCases { folder: String },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
@@ -72,6 +98,13 @@ impl TrainerError {
             | Self::Split { .. }
             | Self::NothingToFit
             | Self::Generation { .. }
+            | Self::DiagnosedRecord(_)
+            | Self::Diagnosis { .. }
+            | Self::MissingInput { .. }
+            | Self::OtherUnit { .. }
+            | Self::Nominal { .. }
+            | Self::Cases { .. }
+            | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,
@@ -80,4 +113,18 @@ impl TrainerError {
             Self::NotFinite { .. } | Self::System { .. } => 1,
         }
     }
+}
+
+/// A record's fault in terms of the command line: columns and formats are named by options there.
+fn options_in(error: &RecordError) -> String {
+    let mut text = error.to_string();
+    for (key, option) in [
+        ("`data.time`", "--time"),
+        ("`data.angle`", "--angle"),
+        ("`data.input`", "--input"),
+        ("data.format = \"csv\"", "--format csv"),
+    ] {
+        text = text.replace(key, option);
+    }
+    text
 }

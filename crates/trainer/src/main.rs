@@ -6,6 +6,7 @@ mod cautions;
 mod cli;
 mod compare;
 mod console;
+mod diagnose;
 mod environment;
 mod error;
 mod estimate;
@@ -60,6 +61,7 @@ impl Outcome {
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
         Some(Command::List { what, output }) => list::list(what, output),
+        Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),

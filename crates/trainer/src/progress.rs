@@ -33,6 +33,11 @@ impl Progress {
         Self::new(records, "records", false, quiet)
     }
 
+    /// Over the cases of a batch.
+    pub(crate) fn over_cases(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases", false, quiet)
+    }
+
     fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
@@ -79,6 +84,11 @@ impl Progress {
         if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));
         }
+    }
+
+    /// Prints something without tearing the bar.
+    pub(crate) fn aside(&self, print: impl FnOnce()) {
+        self.bar.suspend(print);
     }
 
     pub(crate) fn finish(&self) {

@@ -33,6 +33,7 @@ pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
         trace: &texts.trace,
         envelope: &texts.envelope,
         predictions: &texts.predictions,
+        series: &texts.series,
         environment: &texts.environment,
     })?;
     folder.write("report.html", html.as_bytes())?;

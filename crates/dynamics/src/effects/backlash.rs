@@ -1,6 +1,7 @@
 //! Play between the spring and the body.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Margins, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -40,6 +41,8 @@ fn deflection<S: Scalar>(moment: &Moment<S>) -> S {
 
 impl Law for Backlash {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export =
+        Export::torque("stiffness * min(max(position - rest_angle, -{half_width}), {half_width})");
 
     fn torque<S: Scalar>(&[half_width, ..]: &Values<S>, moment: &Moment<S>) -> S {
         match moment.region {

@@ -1,6 +1,7 @@
 //! A preload.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::{Export, Joint};
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -33,6 +34,7 @@ pub struct ConstantTorque;
 
 impl Law for ConstantTorque {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export { joint: Joint::SpringShift("torque"), ..Export::torque("{torque}") };
 
     fn torque<S: Scalar>(&[torque, ..]: &Values<S>, _: &Moment<S>) -> S {
         torque

@@ -1,6 +1,7 @@
 //! Dry friction of constant size.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::{Export, Joint};
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -33,6 +34,8 @@ pub struct CoulombFriction;
 
 impl Law for CoulombFriction {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export =
+        Export { joint: Joint::Friction("torque"), ..Export::torque("-{torque} * direction") };
     const DIRECTED: bool = true;
 
     fn torque<S: Scalar>(&[torque, ..]: &Values<S>, moment: &Moment<S>) -> S {

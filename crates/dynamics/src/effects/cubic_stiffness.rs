@@ -1,6 +1,7 @@
 //! A spring that hardens or softens symmetrically.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -33,6 +34,9 @@ pub struct CubicStiffness;
 
 impl Law for CubicStiffness {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque(
+        "-{coefficient} * (position - rest_angle) * (position - rest_angle) * (position - rest_angle)",
+    );
 
     fn torque<S: Scalar>(&[coefficient, ..]: &Values<S>, moment: &Moment<S>) -> S {
         let deflection = moment.position - moment.nominal.rest_angle;

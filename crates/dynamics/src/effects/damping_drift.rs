@@ -1,6 +1,7 @@
 //! Viscous damping that changes with time.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -34,6 +35,7 @@ pub struct DampingDrift;
 
 impl Law for DampingDrift {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque("-damping * {rate} * time * velocity");
 
     fn torque<S: Scalar>(&[rate, ..]: &Values<S>, moment: &Moment<S>) -> S {
         -moment.nominal.damping * rate * moment.time * moment.velocity

@@ -2,6 +2,7 @@
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
+use crate::export::Export;
 use crate::law::{Law, Margins, Moment, Values};
 use crate::nominal::Nominal;
 use crate::scalar::Scalar;
@@ -74,6 +75,10 @@ fn factor<S: Scalar>(dissipation: S, moment: &Moment<S>) -> S {
 
 impl Law for EndStop {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque(
+        "-sign({angle} - rest_angle) * {stiffness} * max(0, sign({angle} - rest_angle) * (position - {angle})) \
+         * max(0, 1 + {dissipation} * sign({angle} - rest_angle) * velocity)",
+    );
 
     fn torque<S: Scalar>(&[angle, stiffness, dissipation, _]: &Values<S>, moment: &Moment<S>) -> S {
         match moment.region.abs() {

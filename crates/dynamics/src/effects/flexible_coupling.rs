@@ -1,6 +1,7 @@
 //! A second body on a spring.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::{Export, StateExport};
 use crate::law::{Hidden, Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -55,6 +56,17 @@ fn coupling<S: Scalar>(stiffness: S, damping: S, moment: &Moment<S>) -> S {
 
 impl Law for FlexibleCoupling {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export {
+        states: &[
+            StateExport { name: "position", rate: "{velocity}", start: "position" },
+            StateExport {
+                name: "velocity",
+                rate: "-({stiffness} * ({position} - position) + {damping} * ({velocity} - velocity)) / {inertia}",
+                start: "velocity",
+            },
+        ],
+        ..Export::torque("{stiffness} * ({position} - position) + {damping} * ({velocity} - velocity)")
+    };
 
     fn torque<S: Scalar>(&[_, stiffness, damping, _]: &Values<S>, moment: &Moment<S>) -> S {
         coupling(stiffness, damping, moment)

@@ -1,6 +1,7 @@
 //! The weight of an unbalanced arm.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::{Export, Joint};
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -42,6 +43,10 @@ pub struct Gravity;
 
 impl Law for Gravity {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export {
+        joint: Joint::Weight { torque: "torque", angle: "angle" },
+        ..Export::torque("-{torque} * sin(position + {angle})")
+    };
 
     fn torque<S: Scalar>(&[torque, angle, ..]: &Values<S>, moment: &Moment<S>) -> S {
         -torque * (moment.position + angle).sin()

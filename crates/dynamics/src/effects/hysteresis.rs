@@ -1,6 +1,7 @@
 //! Friction with a pre-sliding spring.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::{Export, StateExport};
 use crate::law::{Hidden, Law, Margins, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -50,6 +51,14 @@ const SATURATED: f64 = 1e-13;
 
 impl Law for Hysteresis {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export {
+        states: &[StateExport {
+            name: "z",
+            rate: "(velocity - abs(velocity) * {z}) / {displacement}",
+            start: "0",
+        }],
+        ..Export::torque("-{torque} * {z}")
+    };
     const DIRECTED: bool = true;
 
     fn torque<S: Scalar>(&[torque, ..]: &Values<S>, moment: &Moment<S>) -> S {

@@ -1,6 +1,7 @@
 //! The command arrives late.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -34,6 +35,7 @@ pub struct InputDelay;
 
 impl Law for InputDelay {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export { torque: None, ..Export::torque("") };
 
     fn torque<S: Scalar>(_: &Values<S>, _: &Moment<S>) -> S {
         S::from(0.0)

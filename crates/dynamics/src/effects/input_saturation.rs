@@ -1,6 +1,7 @@
 //! The drive gives no more than so much.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Margins, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -36,6 +37,7 @@ pub struct InputSaturation;
 
 impl Law for InputSaturation {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque("min(max(drive, -{torque}), {torque}) - drive");
 
     fn torque<S: Scalar>(&[limit, ..]: &Values<S>, moment: &Moment<S>) -> S {
         match moment.region {

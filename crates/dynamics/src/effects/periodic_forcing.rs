@@ -1,6 +1,7 @@
 //! An unmeasured shaker.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -49,6 +50,7 @@ pub struct PeriodicForcing;
 
 impl Law for PeriodicForcing {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque("{torque} * sin({frequency} * time + {phase})");
 
     fn torque<S: Scalar>(&[torque, frequency, phase, _]: &Values<S>, moment: &Moment<S>) -> S {
         torque * (frequency * moment.time + phase).sin()

@@ -1,6 +1,7 @@
 //! Drag of a turbulent wake.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -33,6 +34,7 @@ pub struct QuadraticDrag;
 
 impl Law for QuadraticDrag {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque("-{coefficient} * velocity * abs(velocity)");
     const DIRECTED: bool = true;
 
     fn torque<S: Scalar>(&[coefficient, ..]: &Values<S>, moment: &Moment<S>) -> S {

@@ -1,6 +1,7 @@
 //! A spring that changes with time.
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
+use crate::export::Export;
 use crate::law::{Law, Moment, Values};
 use crate::scalar::Scalar;
 use crate::units::Quantity;
@@ -34,6 +35,7 @@ pub struct StiffnessDrift;
 
 impl Law for StiffnessDrift {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque("-stiffness * {rate} * time * (position - rest_angle)");
 
     fn torque<S: Scalar>(&[rate, ..]: &Values<S>, moment: &Moment<S>) -> S {
         let deflection = moment.position - moment.nominal.rest_angle;

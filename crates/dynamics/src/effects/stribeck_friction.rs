@@ -2,6 +2,7 @@
 
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
+use crate::export::Export;
 use crate::law::{Law, Margins, Moment, Values};
 use crate::nominal::Nominal;
 use crate::scalar::Scalar;
@@ -58,6 +59,10 @@ const FAST: f64 = 6.01;
 
 impl Law for StribeckFriction {
     const DESCRIPTION: &'static Description = &DESCRIPTION;
+    const EXPORT: Export = Export::torque(
+        "-({torque} + ({static_torque} - {torque}) * exp(-(velocity / {velocity}) * (velocity / {velocity}))) \
+         * direction",
+    );
     const DIRECTED: bool = true;
 
     fn torque<S: Scalar>(&[torque, static_torque, velocity, _]: &Values<S>, moment: &Moment<S>) -> S {

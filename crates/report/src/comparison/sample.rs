@@ -171,6 +171,7 @@ impl Folder {
             trace: "",
             envelope: &table(&self.run.envelope),
             predictions: "",
+            series: "",
             environment: &self.run.environment,
         })
     }

@@ -150,6 +150,7 @@ fn the_task_chooses_the_page() {
         trace: "step,phase,loss,decay_rate\n",
         envelope,
         predictions: "",
+        series: "",
         environment: "",
     };
     assert_eq!(render(&texts).unwrap(), render_comparison(&texts).unwrap());

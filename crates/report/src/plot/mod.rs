@@ -1,19 +1,22 @@
 //! Plots as inline SVG: the one place that draws.
 //!
-//! A [`Plot`] of two quantities or [`DotRows`], one quantity by name, say what is to be seen; `draw` gives a [`Drawing`], for which the style
-//! sheet of the page supplies the colors (see [`Hue`]). Each plot is drawn twice, for a wide and
+//! A [`Plot`] of two quantities, [`DotRows`], one quantity by name, or a [`HeatMap`], one over two others, say
+//! what is to be seen; `draw` gives a [`Drawing`], for which the style sheet of the page supplies the colors
+//! (see [`Hue`]). Each plot is drawn twice, for a wide and
 //! for a narrow page, because text in an SVG shrinks with it: the page shows one of the two.
 //!
 //! The legend is not part of the SVG. The page sets it in HTML, where it wraps and where the
 //! names in it, which come from files, are escaped like all other text.
 
 mod axis;
+mod heat;
 mod hue;
 mod rows;
 mod svg;
 mod thin;
 
 pub use axis::{Axis, Scale};
+pub use heat::{HeatCell, HeatMap};
 pub use hue::Hue;
 pub use rows::{DotRow, DotRows};
 

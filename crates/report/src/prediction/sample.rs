@@ -161,6 +161,7 @@ impl Folder {
             trace: "",
             envelope: "",
             predictions: &table(&self.rows),
+            series: "",
             environment: "{}\n",
         })
     }

@@ -149,6 +149,7 @@ fn the_task_chooses_the_page() {
         trace: "",
         envelope: "",
         predictions: "",
+        series: "",
         environment: "",
     };
     assert_eq!(render(&texts).unwrap(), render_prediction(&texts).unwrap());

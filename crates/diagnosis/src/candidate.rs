@@ -1,0 +1,343 @@
+//! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
+
+use crate::facts::Facts;
+use dynamics::{Class, SystemEffect};
+use std::f64::consts::PI;
+
+/// An effect of the measuring chain that changes values smoothly enough to be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Distortion {
+    Lag,
+    Nonlinearity,
+    Drift,
+    Clock,
+    Saturation,
+}
+
+/// An effect that can be fitted.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum Candidate {
+    System(SystemEffect),
+    Chain(Distortion),
+}
+
+/// A parameter that a fit moves. Its name and unit go to the answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Parameter {
+    pub(crate) name: &'static str,
+    pub(crate) lower: f64,
+    pub(crate) upper: f64,
+    /// Whether the effect is gone where this parameter is 0 (and 0 is its bound): a fit that ends there
+    /// rejects the effect.
+    pub(crate) strength: bool,
+    /// Whether it says how the effect looks rather than how large it is: a width, a frequency, a phase. It means
+    /// nothing while the effect has no size.
+    pub(crate) shape: bool,
+    /// Whether the effect is another, simpler one where this parameter is at its lower end: a fit that ends there rejects it
+    /// too. Stribeck friction whose excess is gone at the slowest speeds is Coulomb friction.
+    pub(crate) simpler: bool,
+}
+
+const fn any(name: &'static str) -> Parameter {
+    Parameter {
+        name,
+        lower: f64::NEG_INFINITY,
+        upper: f64::INFINITY,
+        strength: false,
+        shape: false,
+        simpler: false,
+    }
+}
+
+const fn positive(name: &'static str) -> Parameter {
+    Parameter { name, lower: 0.0, upper: f64::INFINITY, strength: true, shape: false, simpler: false }
+}
+
+const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
+    Parameter { name, lower, upper, strength: false, shape: true, simpler: false }
+}
+
+/// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Polar {
+    size: usize,
+    angle: usize,
+}
+
+impl Candidate {
+    /// Every candidate, in the order of the vocabulary. A constant torque is the rest angle's shift and therefore
+    /// part of the calibration.
+    pub(crate) const ALL: &'static [Self] = &[
+        Self::System(SystemEffect::CoulombFriction),
+        Self::System(SystemEffect::StribeckFriction),
+        Self::System(SystemEffect::QuadraticDrag),
+        Self::System(SystemEffect::CubicStiffness),
+        Self::System(SystemEffect::AsymmetricStiffness),
+        Self::System(SystemEffect::Gravity),
+        Self::System(SystemEffect::Backlash),
+        Self::System(SystemEffect::Hysteresis),
+        Self::System(SystemEffect::EndStop),
+        Self::System(SystemEffect::StiffnessDrift),
+        Self::System(SystemEffect::DampingDrift),
+        Self::System(SystemEffect::PeriodicForcing),
+        Self::System(SystemEffect::FlexibleCoupling),
+        Self::System(SystemEffect::InputDelay),
+        Self::System(SystemEffect::InputSaturation),
+        Self::Chain(Distortion::Saturation),
+        Self::Chain(Distortion::Lag),
+        Self::Chain(Distortion::Nonlinearity),
+        Self::Chain(Distortion::Drift),
+        Self::Chain(Distortion::Clock),
+    ];
+
+    /// Its place in [`Self::ALL`].
+    pub(crate) fn rank(self) -> usize {
+        Self::ALL.iter().position(|other| *other == self).unwrap_or(Self::ALL.len())
+    }
+
+    /// The public id.
+    pub(crate) fn id(self) -> &'static str {
+        match self {
+            Self::System(effect) => effect.description().id,
+            Self::Chain(Distortion::Lag) => "sensor_lag",
+            Self::Chain(Distortion::Nonlinearity) => "sensor_nonlinearity",
+            Self::Chain(Distortion::Drift) => "sensor_drift",
+            Self::Chain(Distortion::Clock) => "clock_drift",
+            Self::Chain(Distortion::Saturation) => "sensor_saturation",
+        }
+    }
+
+    /// Its part of a gap budget.
+    pub(crate) fn class(self) -> Class {
+        match self {
+            Self::System(effect) => effect.description().class,
+            Self::Chain(Distortion::Clock) => Class::Clock,
+            Self::Chain(_) => Class::Sensor,
+        }
+    }
+
+    /// Whether it can act on these records at all.
+    pub(crate) fn applies(self, facts: &Facts, position: bool, spring: bool) -> bool {
+        match self {
+            Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => {
+                facts.input_torque > 0.0
+            }
+            Self::System(
+                SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
+            ) => spring,
+            // A lag of one frequency is an amplitude and a phase: inside the start state.
+            Self::Chain(Distortion::Lag) => facts.input_torque > 0.0,
+            Self::Chain(Distortion::Nonlinearity) => position,
+            _ => true,
+        }
+    }
+
+    /// The candidate that it is at one of its own sizes: Stribeck friction without its excess is Coulomb friction. A set
+    /// never holds both.
+    pub(crate) fn generalizes(self) -> Option<Self> {
+        match self {
+            Self::System(SystemEffect::StribeckFriction) => Some(Self::System(SystemEffect::CoulombFriction)),
+            _ => None,
+        }
+    }
+
+    /// What it is easily confused with: those are fitted wherever it is.
+    pub(crate) fn confused_with(self) -> Vec<Self> {
+        let of = |id: &str| Self::ALL.iter().copied().find(|other| other.id() == id);
+        let ids: &[&str] = match self {
+            Self::System(effect) => effect.description().confused_with,
+            Self::Chain(Distortion::Nonlinearity) => &["asymmetric_stiffness", "gravity", "cubic_stiffness"],
+            Self::Chain(Distortion::Drift) => &["stiffness_drift"],
+            Self::Chain(Distortion::Clock) => &["stiffness_drift", "cubic_stiffness"],
+            Self::Chain(Distortion::Saturation) => &["end_stop"],
+            Self::Chain(Distortion::Lag) => &["input_delay"],
+        };
+        // The relation holds in both directions, whichever of the two files states it.
+        let stated = ids.iter().filter_map(|id| of(id));
+        let reverse = Self::ALL.iter().copied().filter(|other| match other {
+            Self::System(effect) => effect.description().confused_with.contains(&self.id()),
+            Self::Chain(_) => false,
+        });
+        let mut all: Vec<Self> = stated.chain(reverse).filter(|other| *other != self).collect();
+        all.sort_by_key(|other| other.rank());
+        all.dedup();
+        all
+    }
+
+    /// Parameters as a fit moves them, with bounds; [`Self::values`] turns them into the law's.
+    pub(crate) fn parameters(self, facts: &Facts) -> Vec<Parameter> {
+        let a = facts.amplitude;
+        match self {
+            Self::System(effect) => match effect {
+                SystemEffect::CoulombFriction => vec![positive("torque")],
+                SystemEffect::StribeckFriction => vec![
+                    Parameter { strength: false, ..positive("torque") },
+                    positive("static_torque"),
+                    Parameter { simpler: true, ..between("velocity", 1e-3 * facts.speed, 0.5 * facts.speed) },
+                ],
+                SystemEffect::QuadraticDrag => vec![positive("coefficient")],
+                SystemEffect::CubicStiffness | SystemEffect::AsymmetricStiffness => vec![any("coefficient")],
+                SystemEffect::Gravity => vec![any("torque"), any("angle")],
+                SystemEffect::ConstantTorque => vec![any("torque")],
+                SystemEffect::Backlash => {
+                    vec![Parameter { strength: true, shape: false, ..between("half_width", 0.0, 0.9 * a) }]
+                }
+                SystemEffect::Hysteresis => {
+                    vec![positive("torque"), between("displacement", 1e-3 * a, 2.0 * a)]
+                }
+                SystemEffect::EndStop => vec![
+                    between("angle", facts.lowest, facts.highest),
+                    Parameter { upper: 1e5 * facts.stiffness, ..positive("stiffness") },
+                    Parameter { strength: false, ..positive("dissipation") },
+                ],
+                SystemEffect::StiffnessDrift | SystemEffect::DampingDrift => vec![any("rate")],
+                SystemEffect::PeriodicForcing => vec![
+                    any("torque"),
+                    between("frequency", PI / facts.duration, PI / facts.interval),
+                    any("phase"),
+                ],
+                SystemEffect::FlexibleCoupling => vec![
+                    Parameter { upper: 1e2 * facts.inertia, ..positive("inertia") },
+                    between("stiffness", 1e-6 * facts.stiffness, 1e4 * facts.stiffness),
+                    Parameter { strength: false, ..positive("damping") },
+                ],
+                SystemEffect::InputDelay => {
+                    vec![Parameter {
+                        strength: true,
+                        shape: false,
+                        ..between("delay", 0.0, 1.0 / facts.frequency)
+                    }]
+                }
+                SystemEffect::InputSaturation => {
+                    vec![between("torque", 1e-3 * facts.input_torque, facts.input_torque)]
+                }
+            },
+            Self::Chain(Distortion::Lag) => {
+                vec![Parameter {
+                    strength: true,
+                    shape: false,
+                    ..between("time_constant", 0.0, 0.5 / facts.frequency)
+                }]
+            }
+            Self::Chain(Distortion::Nonlinearity) => {
+                vec![any("amplitude"), any("phase")]
+            }
+            Self::Chain(Distortion::Drift) => vec![any("rate")],
+            Self::Chain(Distortion::Clock) => {
+                vec![Parameter {
+                    shape: false,
+                    ..between("change", -0.4 / facts.duration, 0.4 / facts.duration)
+                }]
+            }
+            Self::Chain(Distortion::Saturation) => vec![positive("bound")],
+        }
+    }
+
+    fn polar(self) -> Option<Polar> {
+        match self {
+            Self::System(SystemEffect::Gravity) | Self::Chain(Distortion::Nonlinearity) => {
+                Some(Polar { size: 0, angle: 1 })
+            }
+            Self::System(SystemEffect::PeriodicForcing) => Some(Polar { size: 0, angle: 2 }),
+            _ => None,
+        }
+    }
+
+    /// The law's parameters from a fit's. They differ where the law has a size and an angle, which are fitted as (size·cos,
+    /// size·sin), and for Stribeck friction, whose second is fitted as the excess of the static torque, so that it
+    /// stays at least the first.
+    pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
+        let mut values = fitted.to_vec();
+        if let Some(Polar { size, angle }) = self.polar()
+            && let (Some(&p), Some(&q)) = (fitted.get(size), fitted.get(angle))
+        {
+            for (place, value) in [(size, p.hypot(q)), (angle, q.atan2(p))] {
+                if let Some(slot) = values.get_mut(place) {
+                    *slot = value;
+                }
+            }
+        }
+        if let (Self::System(SystemEffect::StribeckFriction), [torque, excess, _]) =
+            (self, values.as_mut_slice())
+        {
+            *excess += *torque;
+        }
+        values
+    }
+
+    /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.
+    pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
+        if self == Self::System(SystemEffect::StribeckFriction) {
+            return vec![(1, 0, 1.0)];
+        }
+        let Some(Polar { size, angle }) = self.polar() else { return Vec::new() };
+        let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
+        let (p, q) = (at(size), at(angle));
+        let length = p.hypot(q);
+        if length == 0.0 {
+            return vec![(angle, angle, 0.0)];
+        }
+        let (cosine, sine) = (p / length, q / length);
+        vec![
+            (size, size, cosine),
+            (size, angle, sine),
+            (angle, size, -sine / length),
+            (angle, angle, cosine / length),
+        ]
+    }
+
+    /// Hidden state variables that a segment in the middle of a record cannot know and has to fit.
+    pub(crate) fn free_hidden(self) -> usize {
+        match self {
+            Self::System(SystemEffect::FlexibleCoupling) => 2,
+            _ => 0,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Candidate;
+    use crate::facts::Facts;
+
+    const FACTS: Facts = Facts {
+        amplitude: 0.7,
+        highest: 0.7,
+        lowest: -0.7,
+        speed: 15.0,
+        frequency: 22.0,
+        torque: 340.0,
+        input_torque: 1.0,
+        duration: 25.0,
+        interval: 1.0 / 260.0,
+        inertia: 1.0,
+        stiffness: 484.0,
+        tolerance: Facts::UNKNOWN_NOISE,
+    };
+
+    #[test]
+    fn parameters_are_the_laws_own() {
+        for candidate in Candidate::ALL {
+            let parameters = candidate.parameters(&FACTS);
+            for parameter in &parameters {
+                assert!(parameter.lower < parameter.upper, "{} {}", candidate.id(), parameter.name);
+            }
+            if let Candidate::System(effect) = candidate {
+                let names: Vec<&str> = effect.description().parameters.iter().map(|p| p.name).collect();
+                let fitted: Vec<&str> = parameters.iter().map(|p| p.name).collect();
+                assert_eq!(names, fitted, "{}", candidate.id());
+            }
+        }
+    }
+
+    #[test]
+    fn confusion_is_mutual() {
+        for candidate in Candidate::ALL {
+            for other in candidate.confused_with() {
+                if matches!(candidate, Candidate::System(_)) && matches!(other, Candidate::System(_)) {
+                    assert!(other.confused_with().contains(candidate), "{} {}", candidate.id(), other.id());
+                }
+            }
+        }
+    }
+}

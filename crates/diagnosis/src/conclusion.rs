@@ -1,0 +1,142 @@
+//! What the fits say: a probability for every effect, and the verdict in words.
+
+use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
+use crate::candidate::Candidate;
+use crate::coefficients::parameters;
+use crate::fit::Fit;
+use crate::verdict::{Weighed, marginal};
+use crate::work::{Shift, Work};
+
+/// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
+/// other in one of twenty records.
+const DISTINCT: f64 = 3.29;
+
+/// What is known once everything is fitted.
+#[derive(Clone, Copy)]
+pub(crate) struct Parts<'a> {
+    pub(crate) work: &'a Work<'a>,
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) repaired: &'a Fit,
+    pub(crate) named: &'a [Candidate],
+    pub(crate) shares: &'a [(f64, Interval)],
+    pub(crate) weighed: &'a [Weighed<'a>],
+    pub(crate) unnamed: f64,
+    pub(crate) calibrated_off: bool,
+    pub(crate) shift: Option<Shift>,
+    pub(crate) rivals: &'a [Rivalry],
+    pub(crate) findings: &'a [Finding],
+    pub(crate) gap: &'a crate::answer::Gap,
+}
+
+/// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
+pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
+    let Parts { work, candidates, repaired, shares, weighed, unnamed, calibrated_off, shift, .. } = *parts;
+    let bare: f64 =
+        weighed.iter().filter(|w| w.fit.hypothesis.candidates.is_empty()).map(|w| w.probability).sum();
+    let bare = bare * (1.0 - unnamed);
+    // The significance of the calibration was tested at 1 %.
+    let of_calibration = if calibrated_off { 0.99 } else { 0.01 };
+    let of_shift = if shift.is_some() { 0.9 } else { 0.0 };
+    let plain =
+        |id, probability| EffectProbability { id, probability, parameters: Vec::new(), gap_share: None };
+    let mut list = vec![
+        plain("unknown", unnamed),
+        plain("none", bare * (1.0 - of_calibration)),
+        plain("calibration", bare * of_calibration * (1.0 - of_shift)),
+    ];
+    if let Some(shift) = shift {
+        let units = work.base.calibrated.hypothesis.nominal.units();
+        list.push(EffectProbability {
+            parameters: vec![ParameterEstimate {
+                name: "torque",
+                unit: dynamics::Quantity::Torque.unit(units).to_owned(),
+                estimate: shift.torque,
+            }],
+            ..plain("constant_torque", bare * of_calibration * of_shift)
+        });
+    }
+    for &candidate in candidates {
+        let probability = marginal(weighed, candidate) * (1.0 - unnamed);
+        let place = repaired.hypothesis.candidates.iter().position(|own| *own == candidate);
+        if probability < 0.01 && place.is_none() {
+            continue;
+        }
+        let best = weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
+        let source = if place.is_some() { Some(repaired) } else { best.map(|w| w.fit) };
+        list.push(EffectProbability {
+            id: candidate.id(),
+            probability,
+            parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
+            gap_share: place.and_then(|place| shares.get(place)).map(|share| share.1),
+        });
+    }
+    list.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    list
+}
+
+/// The verdict in words.
+pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
+    let mut order: Vec<(Candidate, f64)> =
+        parts.named.iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
+    order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let mut effects: Vec<&'static str> = order.iter().map(|(candidate, _)| candidate.id()).collect();
+    let mut equivalent: Vec<Vec<&'static str>> = Vec::new();
+    for effect in &effects {
+        let class: Vec<&'static str> = [*effect]
+            .into_iter()
+            .chain(
+                parts
+                    .rivals
+                    .iter()
+                    .filter(|rivalry| rivalry.effect == *effect && rivalry.distance < DISTINCT)
+                    .map(|rivalry| rivalry.rival),
+            )
+            .collect();
+        if class.len() > 1 {
+            equivalent.push(class);
+        }
+    }
+    let physical = !effects.is_empty();
+    if !physical && parts.shift.is_some() && parts.unnamed <= 0.5 {
+        effects.push("constant_torque");
+        equivalent.push(vec!["constant_torque", "calibration"]);
+    }
+    for finding in parts.findings {
+        effects.extend(finding.effect.filter(|id| !effects.contains(id)));
+    }
+    let set = parts
+        .weighed
+        .iter()
+        .find(|w| w.fit.hypothesis.candidates == parts.named)
+        .map_or(0.0, |w| w.probability);
+    let status = if parts.unnamed > 0.5 {
+        Status::Unknown
+    } else if !effects.is_empty() {
+        Status::Effect
+    } else if parts.calibrated_off {
+        Status::Calibration
+    } else {
+        Status::None
+    };
+    let confidence = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
+    let gap = parts.gap;
+    let figures = format!(
+        "{:.3e} {} recalibrated, {:.3e} after, noise floor {:.3e}",
+        gap.recalibrated, gap.unit, gap.repaired, gap.noise_floor.value
+    );
+    let summary = match status {
+        Status::None => format!("The nominal simulator explains the record down to its noise ({figures})."),
+        Status::Calibration => {
+            format!(
+                "The nominal simulator's coefficients are off; recalibrated, nothing is missing ({figures})."
+            )
+        }
+        Status::Effect => format!("The simulator lacks {} ({figures}).", effects.join(", ")),
+        Status::Unknown => format!(
+            "A torque without a name explains more than the vocabulary does ({figures}; {:.3e} with a free latent \
+             torque).",
+            gap.ceiling
+        ),
+    };
+    Verdict { status, effects, confidence, equivalent, summary }
+}

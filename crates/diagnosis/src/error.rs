@@ -1,0 +1,109 @@
+//! What keeps a record from being diagnosed.
+
+use dynamics::DynamicsError;
+use thiserror::Error;
+
+/// A record that cannot be diagnosed, with what was found and what to do.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum DiagnosisError {
+    /// Nothing to diagnose.
+    #[error("there is no record; give at least one")]
+    NoRecord,
+    /// Too few samples.
+    #[error(
+        "record {record} has {found} samples; a diagnosis needs at least {needed}. Record longer, or faster"
+    )]
+    TooFewSamples {
+        /// Which record, from 1.
+        record: usize,
+        /// Samples found.
+        found: usize,
+        /// Samples needed.
+        needed: usize,
+    },
+    /// Too few cycles of a free decay.
+    #[error(
+        "record {record} shows {found:.1} cycles of about {period_s:.4} s; a diagnosis needs at least {needed}. \
+         Record longer, or release from farther out"
+    )]
+    TooFewCycles {
+        /// Which record, from 1.
+        record: usize,
+        /// Cycles found.
+        found: f64,
+        /// Cycles needed.
+        needed: f64,
+        /// The nominal period in seconds.
+        period_s: f64,
+    },
+    /// Values that do not change, or by no more than the sensor resolves.
+    #[error(
+        "record {record} does not move: its values span {span:e} {unit}, and the sensor resolves {resolution:e} \
+         {unit}. Check the column, or release from farther out"
+    )]
+    NoMotion {
+        /// Which record, from 1.
+        record: usize,
+        /// Largest minus smallest value.
+        span: f64,
+        /// What the sensor resolves; 0 where unknown.
+        resolution: f64,
+        /// Unit of the values.
+        unit: &'static str,
+    },
+    /// A drive without a spring, or any driven system, without its input.
+    #[error(
+        "record {record} has no input column, but the nominal system has no spring: without its input nothing \
+         moves it. Name the input's column"
+    )]
+    MissingInput {
+        /// Which record, from 1.
+        record: usize,
+    },
+    /// The record swings at another frequency than the nominal simulator.
+    #[error(
+        "record {record} swings with a period of {measured_s:.4} s, the nominal simulator with {nominal_s:.4} s, \
+         {ratio:.1} times off: this is not the same system, or the units are wrong. Check the unit of time, the \
+         nominal inertia and stiffness"
+    )]
+    AnotherPeriod {
+        /// Which record, from 1.
+        record: usize,
+        /// The nominal period in seconds.
+        nominal_s: f64,
+        /// The measured period in seconds.
+        measured_s: f64,
+        /// The larger over the smaller.
+        ratio: f64,
+    },
+    /// Angles too large to be radians.
+    #[error(
+        "record {record} swings out to {largest:.1} rad, {turns:.1} full turns, about a spring: these look like \
+         degrees. Set unit = \"deg\""
+    )]
+    LooksLikeDegrees {
+        /// Which record, from 1.
+        record: usize,
+        /// Largest distance from the middle, in the unit taken to be radians.
+        largest: f64,
+        /// The same in turns.
+        turns: f64,
+    },
+    /// Records of one system that observe different quantities.
+    #[error(
+        "record {record} observes another quantity, or in another unit, than record 1; diagnose them apart"
+    )]
+    MixedQuantities {
+        /// Which record, from 1.
+        record: usize,
+    },
+    /// The nominal simulator cannot be fitted to the record at all.
+    #[error("the nominal simulator cannot be fitted to the record: {reason}")]
+    NotFitted {
+        /// What went wrong.
+        reason: String,
+    },
+    /// The dynamics refuse.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+}

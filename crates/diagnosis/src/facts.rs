@@ -1,0 +1,44 @@
+//! Scales of a record that bounds and grids of parameters are stated in.
+
+/// Scales of the motion, from the records and the nominal simulator.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Facts {
+    /// Largest deflection, in rad or m.
+    pub(crate) amplitude: f64,
+    /// Largest and smallest position, in rad or m.
+    pub(crate) highest: f64,
+    pub(crate) lowest: f64,
+    /// Largest speed.
+    pub(crate) speed: f64,
+    /// Angular frequency in rad/s; without a spring one over the time constant.
+    pub(crate) frequency: f64,
+    /// Largest torque of the spring, or of the inertia where there is none.
+    pub(crate) torque: f64,
+    /// Largest torque of the input; 0 without one.
+    pub(crate) input_torque: f64,
+    /// Length of the longest record in seconds.
+    pub(crate) duration: f64,
+    /// Median time between samples in seconds.
+    pub(crate) interval: f64,
+    /// Nominal inertia, stiffness (or what would give the frequency) and damping.
+    pub(crate) inertia: f64,
+    pub(crate) stiffness: f64,
+    /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
+    pub(crate) tolerance: f64,
+}
+
+/// Finest and coarsest error of an integration step, and its part of the noise: a period takes about ten steps, so that
+/// the errors of a whole segment stay below a tenth of the noise.
+const FINEST: f64 = 1e-10;
+const COARSEST: f64 = 1e-6;
+const OF_NOISE: f64 = 1e-3;
+
+impl Facts {
+    /// The same with the tolerance that a noise of this size asks for.
+    pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
+        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), ..self }
+    }
+
+    /// Tolerance while the noise is not known yet.
+    pub(crate) const UNKNOWN_NOISE: f64 = 1e-9;
+}

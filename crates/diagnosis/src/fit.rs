@@ -1,0 +1,381 @@
+//! Levenberg–Marquardt over all segments at once, start states eliminated.
+//!
+//! The normal equations are an arrow: each segment's start state meets only its own samples, the global parameters
+//! meet all. Start states are eliminated segment by segment (Schur complement), so the cost is linear in the
+//! number of samples. Bounds hold by projection: a parameter that a step would push out of its range stays at
+//! the end of it, and the step is solved anew for the others.
+//!
+//! # Reference
+//! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
+//! diagonal); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
+
+use crate::hypothesis::Hypothesis;
+use crate::matrices::{element, entry, raised};
+use crate::response::{Prediction, Simulator};
+use crate::segments::{Data, Segment};
+use crate::settle::settle;
+use crate::statistics::{autocorrelation_time, median};
+use dynamics::DynamicsError;
+use nalgebra::{DMatrix, DVector};
+
+/// Where a fit is: global parameters, and a start state for each segment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Point {
+    pub(crate) globals: Vec<f64>,
+    pub(crate) starts: Vec<Vec<f64>>,
+}
+
+/// A fitted hypothesis.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Fit {
+    pub(crate) hypothesis: Hypothesis,
+    pub(crate) point: Point,
+    /// Residuals by segment, observed minus predicted.
+    pub(crate) residuals: Vec<DVector<f64>>,
+    pub(crate) squares: f64,
+    /// Whether the steps became small before the budget was spent.
+    pub(crate) converged: bool,
+    /// Global parameters that ended at an end of their range.
+    pub(crate) at_bound: Vec<bool>,
+    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance.
+    pub(crate) inverse: DMatrix<f64>,
+}
+
+/// How long to go on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Effort {
+    /// Steps tried at most.
+    steps: usize,
+    /// Relative decrease of the squares at which to stop.
+    small: f64,
+    /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
+    /// has still to grow says nothing about them.
+    sizes_first: usize,
+    /// Whether segments that fit much worse than others are heeded less until the others are fitted: friction that
+    /// is not yet right stops the motion half a swing too early or too late somewhere, and that one segment would
+    /// hold all coefficients.
+    wary: bool,
+}
+
+impl Effort {
+    /// To rank proposals.
+    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2, wary: true };
+    /// For parts held out: begun at the fit to all, there is not far to go.
+    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
+    /// For what is reported: half of 1e-8·N is far below what a probability would feel.
+    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0, wary: false };
+}
+
+/// What is moved.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Moving {
+    /// Start states only.
+    Starts,
+    /// Start states and every global parameter.
+    All,
+}
+
+/// Start states from the segments' guesses.
+pub(crate) fn first_starts(data: &Data, hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
+    data.segments.iter().map(|segment| extended(&segment.guess, hypothesis)).collect()
+}
+
+/// A start state with as many entries as a hypothesis has: hidden bodies move along.
+pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
+    start.iter().copied().take(2).cycle().take(hypothesis.start_length()).collect()
+}
+
+impl Fit {
+    pub(crate) fn samples(&self) -> usize {
+        self.residuals.iter().map(DVector::len).sum()
+    }
+
+    /// Residual squares by segment.
+    pub(crate) fn segment_squares(&self) -> Vec<f64> {
+        self.residuals.iter().map(DVector::norm_squared).collect()
+    }
+
+    /// Number of parameters that are fitted to all segments.
+    pub(crate) fn globals(&self) -> usize {
+        self.point.globals.len()
+    }
+
+    /// Degrees of freedom of the residual.
+    pub(crate) fn freedom(&self) -> f64 {
+        let starts: usize = self.point.starts.iter().map(Vec::len).sum();
+        (self.samples() as f64 - starts as f64 - self.globals() as f64).max(1.0)
+    }
+
+    pub(crate) fn autocorrelation_time(&self) -> f64 {
+        let pieces: Vec<&[f64]> = self.residuals.iter().map(DVector::as_slice).collect();
+        autocorrelation_time(&pieces)
+    }
+}
+
+/// Blocks of the normal equations of one segment.
+struct Block {
+    own: DMatrix<f64>,
+    shared: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+struct Equations {
+    blocks: Vec<Block>,
+    globals: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+struct Evaluation {
+    predictions: Vec<Prediction>,
+    squares: f64,
+}
+
+fn evaluate(
+    simulator: &mut Simulator<'_>,
+    segments: &[Segment],
+    point: &Point,
+) -> Result<Evaluation, DynamicsError> {
+    simulator.set(&point.globals)?;
+    let mut predictions = Vec::with_capacity(segments.len());
+    let mut squares = 0.0;
+    for (segment, start) in segments.iter().zip(&point.starts) {
+        let prediction = simulator.predict(segment, start)?;
+        squares += prediction.residual.norm_squared();
+        predictions.push(prediction);
+    }
+    Ok(Evaluation { predictions, squares })
+}
+
+/// Damping at which steps are so short that nothing comes of them.
+const MOST_DAMPING: f64 = 1e6;
+
+/// Mean square relative to the median segment's, beyond which a segment is heeded less.
+const DOUBTFUL: f64 = 2.0;
+
+/// Weights of the segments: 1 up to [`DOUBTFUL`], falling with the mean square beyond.
+fn trust(predictions: &[Prediction]) -> Vec<f64> {
+    let squares = |p: &Prediction| p.residual.norm_squared() / p.residual.len().max(1) as f64;
+    let own: Vec<f64> = predictions.iter().map(squares).collect();
+    let usual = median(&own).max(f64::MIN_POSITIVE);
+    own.into_iter().map(|square| (DOUBTFUL * usual / square.max(f64::MIN_POSITIVE)).min(1.0)).collect()
+}
+
+fn weighted(evaluation: &Evaluation, weights: &[f64]) -> f64 {
+    evaluation.predictions.iter().zip(weights).map(|(p, weight)| weight * p.residual.norm_squared()).sum()
+}
+
+/// Normal equations of the weighted segments.
+fn equations(predictions: &[Prediction], weights: &[f64], starts: usize, globals: usize) -> Equations {
+    let mut total = DMatrix::zeros(globals, globals);
+    let mut right = DVector::zeros(globals);
+    let mut blocks = Vec::with_capacity(predictions.len());
+    for (prediction, &weight) in predictions.iter().zip(weights) {
+        let own = prediction.jacobian.columns(0, starts);
+        let shared = prediction.jacobian.columns(starts, globals);
+        total += weight * shared.tr_mul(&shared);
+        right += weight * shared.tr_mul(&prediction.residual);
+        blocks.push(Block {
+            own: weight * own.tr_mul(&own),
+            shared: weight * own.tr_mul(&shared),
+            right: weight * own.tr_mul(&prediction.residual),
+        });
+    }
+    Equations { blocks, globals: total, right }
+}
+
+/// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
+    let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        entry(matrix, i, j) * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
+    });
+    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(right, i, j) * at(i));
+    let solution = scaled.cholesky()?.solve(&scaled_right);
+    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(&solution, i, j) * at(i)))
+}
+
+impl Equations {
+    /// The reduced system of the global parameters that are free.
+    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let mut matrix = raised(&self.globals, damping);
+        let mut right = self.right.clone();
+        for block in &self.blocks {
+            let eliminated = raised(&block.own, damping).cholesky()?;
+            let solved = eliminated.solve(&block.shared);
+            matrix -= block.shared.tr_mul(&solved);
+            right -= solved.tr_mul(&block.right);
+        }
+        Some((matrix, right))
+    }
+
+    /// The step of everything, with some global parameters held.
+    fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
+        let (matrix, right) = self.reduced(damping)?;
+        let free: Vec<usize> =
+            held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
+        let part = matrix.select_rows(&free).select_columns(&free);
+        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| element(&right, i)));
+        let mut step = DVector::zeros(right.len());
+        if !free.is_empty() {
+            let solution = solve(&part, &part_right)?;
+            for (value, &index) in solution.iter().zip(&free) {
+                if let Some(slot) = step.get_mut(index) {
+                    *slot = *value;
+                }
+            }
+        }
+        let mut starts = Vec::with_capacity(self.blocks.len());
+        for block in &self.blocks {
+            let right = &block.right - &block.shared * &step;
+            starts.push(raised(&block.own, damping).cholesky()?.solve(&right));
+        }
+        Some((step, starts))
+    }
+
+    /// By how much a step would decrease the squares if the motion were linear in everything.
+    fn promised(&self, step: &DVector<f64>, starts: &[DVector<f64>]) -> f64 {
+        let own: f64 = self.blocks.iter().zip(starts).map(|(block, own)| block.right.dot(own)).sum();
+        self.right.dot(step) + own
+    }
+}
+
+/// Fits a hypothesis from a point.
+///
+/// # Errors
+/// What the dynamics refuse at that point.
+pub(crate) fn fit(
+    data: &Data,
+    hypothesis: &Hypothesis,
+    from: Point,
+    moving: Moving,
+    effort: Effort,
+) -> Result<Fit, DynamicsError> {
+    let parameters = hypothesis.parameters(&data.facts);
+    let starts = hypothesis.start_length();
+    let globals = parameters.len();
+    let mut point = from;
+    for (value, parameter) in point.globals.iter_mut().zip(&parameters) {
+        *value = value.clamp(parameter.lower, parameter.upper);
+    }
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
+    let mut at = evaluate(&mut simulator, &data.segments, &point)?;
+    let mut damping = 1e-4;
+    let mut converged = false;
+    let mut small = 0;
+    let mut steps = 0;
+    let uneven = !hypothesis.smooth();
+    let mut wary = uneven && effort.wary;
+    let mut weights = if wary { trust(&at.predictions) } else { vec![1.0; data.segments.len()] };
+    let mut system = equations(&at.predictions, &weights, starts, globals);
+    let mut settled = false;
+    while steps < effort.steps {
+        steps += 1;
+        let sizes = steps <= effort.sizes_first;
+        let mut held: Vec<bool> =
+            parameters.iter().map(|p| moving == Moving::Starts || sizes && p.shape).collect();
+        let mut trial = None;
+        let mut promised = f64::INFINITY;
+        // Each round holds at least one parameter more.
+        for _ in 0..=globals {
+            let Some((step, own)) = system.step(damping, &held) else { break };
+            promised = system.promised(&step, &own);
+            let mut next = point.clone();
+            let mut fresh = false;
+            let moves = next.globals.iter_mut().zip(step.iter()).zip(&parameters).zip(&mut held);
+            for (((value, step), parameter), held) in moves {
+                let wanted = *value + step;
+                let outside = wanted < parameter.lower || wanted > parameter.upper;
+                if outside && !*held {
+                    let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
+                    // At the end already: hold it and solve again. Otherwise go there.
+                    if *value == end {
+                        (*held, fresh) = (true, true);
+                    }
+                    *value = end;
+                } else {
+                    *value = wanted;
+                }
+            }
+            for (start, step) in next.starts.iter_mut().zip(own) {
+                for (value, step) in start.iter_mut().zip(step.iter()) {
+                    *value += step;
+                }
+            }
+            if !fresh {
+                trial = Some(next);
+                break;
+            }
+        }
+        // Nothing more to be had: no need to try.
+        let done = promised <= effort.small * weighted(&at, &weights);
+        let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
+            let evaluation = evaluate(&mut simulator, &data.segments, &next).ok()?;
+            Some((next, evaluation))
+        });
+        match outcome {
+            Some((next, evaluation)) if weighted(&evaluation, &weights) <= weighted(&at, &weights) => {
+                let before = weighted(&at, &weights);
+                let decrease = before - weighted(&evaluation, &weights);
+                small = if decrease <= effort.small * before { small + 1 } else { 0 };
+                point = next;
+                at = evaluation;
+                if wary {
+                    weights = trust(&at.predictions);
+                }
+                damping = (damping * 0.1).max(1e-12);
+                if small == 0 {
+                    settled = false;
+                }
+                system = equations(&at.predictions, &weights, starts, globals);
+            }
+            _ if done => small += 1,
+            _ => damping = (damping * 10.0).max(1e-6),
+        }
+        // Where no step of any length decreases the squares it is a minimum, if an uneven one.
+        let ended = !sizes && (small >= 1 || damping > MOST_DAMPING);
+        if wary && (ended || steps >= effort.steps / 2) {
+            wary = false;
+            weights = vec![1.0; data.segments.len()];
+            settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)?;
+            at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+            system = equations(&at.predictions, &weights, starts, globals);
+            (small, damping, settled) = (0, 1e-4, true);
+            continue;
+        }
+        if uneven && !settled && (ended || damping > 1e-2) {
+            settled = true;
+            if settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)? {
+                at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+                system = equations(&at.predictions, &weights, starts, globals);
+                (small, damping) = (0, 1e-4);
+                continue;
+            }
+        }
+        if ended {
+            converged = true;
+            break;
+        }
+    }
+    let system = equations(&at.predictions, &vec![1.0; data.segments.len()], starts, globals);
+    let inverse = system
+        .reduced(0.0)
+        .and_then(|(matrix, _)| solve(&matrix, &DMatrix::identity(globals, globals)))
+        .unwrap_or_else(|| DMatrix::from_element(globals, globals, f64::INFINITY));
+    let at_bound = point
+        .globals
+        .iter()
+        .zip(&parameters)
+        .map(|(value, p)| *value <= p.lower || *value >= p.upper)
+        .collect();
+    Ok(Fit {
+        hypothesis: hypothesis.clone(),
+        residuals: at.predictions.into_iter().map(|prediction| prediction.residual).collect(),
+        squares: at.squares,
+        point,
+        converged,
+        at_bound,
+        inverse,
+    })
+}

@@ -1,0 +1,295 @@
+//! A hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
+
+use crate::candidate::{Candidate, Distortion, Parameter};
+use crate::facts::Facts;
+use dynamics::sensitivity::Free;
+use dynamics::{Active, Coefficients, DynamicsError, Nominal, System};
+
+/// A nominal coefficient that calibration may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Calibrated {
+    Inertia,
+    Damping,
+    Stiffness,
+    RestAngle,
+}
+
+impl Calibrated {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Inertia => "inertia",
+            Self::Damping => "damping",
+            Self::Stiffness => "stiffness",
+            Self::RestAngle => "rest_angle",
+        }
+    }
+
+    pub(crate) fn free(self) -> Free {
+        match self {
+            Self::Inertia => Free::Inertia,
+            Self::Damping => Free::Damping,
+            Self::Stiffness => Free::Stiffness,
+            Self::RestAngle => Free::RestAngle,
+        }
+    }
+
+    pub(crate) fn of(self, coefficients: &Coefficients<f64>) -> f64 {
+        match self {
+            Self::Inertia => coefficients.inertia,
+            Self::Damping => coefficients.damping,
+            Self::Stiffness => coefficients.stiffness,
+            Self::RestAngle => coefficients.rest_angle,
+        }
+    }
+
+    fn set(self, coefficients: &mut Coefficients<f64>, value: f64) {
+        match self {
+            Self::Inertia => coefficients.inertia = value,
+            Self::Damping => coefficients.damping = value,
+            Self::Stiffness => coefficients.stiffness = value,
+            Self::RestAngle => coefficients.rest_angle = value,
+        }
+    }
+}
+
+/// What the sensor does to the motion: the smooth effects of the measuring chain, in their physical order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Measurement {
+    pub(crate) lag: Option<f64>,
+    pub(crate) nonlinearity: Option<(f64, f64)>,
+    pub(crate) drift: Option<f64>,
+    pub(crate) clock: Option<f64>,
+    pub(crate) saturation: Option<f64>,
+}
+
+/// An observed value with its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Observed {
+    pub(crate) value: f64,
+    /// With respect to the observed quantity, its first and its second time derivative.
+    pub(crate) by_motion: [f64; 3],
+    /// With respect to lag, nonlinearity's amplitude and phase, drift, clock change, saturation bound.
+    pub(crate) by_parameter: [f64; 6],
+}
+
+impl Measurement {
+    /// The true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
+    pub(crate) fn true_time(&self, stamp: f64) -> f64 {
+        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation where r′ is small.
+        self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
+    }
+
+    /// What the sensor shows where the observed quantity is `x` with time derivatives `rate` and `curvature`.
+    ///
+    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
+    /// answer up to (ω·T)³.
+    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
+        let mut by_motion = [1.0, 0.0, 0.0];
+        let mut by_parameter = [0.0; 6];
+        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
+        let mut value = x;
+        if let Some(lag) = self.lag {
+            value += -lag * rate + lag * lag * curvature;
+            by_motion = [1.0, -lag, lag * lag];
+            *by_lag = -rate + 2.0 * lag * curvature;
+        }
+        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
+        *by_clock = -0.5 * (time * time - start * start) * rate;
+        if let Some((amplitude, phase)) = self.nonlinearity {
+            let (sine, cosine) = (value + phase).sin_cos();
+            value += amplitude * sine;
+            let slope = 1.0 + amplitude * cosine;
+            by_motion = by_motion.map(|d| d * slope);
+            *by_lag *= slope;
+            *by_clock *= slope;
+            *by_amplitude = sine;
+            *by_phase = amplitude * cosine;
+        }
+        if let Some(drift) = self.drift {
+            value += drift * time;
+        }
+        *by_drift = time;
+        if let Some(bound) = self.saturation {
+            if value.abs() > bound {
+                value = bound * value.signum();
+                by_motion = [0.0; 3];
+                by_parameter = [0.0, 0.0, 0.0, 0.0, 0.0, value.signum()];
+            } else {
+                *by_bound = 0.0;
+            }
+        }
+        Observed { value, by_motion, by_parameter }
+    }
+}
+
+/// Which simulator is believed: what is free in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hypothesis {
+    pub(crate) nominal: Nominal,
+    pub(crate) calibrated: Vec<Calibrated>,
+    pub(crate) candidates: Vec<Candidate>,
+}
+
+/// Where a global parameter comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Source {
+    Nominal(Calibrated),
+    /// Index among the candidates, index among its parameters.
+    Candidate(usize, usize),
+}
+
+impl Hypothesis {
+    /// Candidates in the vocabulary's order, so that the same set is the same hypothesis.
+    pub(crate) fn with(&self, candidates: &[Candidate]) -> Self {
+        let mut candidates = candidates.to_vec();
+        candidates.sort_by_key(|candidate| candidate.rank());
+        candidates.dedup();
+        Self { candidates, ..self.clone() }
+    }
+
+    pub(crate) fn sources(&self, facts: &Facts) -> Vec<Source> {
+        let nominal = self.calibrated.iter().map(|&which| Source::Nominal(which));
+        let own = self.candidates.iter().enumerate().flat_map(|(index, candidate)| {
+            (0..candidate.parameters(facts).len()).map(move |parameter| Source::Candidate(index, parameter))
+        });
+        nominal.chain(own).collect()
+    }
+
+    /// Every global parameter with its bounds.
+    pub(crate) fn parameters(&self, facts: &Facts) -> Vec<Parameter> {
+        let nominal = self.calibrated.iter().map(|which| Parameter {
+            name: which.name(),
+            lower: match which {
+                Calibrated::Inertia => 1e-3 * facts.inertia,
+                Calibrated::Damping | Calibrated::Stiffness => 0.0,
+                Calibrated::RestAngle => f64::NEG_INFINITY,
+            },
+            upper: f64::INFINITY,
+            strength: false,
+            shape: false,
+            simpler: false,
+        });
+        nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
+    }
+
+    /// The nominal values of the calibrated coefficients: where a fit without candidates starts.
+    pub(crate) fn nominal_point(&self) -> Vec<f64> {
+        let coefficients = self.nominal.coefficients();
+        self.calibrated.iter().map(|which| which.of(&coefficients)).collect()
+    }
+
+    /// Each candidate's part of a point.
+    pub(crate) fn parts<'a>(&self, facts: &Facts, point: &'a [f64]) -> Vec<&'a [f64]> {
+        let mut rest = point.get(self.calibrated.len()..).unwrap_or_default();
+        self.candidates
+            .iter()
+            .map(|candidate| {
+                let (own, after) =
+                    rest.split_at_checked(candidate.parameters(facts).len()).unwrap_or((rest, &[]));
+                rest = after;
+                own
+            })
+            .collect()
+    }
+
+    pub(crate) fn calibrated_nominal(&self, point: &[f64]) -> Result<Nominal, DynamicsError> {
+        let mut coefficients = self.nominal.coefficients();
+        for (which, &value) in self.calibrated.iter().zip(point) {
+            which.set(&mut coefficients, value);
+        }
+        self.nominal.with_coefficients(coefficients)
+    }
+
+    pub(crate) fn system(&self, facts: &Facts, point: &[f64]) -> Result<System, DynamicsError> {
+        let mut effects = Vec::new();
+        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+            if let Candidate::System(effect) = candidate {
+                let values = candidate.values(own);
+                let parameters = effect.description().parameters;
+                let inside: Vec<f64> =
+                    values
+                        .iter()
+                        .zip(parameters)
+                        // Open ranges exclude their ends, which a fit at its bound reaches.
+                        .map(|(&value, parameter)| {
+                            if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
+                        })
+                        .collect();
+                effects.push(Active::new(candidate.id(), &inside)?);
+            }
+        }
+        System::new(self.calibrated_nominal(point)?, effects)
+    }
+
+    pub(crate) fn measurement(&self, facts: &Facts, point: &[f64]) -> Measurement {
+        let mut measurement = Measurement::default();
+        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+            match (candidate, candidate.values(own).as_slice()) {
+                (Candidate::Chain(Distortion::Lag), &[lag]) => measurement.lag = Some(lag),
+                (Candidate::Chain(Distortion::Nonlinearity), &[amplitude, phase]) => {
+                    measurement.nonlinearity = Some((amplitude, phase));
+                }
+                (Candidate::Chain(Distortion::Drift), &[rate]) => measurement.drift = Some(rate),
+                (Candidate::Chain(Distortion::Clock), &[change]) => measurement.clock = Some(change),
+                (Candidate::Chain(Distortion::Saturation), &[bound]) => measurement.saturation = Some(bound),
+                _ => {}
+            }
+        }
+        measurement
+    }
+
+    /// Whether the motion depends smoothly on everything that is fitted.
+    pub(crate) fn smooth(&self) -> bool {
+        self.candidates.iter().all(|candidate| match candidate {
+            Candidate::System(effect) => effect.description().smooth,
+            Candidate::Chain(_) => true,
+        })
+    }
+
+    /// State values of a segment that are fitted: position, velocity, hidden ones.
+    pub(crate) fn start_length(&self) -> usize {
+        2 + self.candidates.iter().map(|candidate| candidate.free_hidden()).sum::<usize>()
+    }
+
+    pub(crate) fn ids(&self) -> Vec<&'static str> {
+        self.candidates.iter().map(|candidate| candidate.id()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Measurement;
+
+    /// Derivatives of the sensor's map against central differences.
+    #[test]
+    fn a_sensors_derivatives_are_those_of_its_values() {
+        let full = Measurement {
+            lag: Some(0.004),
+            nonlinearity: Some((0.02, 0.4)),
+            drift: Some(0.003),
+            clock: Some(1e-3),
+            saturation: Some(5.0),
+        };
+        let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
+        let at = full.observe(x, rate, curvature, time, 0.0);
+        let h = 1e-6;
+        let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
+        let by_x = slope(
+            full.observe(x + h, rate, curvature, time, 0.0).value,
+            full.observe(x - h, rate, curvature, time, 0.0).value,
+        );
+        assert!((by_x - at.by_motion[0]).abs() < 1e-8);
+        let lag = |d: f64| {
+            Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value
+        };
+        assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
+        let phase = |d: f64| {
+            Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }
+                .observe(x, rate, curvature, time, 0.0)
+                .value
+        };
+        assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
+        let stamp = full.true_time(time);
+        assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);
+    }
+}

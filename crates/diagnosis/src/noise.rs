@@ -1,0 +1,50 @@
+//! The noise floor, measured from a residual.
+
+use crate::segments::Data;
+use crate::statistics::normal_above;
+use nalgebra::DVector;
+use serde::Serialize;
+
+/// Standard deviation of the white part of a residual.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NoiseFloor {
+    /// s₀ with s₀² = mean((e₍ᵢ₋₁₎ − 2eᵢ + e₍ᵢ₊₁₎)²)/6, in the observed quantity's unit. Quantization is part of it.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval_95: [f64; 2],
+    /// Second differences used.
+    pub count: usize,
+}
+
+/// The floor from second differences of a residual.
+///
+/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². A quantized signal at
+/// rest shows one value over and over and no noise at all, so that only stretches count where the signal moves
+/// by a resolution step or more between samples (all, if those are too few).
+///
+/// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
+/// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
+pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
+    let step = data.resolution.unwrap_or(0.0);
+    let mut moving = Vec::new();
+    let mut all = Vec::new();
+    for (segment, residual) in data.segments.iter().zip(residuals) {
+        let values = segment.values.windows(3);
+        for (e, y) in residual.as_slice().windows(3).zip(values) {
+            if let (&[a, b, c], &[first, _, last]) = (e, y) {
+                let square = (a - 2.0 * b + c).powi(2);
+                all.push(square);
+                if (last - first).abs() >= 2.0 * step {
+                    moving.push(square);
+                }
+            }
+        }
+    }
+    let used = if moving.len() >= 100 { moving } else { all };
+    let count = used.len();
+    let variance = used.iter().sum::<f64>() / (6.0 * count.max(1) as f64);
+    let worth = count as f64 / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
+    let spread = normal_above(0.025) * (2.0 / worth.max(1.0)).sqrt();
+    let end = |factor: f64| (variance * factor.max(0.0)).sqrt();
+    NoiseFloor { value: variance.sqrt(), interval_95: [end(1.0 - spread), end(1.0 + spread)], count }
+}

@@ -1,0 +1,58 @@
+//! What a diagnosis sees of a record.
+
+use record::{Clock, ClockKind, Quantity, Record, StampStatistics};
+
+/// The observations of one record: times by a believed clock, values, input. Neither a path nor an origin.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Observations {
+    /// Time of each sample in seconds since the first, by the believed clock.
+    pub(crate) times_s: Vec<f64>,
+    pub(crate) values: Vec<f64>,
+    pub(crate) input: Option<Vec<f64>>,
+    pub(crate) quantity: Quantity,
+    pub(crate) unit: &'static str,
+    /// Stamps as written, in seconds since the first.
+    pub(crate) stamps_s: Vec<f64>,
+    pub(crate) clock: ClockKind,
+    pub(crate) sample_rate_hz: f64,
+    pub(crate) stamps: StampStatistics,
+    /// The sensor's step, where the values lie on a lattice.
+    pub(crate) resolution: Option<f64>,
+}
+
+impl Observations {
+    /// Takes from a record what a diagnosis may see, on the clock that is believed.
+    #[must_use]
+    pub fn new(record: &Record, clock: &Clock) -> Self {
+        let first = clock.times_s.first().copied().unwrap_or_default();
+        let stamp = record.stamps_s().first().copied().unwrap_or_default();
+        Self {
+            times_s: clock.times_s.iter().map(|time| time - first).collect(),
+            values: record.values().to_vec(),
+            input: record.input().map(<[f64]>::to_vec),
+            quantity: record.quantity(),
+            unit: record.unit(),
+            stamps_s: record.stamps_s().iter().map(|time| time - stamp).collect(),
+            clock: clock.kind,
+            sample_rate_hz: clock.sample_rate_hz,
+            stamps: clock.statistics.clone(),
+            resolution: record.lattice().map(|lattice| lattice.step),
+        }
+    }
+
+    /// Number of samples.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there are no samples.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.values.is_empty()
+    }
+
+    pub(crate) fn duration_s(&self) -> f64 {
+        self.times_s.last().copied().unwrap_or_default()
+    }
+}

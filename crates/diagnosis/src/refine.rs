@@ -1,0 +1,72 @@
+//! The best sets once more, on every sample and to convergence.
+
+use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::score::score;
+use crate::search::{Pool, vanished};
+use crate::segments::Data;
+use rayon::prelude::*;
+
+/// Sets that are refined in any case.
+const FEWEST: usize = 3;
+
+/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil, and nobody
+/// would mistake it for the best.
+const HOPELESS: f64 = 60.0;
+
+/// Refits the best `most` sets of a pool on other data with the same segments, and as many more that differ from the very
+/// best in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
+pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, finer: f64) -> Pool {
+    let time = pool.autocorrelation_time();
+    let ranked: Vec<&Fit> =
+        pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
+    let score_of = |fit: &Fit| finer * score(fit, time);
+    let mut all = vec![calibrated.clone()];
+    let mut rejected = pool.rejected.clone();
+    let mut waiting = ranked.as_slice();
+    // Where none of the best survives on every sample, the next ones have their turn.
+    while let (1, [best, ..]) = (all.len(), waiting) {
+        let highest = score_of(best);
+        let near = waiting
+            .iter()
+            .enumerate()
+            .take_while(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
+            .count();
+        let (batch, rest) = waiting.split_at(near);
+        waiting = rest;
+        let rival = |fit: &Fit| {
+            let (own, best) = (&fit.hypothesis.candidates, &best.hypothesis.candidates);
+            own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
+        };
+        let further = batch.iter().skip(most).filter(|fit| rival(fit)).take(most);
+        let chosen: Vec<&Fit> = batch.iter().take(most).chain(further).copied().collect();
+        let refined: Vec<Option<Fit>> = chosen
+            .par_iter()
+            .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
+            .collect();
+        let (gone, fits): (Vec<Fit>, Vec<Fit>) =
+            refined.into_iter().flatten().partition(|fit| vanished(data, fit));
+        rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+        all.extend(fits);
+    }
+    Pool { fits: all, rejected }
+}
+
+/// The fit of a set with one member left out, and what that costs: begun where the set was.
+pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> Option<Fit> {
+    let parts = full.hypothesis.parts(&data.facts, &full.point.globals);
+    let members: Vec<_> = full
+        .hypothesis
+        .candidates
+        .iter()
+        .zip(parts)
+        .enumerate()
+        .filter(|(index, _)| keep(*index))
+        .map(|(_, (candidate, part))| (*candidate, part.to_vec()))
+        .collect();
+    let candidates: Vec<_> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = full.hypothesis.with(&candidates);
+    let calibrated = full.point.globals.iter().copied().take(full.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    fit(data, &hypothesis, Point { globals, starts }, Moving::All, Effort::FINAL).ok()
+}

@@ -1,0 +1,342 @@
+//! What a hypothesis says a segment looks like, with exact derivatives.
+
+use crate::candidate::{Candidate, Distortion};
+use crate::facts::Facts;
+use crate::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
+use crate::matrices::set;
+use crate::segments::{Data, Segment};
+use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
+use dynamics::{DynamicsError, SystemEffect};
+use nalgebra::{DMatrix, DVector};
+use record::Quantity;
+
+/// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
+const MOST_STEPS: usize = 1200;
+const MOST_STEPS_PER_SAMPLE: usize = 3;
+
+/// A hypothesis made ready for runs.
+pub(crate) struct Simulator<'a> {
+    data: &'a Data,
+    hypothesis: &'a Hypothesis,
+    sources: Vec<Source>,
+    /// The point that the model is set to.
+    point: Vec<f64>,
+    measurement: Measurement,
+    model: Model,
+    response: Response,
+    /// Where each global parameter's column stands in the response; none for the sensor's.
+    columns: Vec<Option<usize>>,
+    derivatives: bool,
+    times: Vec<f64>,
+    /// Integration steps of all runs so far.
+    pub(crate) steps: usize,
+}
+
+/// A segment's response.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Prediction {
+    /// Observed minus predicted.
+    pub(crate) residual: DVector<f64>,
+    /// ∂predicted/∂(start state, global parameters); no columns where none were asked for.
+    pub(crate) jacobian: DMatrix<f64>,
+}
+
+/// The motion along a segment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Motion {
+    pub(crate) position: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
+}
+
+impl<'a> Simulator<'a> {
+    pub(crate) fn new(
+        data: &'a Data,
+        hypothesis: &'a Hypothesis,
+        point: &[f64],
+        derivatives: bool,
+    ) -> Result<Self, DynamicsError> {
+        let facts = &data.facts;
+        let sources = hypothesis.sources(facts);
+        let measurement = hypothesis.measurement(facts, point);
+        let mut free = Vec::new();
+        let mut columns = vec![None; sources.len()];
+        if derivatives {
+            free.extend([Free::StartPosition, Free::StartVelocity]);
+            free.extend(hidden(hypothesis).map(Free::StartHidden));
+            for (source, column) in sources.iter().zip(&mut columns) {
+                let own = match *source {
+                    Source::Nominal(which) => Some(which.free()),
+                    Source::Candidate(index, parameter) => match hypothesis.candidates.get(index) {
+                        Some(Candidate::System(effect)) => {
+                            let description = effect.description();
+                            description
+                                .parameters
+                                .get(parameter)
+                                .map(|own| Free::Effect { id: description.id, parameter: own.name })
+                        }
+                        _ => None,
+                    },
+                };
+                *column = own.map(|own| {
+                    free.push(own);
+                    free.len() - 1
+                });
+            }
+        }
+        let lag = measurement.lag.is_some();
+        let seconds = |segment: &Segment| match segment.times.as_slice() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        };
+        // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
+        let longest = data.segments.iter().map(seconds).fold(0.0, f64::max) / facts.interval;
+        let settings = Settings {
+            tolerance: facts.tolerance,
+            velocity: true,
+            acceleration: lag || !derivatives || data.quantity != Quantity::Position,
+            most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest as usize,
+            ..Settings::default()
+        };
+        let system = hypothesis.system(facts, point)?;
+        let model = Model::new(&system, &free, settings)?;
+        Ok(Self {
+            data,
+            hypothesis,
+            sources,
+            point: point.to_vec(),
+            measurement,
+            model,
+            response: Response::default(),
+            columns,
+            derivatives,
+            times: Vec::new(),
+            steps: 0,
+        })
+    }
+
+    fn facts(&self) -> &Facts {
+        &self.data.facts
+    }
+
+    /// Moves to another point. Only for a simulator with derivatives, whose parameters are all free.
+    pub(crate) fn set(&mut self, point: &[f64]) -> Result<(), DynamicsError> {
+        let mut values = Vec::new();
+        let parts = self.hypothesis.parts(self.facts(), point);
+        for (source, column) in self.sources.iter().zip(&self.columns) {
+            match (*source, column) {
+                (_, None) => {}
+                (Source::Nominal(which), _) => {
+                    let at = self.hypothesis.calibrated.iter().position(|own| *own == which);
+                    values.extend(at.and_then(|at| point.get(at)));
+                }
+                (Source::Candidate(index, parameter), _) => {
+                    let candidate = self.hypothesis.candidates.get(index);
+                    let own = candidate.zip(parts.get(index)).map(|(c, part)| c.values(part));
+                    values.extend(own.and_then(|own| own.get(parameter).copied()));
+                }
+            }
+        }
+        self.model.set(&values)?;
+        self.point = point.to_vec();
+        self.measurement = self.hypothesis.measurement(self.facts(), point);
+        Ok(())
+    }
+
+    fn run(&mut self, segment: &Segment, start: &[f64]) -> Result<(), DynamicsError> {
+        self.times.clear();
+        self.times.extend(segment.times.iter().map(|time| self.measurement.true_time(*time)));
+        let state = self.state(segment, start);
+        let input = self.data.inputs.get(segment.record).and_then(Option::as_ref);
+        let outcome = self.model.run_into(state, input, &self.times, &mut self.response);
+        self.steps += self.response.steps;
+        outcome
+    }
+
+    /// The full state at a segment's start. Hidden states that are not fitted are relaxed where the record begins;
+    /// later a contact that bends is where a steady swing of the same amplitude has brought it.
+    fn state(&self, segment: &Segment, start: &[f64]) -> FullState {
+        let (position, velocity, own) = match start {
+            [position, velocity, own @ ..] => (*position, *velocity, own),
+            _ => (0.0, 0.0, start),
+        };
+        let mut hidden = [0.0; dynamics::SYSTEM_HIDDEN];
+        let mut own = own.iter();
+        let mut at = 0;
+        let parts = self.hypothesis.parts(self.facts(), &self.point);
+        let mut any = false;
+        for (candidate, part) in self.hypothesis.candidates.iter().zip(parts) {
+            let Candidate::System(effect) = candidate else { continue };
+            for _ in 0..effect.description().hidden_states {
+                if let Some(slot) = hidden.get_mut(at) {
+                    *slot = match (effect, part) {
+                        (SystemEffect::Hysteresis, &[_, displacement]) if !segment.first => {
+                            let deflection = position - self.data.facts.rest(&self.point, self.hypothesis);
+                            bent(deflection, velocity / self.data.facts.frequency, displacement)
+                        }
+                        (SystemEffect::FlexibleCoupling, _) => own.next().copied().unwrap_or(0.0),
+                        _ => 0.0,
+                    };
+                }
+                any = true;
+                at += 1;
+            }
+        }
+        FullState { position, velocity, hidden: any.then_some(hidden) }
+    }
+
+    /// The prediction for a segment from a start state.
+    pub(crate) fn predict(&mut self, segment: &Segment, start: &[f64]) -> Result<Prediction, DynamicsError> {
+        self.run(segment, start)?;
+        let starts = self.hypothesis.start_length();
+        let width = if self.derivatives { starts + self.sources.len() } else { 0 };
+        let count = segment.times.len();
+        let mut residual = DVector::zeros(count);
+        let mut jacobian = DMatrix::zeros(count, width);
+        let response = &self.response;
+        let (x, rate, curvature) = match self.data.quantity {
+            Quantity::Position => (&response.position, &response.velocity, &response.acceleration),
+            Quantity::Velocity => (&response.velocity, &response.acceleration, &response.acceleration),
+            Quantity::Acceleration => {
+                (&response.acceleration, &response.acceleration, &response.acceleration)
+            }
+        };
+        let (by_x, by_rate, by_curvature) = match self.data.quantity {
+            Quantity::Position => (
+                &response.position_sensitivity,
+                &response.velocity_sensitivity,
+                &response.acceleration_sensitivity,
+            ),
+            Quantity::Velocity => (
+                &response.velocity_sensitivity,
+                &response.acceleration_sensitivity,
+                &response.acceleration_sensitivity,
+            ),
+            Quantity::Acceleration => (
+                &response.acceleration_sensitivity,
+                &response.acceleration_sensitivity,
+                &response.acceleration_sensitivity,
+            ),
+        };
+        let total = response.columns;
+        let start_time = segment.times.first().copied().unwrap_or_default();
+        for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
+            let at = |list: &Vec<f64>| list.get(row).copied().unwrap_or(0.0);
+            let observed = self.measurement.observe(at(x), at(rate), at(curvature), time, start_time);
+            if let Some(slot) = residual.get_mut(row) {
+                *slot = value - observed.value;
+            }
+            if !self.derivatives {
+                continue;
+            }
+            let [d0, d1, d2] = observed.by_motion;
+            let through = |column: usize| {
+                let of = |list: &Vec<f64>| list.get(row * total + column).copied().unwrap_or(0.0);
+                let mut sum = d0 * of(by_x);
+                if d1 != 0.0 {
+                    sum += d1 * of(by_rate) + d2 * of(by_curvature);
+                }
+                sum
+            };
+            for column in 0..starts {
+                set(&mut jacobian, row, column, through(column));
+            }
+            for (number, (source, column)) in self.sources.iter().zip(&self.columns).enumerate() {
+                let value = match (column, *source) {
+                    (Some(column), _) => through(*column),
+                    (None, Source::Candidate(index, parameter)) => {
+                        let which = sensor_parameter(self.hypothesis.candidates.get(index), parameter);
+                        which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
+                    }
+                    (None, Source::Nominal(_)) => 0.0,
+                };
+                set(&mut jacobian, row, starts + number, value);
+            }
+        }
+        self.combine(&mut jacobian, starts);
+        Ok(Prediction { residual, jacobian })
+    }
+
+    /// From derivatives by the laws' parameters to those by the fit's.
+    fn combine(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
+        if !self.derivatives {
+            return;
+        }
+        let parts = self.hypothesis.parts(self.facts(), &self.point);
+        let mut at = starts + self.hypothesis.calibrated.len();
+        for (candidate, part) in self.hypothesis.candidates.iter().zip(parts) {
+            let slopes = candidate.slopes(part);
+            if !slopes.is_empty() {
+                let law = jacobian.columns(at, part.len()).clone_owned();
+                let mut change = DMatrix::identity(part.len(), part.len());
+                for (row, column, slope) in slopes {
+                    set(&mut change, row, column, slope);
+                }
+                jacobian.columns_mut(at, part.len()).copy_from(&(law * change));
+            }
+            at += part.len();
+        }
+    }
+
+    /// The start state of a segment that begins where this one ends: position, velocity, fitted hidden states.
+    pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        self.run(segment, start)?;
+        let end = self.response.end;
+        let all = end.hidden.unwrap_or_default();
+        let own = hidden(self.hypothesis).filter_map(|index| all.get(index).copied());
+        Ok([end.position, end.velocity].into_iter().chain(own).collect())
+    }
+
+    /// The motion along a segment from a start state. Only for a simulator without derivatives.
+    pub(crate) fn motion(&mut self, segment: &Segment, start: &[f64]) -> Result<Motion, DynamicsError> {
+        self.run(segment, start)?;
+        Ok(Motion {
+            position: self.response.position.clone(),
+            velocity: self.response.velocity.clone(),
+            acceleration: self.response.acceleration.clone(),
+        })
+    }
+}
+
+impl Facts {
+    /// The rest angle at a point.
+    pub(crate) fn rest(&self, point: &[f64], hypothesis: &Hypothesis) -> f64 {
+        let at = hypothesis.calibrated.iter().position(|own| *own == Calibrated::RestAngle);
+        at.and_then(|at| point.get(at)).copied().unwrap_or_else(|| hypothesis.nominal.rest_angle())
+    }
+}
+
+/// Numbers of the hidden states that each segment fits, among all of the system's.
+fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
+    let mut at = 0;
+    hypothesis.candidates.iter().flat_map(move |candidate| {
+        let Candidate::System(effect) = candidate else { return 0..0 };
+        let from = at;
+        at += effect.description().hidden_states;
+        from..from + candidate.free_hidden()
+    })
+}
+
+/// Place of a sensor effect's parameter in [`crate::hypothesis::Observed::by_parameter`].
+fn sensor_parameter(candidate: Option<&Candidate>, parameter: usize) -> Option<usize> {
+    match candidate? {
+        Candidate::Chain(Distortion::Lag) => Some(0),
+        Candidate::Chain(Distortion::Nonlinearity) => Some(1 + parameter),
+        Candidate::Chain(Distortion::Drift) => Some(3),
+        Candidate::Chain(Distortion::Clock) => Some(4),
+        Candidate::Chain(Distortion::Saturation) => Some(5),
+        Candidate::System(_) => None,
+    }
+}
+
+/// The hidden state of Dahl's law in a steady swing, at a deflection and a velocity over the frequency.
+///
+/// From a reversal on, z = s − (s − z₀)·exp(−path/δ) with the direction s; in a steady swing of amplitude A it runs
+/// between ±tanh(A/δ).
+pub(crate) fn bent(deflection: f64, quadrature: f64, displacement: f64) -> f64 {
+    let amplitude = deflection.hypot(quadrature);
+    let direction = if quadrature < 0.0 { -1.0 } else { 1.0 };
+    let path = (amplitude + direction * deflection).max(0.0);
+    let reversal = (amplitude / displacement).tanh();
+    direction * (1.0 - (1.0 + reversal) * (-path / displacement).exp())
+}

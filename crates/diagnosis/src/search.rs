@@ -1,0 +1,418 @@
+//! The search for the set of effects that the data ask for.
+//!
+//! One cause at a time is not enough: a second cause may help by 1 % alone and by 30 % once the first is in. So the
+//! first round proposes single candidates and pairs, jointly linearized; every later round linearizes anew at the
+//! best sets found so far and proposes what to add there, what to put in another's place, and what each member
+//! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
+
+use crate::candidate::Candidate;
+use crate::dictionary::{Dictionary, Gain, shapes};
+use crate::facts::Facts;
+use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::hypothesis::Hypothesis;
+use crate::segments::Data;
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// Every set that was fitted, best fit of each.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pool {
+    pub(crate) fits: Vec<Fit>,
+    /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
+    pub(crate) rejected: Vec<Vec<Candidate>>,
+}
+
+/// How wide to search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Breadth {
+    /// Most effects in a set.
+    pub(crate) most_effects: usize,
+    /// Single candidates fitted in the first round.
+    pub(crate) singles: usize,
+    /// Pairs fitted in the first round.
+    pub(crate) pairs: usize,
+    /// Sets that later rounds go on from.
+    pub(crate) beam: usize,
+    /// Candidates fitted at each of them.
+    pub(crate) additions: usize,
+}
+
+/// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
+const NEAR: f64 = 1.5;
+const POLISHED: usize = 6;
+
+/// Part of its linearized size that an effect begins a fit with.
+const FIRST_SIZE: f64 = 1e-3;
+
+/// A set to fit and where to begin.
+#[derive(Debug, Clone)]
+struct Proposal {
+    hypothesis: Hypothesis,
+    point: Point,
+}
+
+impl Pool {
+    pub(crate) fn find(&self, candidates: &[Candidate]) -> Option<&Fit> {
+        self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
+    }
+
+    /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
+    fn admit(&mut self, data: &Data, fit: Fit) {
+        if vanished(data, &fit) {
+            self.rejected.push(fit.hypothesis.candidates);
+            return;
+        }
+        match self.fits.iter_mut().find(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
+            Some(known) if fit.squares < known.squares => *known = fit,
+            Some(_) => {}
+            None => self.fits.push(fit),
+        }
+    }
+
+    /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
+    pub(crate) fn autocorrelation_time(&self) -> f64 {
+        let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
+        best.map_or(1.0, Fit::autocorrelation_time)
+    }
+
+    /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
+    pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
+        let mut ranked: Vec<&Fit> = self.fits.iter().collect();
+        ranked.sort_by(|a, b| crate::score::score(b, time).total_cmp(&crate::score::score(a, time)));
+        ranked
+    }
+}
+
+/// A size at zero, or a shape at which the candidate is a simpler one: it is not there.
+pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
+    let parameters = fit.hypothesis.parameters(&data.facts);
+    let calibrated = fit.hypothesis.calibrated.len();
+    let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
+    own.into_iter()
+        .any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
+}
+
+/// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
+fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
+    let special: Vec<(Candidate, Candidate)> =
+        members.iter().filter_map(|(general, _)| Some((*general, general.generalizes()?))).collect();
+    for (general, special) in special {
+        let Some(place) = members.iter().position(|(candidate, _)| *candidate == special) else { continue };
+        let (_, own) = members.remove(place);
+        let target = members.iter_mut().find(|(candidate, _)| *candidate == general);
+        if let (Some((_, values)), Some(size)) = (target, own.first())
+            && let Some(first) = values.first_mut()
+        {
+            *first += size;
+        }
+    }
+}
+
+/// A set and a start for it: what a fit has found, with one candidate left out and others added.
+fn proposal(
+    data: &Data,
+    base: &Fit,
+    without: Option<Candidate>,
+    added: &[(Candidate, Vec<f64>)],
+) -> Proposal {
+    let facts = &data.facts;
+    let parts = base.hypothesis.parts(facts, &base.point.globals);
+    let mut members: Vec<(Candidate, Vec<f64>)> = base
+        .hypothesis
+        .candidates
+        .iter()
+        .copied()
+        .zip(parts.into_iter().map(<[f64]>::to_vec))
+        .filter(|(candidate, _)| Some(*candidate) != without)
+        .chain(added.iter().cloned())
+        .collect();
+    absorb(&mut members);
+    members.sort_by_key(|(candidate, _)| candidate.rank());
+    let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = base.hypothesis.with(&candidates);
+    let calibrated = base.point.globals.iter().copied().take(base.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = base.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    Proposal { hypothesis, point: Point { globals, starts } }
+}
+
+fn additions(facts: &Facts, dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
+    let mut coefficients = gain.coefficients.as_slice();
+    gain.entries
+        .iter()
+        .filter_map(|&index| {
+            let entry = dictionary.entries.get(index)?;
+            let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
+            coefficients = rest;
+            let mut parameters = dictionary.parameters(index, own);
+            // The coefficients suppose that calibration and start states have moved along, which the fit has still to do:
+            // sizes begin small and grow in its first steps, with everything else.
+            for (value, parameter) in parameters.iter_mut().zip(entry.candidate.parameters(facts)) {
+                let is_its_own_shape = parameter.strength && parameter.upper.is_finite();
+                if !parameter.shape && !is_its_own_shape {
+                    *value *= FIRST_SIZE;
+                }
+            }
+            Some((entry.candidate, parameters))
+        })
+        .collect()
+}
+
+/// Gains of single entries, the best shape of each candidate, best first.
+pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<(Candidate, Gain)> = Vec::new();
+    for (index, entry) in dictionary.entries.iter().enumerate() {
+        let Some(gain) = dictionary.gain(&[index]) else { continue };
+        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
+            Some((_, known)) if gain.squares > known.squares => *known = gain,
+            Some(_) => {}
+            None => best.push((entry.candidate, gain)),
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Joint gains of two candidates, the best shapes of each pair, best first.
+fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
+    for (first, one) in dictionary.entries.iter().enumerate() {
+        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
+            if one.candidate == other.candidate {
+                continue;
+            }
+            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
+            let pair = (one.candidate, other.candidate);
+            match best.iter_mut().find(|(known, _)| *known == pair) {
+                Some((_, known)) if gain.squares > known.squares => *known = gain,
+                Some(_) => {}
+                None => best.push((pair, gain)),
+            }
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
+fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
+    let fits: Vec<Option<Fit>> = proposals
+        .par_iter()
+        .map(|proposal| {
+            fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, Effort::SEARCH).ok()
+        })
+        .collect();
+    fits.into_iter().flatten().collect()
+}
+
+/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+const WHITE: f64 = 1.5;
+
+/// Part of the threshold that the linearized gain has to promise at a white residual.
+const PROMISE: f64 = 0.5;
+
+/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
+/// show only once the first is in.
+fn promising(base: &Fit, time: f64, gain: f64, threshold: f64) -> bool {
+    let left = (base.squares - gain).max(f64::MIN_POSITIVE);
+    let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
+    time > WHITE || score > PROMISE * threshold
+}
+
+/// Proposals at a fit: what to add.
+fn around(
+    data: &Data,
+    base: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+    best: bool,
+) -> Vec<Proposal> {
+    let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
+    let mut proposals = Vec::new();
+    let size = base.hypothesis.candidates.len();
+    let ranked = singles(&dictionary);
+    if size < breadth.most_effects {
+        let time = base.autocorrelation_time();
+        let worth = |gain: f64| promising(base, time, gain, threshold);
+        for gain in ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares)) {
+            proposals.push(proposal(data, base, None, &additions(&data.facts, &dictionary, gain)));
+        }
+        for (candidate, parameters, gain) in &dictionary.further {
+            let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
+            // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
+            if (best || *gain > weakest) && worth(*gain) {
+                proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
+            }
+        }
+    }
+    proposals
+}
+
+/// Puts a member's generalization in its place at each of its shapes, with half the member's size beyond it. The
+/// linearization cannot tell these: at the special case the shape means nothing.
+fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
+    let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
+    let mut proposals = Vec::new();
+    for (&special, part) in base.hypothesis.candidates.iter().zip(parts) {
+        let Some(size) = part.first() else { continue };
+        for &general in candidates.iter().filter(|general| general.generalizes() == Some(special)) {
+            for shape in shapes(general, &data.facts) {
+                let parameters = general.parameters(&data.facts);
+                let values = parameters.iter().zip(shape).enumerate();
+                let values = values.map(|(place, (parameter, shape))| match place {
+                    0 => *size,
+                    _ if parameter.strength => 0.5 * size,
+                    _ => shape,
+                });
+                proposals.push(proposal(data, base, Some(special), &[(general, values.collect())]));
+            }
+        }
+    }
+    proposals
+}
+
+/// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
+/// member too: begun here they often fit better than on their own.
+fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
+    let mut proposals = Vec::new();
+    let mut dropped = Vec::new();
+    for &member in &base.hypothesis.candidates {
+        let reduced = proposal(data, base, Some(member), &[]);
+        let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH) else {
+            continue;
+        };
+        let Ok(dictionary) = Dictionary::at(data, &bare, candidates) else { continue };
+        let confused = member.confused_with();
+        let ranked = singles(&dictionary);
+        let is_confused = |gain: &Gain| {
+            let entry = gain.entries.first().and_then(|index| dictionary.entries.get(*index));
+            entry.is_some_and(|entry| confused.contains(&entry.candidate))
+        };
+        let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
+        let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
+        for (_, gain) in chosen {
+            proposals.push(proposal(data, &bare, None, &additions(&data.facts, &dictionary, gain)));
+        }
+        dropped.push(bare);
+    }
+    (proposals, dropped)
+}
+
+fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
+    let set = |proposal: &Proposal| -> Vec<usize> {
+        proposal.hypothesis.candidates.iter().map(|c| c.rank()).collect()
+    };
+    // A set may come with several shapes to begin from, but only in one round.
+    let fresh: Vec<Proposal> =
+        proposals.into_iter().filter(|proposal| !tried.contains(&set(proposal))).collect();
+    tried.extend(fresh.iter().map(set));
+    for fit in fit_all(data, &fresh) {
+        pool.admit(data, fit);
+    }
+}
+
+/// Searches sets of candidates, beginning at the calibrated nominal simulator.
+///
+/// `threshold` is the increase of the score that a further effect has to bring for the search to go on.
+pub(crate) fn search(
+    data: &Data,
+    calibrated: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Pool {
+    let mut pool = Pool { fits: vec![calibrated.clone()], rejected: Vec::new() };
+    let mut tried = BTreeSet::new();
+    tried.insert(Vec::new());
+    let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return pool };
+    let mut proposals: Vec<Proposal> = Vec::new();
+    let ranked = singles(&dictionary);
+    let time = calibrated.autocorrelation_time();
+    let worth = |gain: f64| promising(calibrated, time, gain, threshold);
+    for gain in ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares)) {
+        proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
+    }
+    for (candidate, parameters, _) in dictionary.further.iter().filter(|further| worth(further.2)) {
+        proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
+    }
+    for gain in pairs(&dictionary).iter().take(breadth.pairs).filter(|gain| worth(gain.squares)) {
+        proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
+    }
+    settle(data, &mut pool, &mut tried, proposals);
+    let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
+    for _ in 0..2 * breadth.most_effects {
+        let time = pool.autocorrelation_time();
+        let before =
+            pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| crate::score::score(fit, time));
+        let bases: Vec<Fit> = pool
+            .ranked(time)
+            .into_iter()
+            .filter(|fit| !fit.hypothesis.candidates.is_empty())
+            .take(breadth.beam)
+            .filter(|fit| {
+                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+                expanded.insert(set)
+            })
+            .cloned()
+            .collect();
+        if bases.is_empty() {
+            break;
+        }
+        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
+            .par_iter()
+            .enumerate()
+            .map(|(place, base)| {
+                let mut own = around(data, base, candidates, breadth, threshold, place == 0);
+                let mut dropped = Vec::new();
+                if place == 0 {
+                    own.extend(generalized(data, base, candidates));
+                    let (proposals, without) = swaps(data, base, candidates, breadth);
+                    own.extend(proposals);
+                    dropped = without;
+                }
+                (own, dropped)
+            })
+            .collect();
+        let mut proposals = Vec::new();
+        for (own, dropped) in moves {
+            proposals.extend(own);
+            for fit in dropped {
+                pool.admit(data, fit);
+            }
+        }
+        settle(data, &mut pool, &mut tried, proposals);
+        let time = pool.autocorrelation_time();
+        let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
+        let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
+        if now - before < threshold
+            && pool.ranked(time).first().is_some_and(|fit| {
+                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
+                expanded.contains(&set)
+            })
+        {
+            break;
+        }
+    }
+    polish(data, &mut pool);
+    pool
+}
+
+/// Fits whose steps were spent before they converged, and that are among the closest to the data all the same, go on: a
+/// second body converges slowly and would be judged by where it had got to.
+fn polish(data: &Data, pool: &mut Pool) {
+    let smallest = pool.fits.iter().map(|fit| fit.squares).fold(f64::INFINITY, f64::min);
+    let mut near: Vec<Fit> =
+        pool.fits.iter().filter(|fit| !fit.converged && fit.squares < NEAR * smallest).cloned().collect();
+    near.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    near.truncate(POLISHED);
+    let polished: Vec<Option<Fit>> = near
+        .par_iter()
+        .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
+        .collect();
+    for fit in polished.into_iter().flatten() {
+        pool.admit(data, fit);
+    }
+}

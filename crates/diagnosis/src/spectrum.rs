@@ -1,0 +1,85 @@
+//! Lines in the spectrum of a residual.
+
+use crate::segments::Data;
+
+/// A line and its score.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Line {
+    /// Angular frequency in rad/s.
+    pub(crate) frequency: f64,
+    /// Squares of the residual that a sine and a cosine of this frequency take away.
+    pub(crate) gain: f64,
+}
+
+/// Frequencies looked at, at most.
+const MOST_FREQUENCIES: usize = 4000;
+
+/// Up to this multiple of the oscillator's own frequency: above it hardly anything moves the body.
+const HIGHEST: f64 = 12.0;
+
+/// Adds to each frequency of a grid what a sine and a cosine of it take away from values at even or uneven times.
+///
+/// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
+/// and a cosine.
+fn add(points: &[(f64, f64)], lowest: f64, step: f64, gains: &mut [f64]) {
+    let turned = |frequency: f64| points.iter().map(move |(time, _)| (frequency * time).sin_cos());
+    let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
+    let turns: Vec<(f64, f64)> = turned(step).collect();
+    let scale = 2.0 / points.len().max(1) as f64;
+    for gain in gains {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (((s, c), (ds, dc)), (_, value)) in phasors.iter_mut().zip(&turns).zip(points) {
+            sine += value * *s;
+            cosine += value * *c;
+            (*s, *c) = (*s * dc + *c * ds, *c * dc - *s * ds);
+        }
+        *gain += scale * (sine * sine + cosine * cosine);
+    }
+}
+
+/// The strongest lines of a residual that comes in segments. `coherent`: one phase for a record, as of a machine
+/// next door; otherwise each segment has its own, as of a second mode struck anew.
+///
+/// Peaks of the periodogram on a grid of half the resolution.
+pub(crate) fn lines(data: &Data, residuals: &[&[f64]], coherent: bool, most: usize) -> Vec<Line> {
+    let spans = data.segments.iter().map(|s| match s.times.as_slice() {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    });
+    let span = if coherent { data.facts.duration } else { spans.fold(0.0, f64::max) };
+    let highest = (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval);
+    let lowest = 1.5 * std::f64::consts::TAU / span;
+    let count = (((highest - lowest) * span / std::f64::consts::PI) as usize).clamp(1, MOST_FREQUENCIES);
+    let records = data.inputs.len();
+    let step = (highest - lowest) / count as f64;
+    let mut gains = vec![0.0; count];
+    if coherent {
+        for record in 0..records {
+            let own = data.segments.iter().zip(residuals).filter(|(segment, _)| segment.record == record);
+            let points: Vec<(f64, f64)> =
+                own.flat_map(|(segment, e)| segment.times.iter().copied().zip(e.iter().copied())).collect();
+            add(&points, lowest, step, &mut gains);
+        }
+    } else {
+        for (segment, residual) in data.segments.iter().zip(residuals) {
+            let points: Vec<(f64, f64)> =
+                segment.times.iter().copied().zip(residual.iter().copied()).collect();
+            add(&points, lowest, step, &mut gains);
+        }
+    }
+    let powers: Vec<Line> = gains
+        .into_iter()
+        .enumerate()
+        .map(|(at, gain)| Line { frequency: lowest + step * at as f64, gain })
+        .collect();
+    let at = |index: Option<usize>| index.and_then(|i| powers.get(i)).map_or(0.0, |line| line.gain);
+    let mut peaks: Vec<Line> = powers
+        .iter()
+        .enumerate()
+        .filter(|(i, line)| line.gain > at(i.checked_sub(1)) && line.gain >= at(Some(i + 1)))
+        .map(|(_, line)| *line)
+        .collect();
+    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    peaks.truncate(most);
+    peaks
+}

@@ -1,0 +1,105 @@
+//! Small statistics that several parts use.
+
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+
+/// Mean; 0 of nothing.
+pub(crate) fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len().max(1) as f64
+}
+
+/// The value below which a share of the values lies; 0 of nothing.
+pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    let at = share * sorted.len().saturating_sub(1) as f64;
+    let below = sorted.get(at.floor() as usize).copied().unwrap_or_default();
+    let above = sorted.get(at.ceil() as usize).copied().unwrap_or(below);
+    below + (above - below) * at.fract()
+}
+
+pub(crate) fn median(values: &[f64]) -> f64 {
+    quantile(values, 0.5)
+}
+
+/// The value that a chi-square variable with so many degrees of freedom exceeds with a probability.
+pub(crate) fn chi_squared_above(degrees: f64, probability: f64) -> f64 {
+    ChiSquared::new(degrees.max(1e-3)).map_or(f64::INFINITY, |d| d.inverse_cdf(1.0 - probability))
+}
+
+/// The value that a standard normal variable exceeds with a probability.
+pub(crate) fn normal_above(probability: f64) -> f64 {
+    Normal::new(0.0, 1.0).map_or(f64::INFINITY, |d| -d.inverse_cdf(probability))
+}
+
+/// Integrated autocorrelation time τ = 1 + 2·Σ ρₖ of a zero-mean series that comes in pieces, at least 1: N samples
+/// carry as much information as N/τ independent ones.
+///
+/// The sum runs over pairs ρ₂ₖ + ρ₂ₖ₊₁ for as long as they are positive.
+///
+/// # Reference
+/// Geyer, Statistical Science 7 (1992) 473, initial positive sequence.
+pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
+    let square: f64 = pieces.iter().flat_map(|piece| piece.iter()).map(|e| e * e).sum();
+    if square <= 0.0 {
+        return 1.0;
+    }
+    let longest = pieces.iter().map(|piece| piece.len()).max().unwrap_or(0);
+    let at = |lag: usize| -> f64 {
+        let products = pieces.iter().flat_map(|p| p.iter().zip(p.iter().skip(lag)));
+        products.map(|(a, b)| a * b).sum::<f64>() / square
+    };
+    let mut sum = -1.0;
+    for pair in 0..longest / 2 {
+        let two = at(2 * pair) + at(2 * pair + 1);
+        if two <= 0.0 {
+            break;
+        }
+        sum += 2.0 * two;
+    }
+    sum.max(1.0)
+}
+
+/// Draws without a generator's state in the type: mean of a list, and standard error of that mean.
+pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
+    let center = mean(values);
+    let count = values.len() as f64;
+    let variance = values.iter().map(|v| (v - center).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
+    (center, (variance / count.max(1.0)).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{autocorrelation_time, chi_squared_above, normal_above, quantile};
+    use rand_distr::{Distribution, StandardNormal};
+
+    #[test]
+    fn quantiles_interpolate() {
+        assert_eq!(quantile(&[3.0, 1.0, 2.0], 0.5), 2.0);
+        assert_eq!(quantile(&[0.0, 1.0], 0.25), 0.25);
+    }
+
+    #[test]
+    fn tails_are_the_tables() {
+        assert!((chi_squared_above(1.0, 0.05) - 3.841_458_820_694_124).abs() < 1e-6);
+        assert!((normal_above(0.025) - 1.959_963_984_540_054).abs() < 1e-6);
+    }
+
+    /// An AR(1) process has τ = (1 + r)/(1 − r).
+    #[test]
+    fn the_autocorrelation_time_of_a_known_process() {
+        let mut generator = seed::Seed::new(1).child("process").generator();
+        let (r, mut state): (f64, f64) = (0.8, 0.0);
+        let series: Vec<f64> = (0..200_000)
+            .map(|_| {
+                let step: f64 = StandardNormal.sample(&mut generator);
+                state = r * state + step;
+                state
+            })
+            .collect();
+        let pieces: Vec<&[f64]> = series.chunks(1000).collect();
+        let tau = autocorrelation_time(&pieces);
+        assert!((tau / 9.0 - 1.0).abs() < 0.1, "{tau}");
+        let white: Vec<f64> = (0..20_000).map(|_| StandardNormal.sample(&mut generator)).collect();
+        assert!((autocorrelation_time(&[&white]) - 1.0).abs() < 0.1);
+    }
+}

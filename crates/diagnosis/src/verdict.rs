@@ -1,0 +1,109 @@
+//! From scores to probabilities and a verdict.
+
+use crate::candidate::Candidate;
+use crate::fit::Fit;
+use crate::search::Pool;
+use crate::statistics::chi_squared_above;
+
+/// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered evidence at its
+/// word; a training bank may teach another value.
+pub(crate) const TEMPERATURE: f64 = 1.0;
+
+/// Prior odds of a set of so many effects, each size as a whole, against none.
+const PRIOR_ODDS: [f64; 6] = [1.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
+
+/// Share of the excess variance left by the best named effects, and explained by a free latent torque, at which
+/// `unknown` is as likely as not.
+pub(crate) const UNKNOWN_SHARE: f64 = 0.25;
+
+/// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
+const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
+
+/// A set with its evidence.
+#[derive(Debug, Clone)]
+pub(crate) struct Weighed<'a> {
+    pub(crate) fit: &'a Fit,
+    /// Tempered log evidence relative to the calibrated simulator.
+    pub(crate) evidence: f64,
+    pub(crate) probability: f64,
+}
+
+/// Log likelihood ratio of a fit over another on the same data, tempered.
+pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
+    let worth = fit.samples() as f64 / time;
+    0.5 * worth * (other.squares.max(f64::MIN_POSITIVE) / fit.squares.max(f64::MIN_POSITIVE)).ln()
+}
+
+/// Every set with its probability, best first; the calibrated simulator alone is the empty one.
+///
+/// A set of k effects has to pay the larger of the Bayesian information criterion's price of its parameters and k times half
+/// the gain that chance alone exceeds with the false-alarm probability: where the best of all candidates gains
+/// exactly that, a set with it is as likely as the calibrated simulator alone.
+pub(crate) fn weigh<'a>(
+    pool: &'a Pool,
+    calibrated: &Fit,
+    time: f64,
+    threshold: f64,
+    vocabulary: usize,
+) -> Vec<Weighed<'a>> {
+    let worth = calibrated.samples() as f64 / time;
+    let mut weighed: Vec<Weighed<'a>> = pool
+        .fits
+        .iter()
+        .map(|fit| {
+            let size = fit.hypothesis.candidates.len();
+            let extra = fit.point.starts.iter().map(|start| start.len().saturating_sub(2)).sum::<usize>();
+            let parameters = fit.globals().saturating_sub(calibrated.globals()) + extra;
+            let price = (0.5 * parameters as f64 * worth.max(2.0).ln()).max(0.5 * size as f64 * threshold);
+            // The odds of a size are shared by all sets of it, beyond what the threshold has paid for the choice.
+            let odds = PRIOR_ODDS.get(size).copied().unwrap_or(0.1);
+            let sets = if size > 1 { (vocabulary as f64).ln() } else { 0.0 };
+            let evidence = ratio(fit, calibrated, time) - price + odds.ln() - 0.5 * sets;
+            Weighed { fit, evidence, probability: 0.0 }
+        })
+        .collect();
+    weighed.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+    let best = weighed.first().map_or(0.0, |w| w.evidence);
+    let total: f64 = weighed.iter().map(|w| ((w.evidence - best) / TEMPERATURE).exp()).sum();
+    for w in &mut weighed {
+        w.probability = ((w.evidence - best) / TEMPERATURE).exp() / total;
+    }
+    weighed
+}
+
+/// Probability that an effect acts: that of all sets with it.
+pub(crate) fn marginal(weighed: &[Weighed<'_>], candidate: Candidate) -> f64 {
+    let with = weighed.iter().filter(|w| w.fit.hypothesis.candidates.contains(&candidate));
+    with.map(|w| w.probability).sum()
+}
+
+/// Probability that something without a name acts, from the share of the excess variance that a free latent torque explains
+/// beyond the named effects, and its standard errors on held-out segments.
+///
+/// With fewer than 2.33 standard errors (1 % by chance) there is nothing to name and the probability is 0.01; otherwise the
+/// odds are (share/¼)^2.885.
+pub(crate) fn unknown(share: f64, standard_errors: f64) -> f64 {
+    if !(standard_errors > 2.33 && share > 0.0) {
+        return 0.01;
+    }
+    let odds = (share / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
+    (odds / (1.0 + odds)).clamp(0.01, 0.99)
+}
+
+/// Whether fitting `parameters` coefficients improves a fit more than chance does with a given probability.
+pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize, chance: f64) -> bool {
+    2.0 * ratio(better, worse, time) > chi_squared_above(parameters as f64, chance)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unknown;
+
+    #[test]
+    fn unknown_follows_its_rule() {
+        assert!((unknown(0.25, 9.0) - 0.5).abs() < 1e-12);
+        let odds = |share: f64| unknown(share, 9.0) / (1.0 - unknown(share, 9.0));
+        assert!((odds(0.5) / odds(0.125) / 4.0_f64.exp() - 1.0).abs() < 1e-9);
+        assert_eq!(unknown(0.9, 1.0), 0.01);
+    }
+}

@@ -1,0 +1,211 @@
+//! What the later stages share: the fits, and what follows from comparing them.
+
+use crate::answer::{Detectability, Interval, Rivalry};
+use crate::budget::shapley;
+use crate::calibrate::Baseline;
+use crate::candidate::Candidate;
+use crate::diagnose::Settings;
+use crate::error::DiagnosisError;
+use crate::fit::{Effort, Fit, Moving, Point, fit};
+use crate::held_out::{HeldOut, interleaved, last_third};
+use crate::hypothesis::{Calibrated as Coefficient, Hypothesis};
+use crate::matrices::entry;
+use crate::refine::without;
+use crate::search::Pool;
+use crate::segments::Data;
+use crate::statistics::normal_above;
+use crate::verdict::{Weighed, ratio, significant};
+
+/// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's
+/// name and adds to the false alarms.
+pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
+const SHIFTED_BY_CHANCE: f64 = 0.001;
+/// What the later stages share.
+pub(crate) struct Work<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) base: &'a Baseline,
+    pub(crate) pool: &'a Pool,
+    pub(crate) thin: Thin<'a>,
+    pub(crate) time: f64,
+    pub(crate) settings: &'a Settings,
+}
+
+/// The same on every stride-th sample: enough for shares, and many times as fast.
+pub(crate) struct Thin<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) calibrated: &'a Fit,
+    pub(crate) pool: &'a Pool,
+}
+
+/// Held-out residuals, and the set that they and the evidence speak for.
+pub(crate) struct Held<'a> {
+    pub(crate) nominal: HeldOut,
+    pub(crate) recalibrated: HeldOut,
+    pub(crate) after: HeldOut,
+    /// Mean squares on the last third, recalibrated and repaired.
+    pub(crate) last_third: [f64; 2],
+    pub(crate) repaired: &'a Fit,
+}
+
+/// A shift of the rest angle and nothing else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shift {
+    /// Torque that shifts it.
+    pub(crate) torque: Interval,
+}
+
+impl<'a> Work<'a> {
+    /// Whether a shifted rest angle alone does what the whole calibration does: that is a constant torque.
+    pub(crate) fn shift(&self) -> Result<Option<Shift>, DiagnosisError> {
+        let base = &self.base.calibrated;
+        if !base.hypothesis.calibrated.contains(&Coefficient::RestAngle) {
+            return Ok(None);
+        }
+        let hypothesis = Hypothesis { calibrated: vec![Coefficient::RestAngle], ..base.hypothesis.clone() };
+        let point =
+            Point { globals: hypothesis.nominal_point(), starts: self.base.nominal.point.starts.clone() };
+        let shifted = fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL)?;
+        let time = base.autocorrelation_time();
+        let enough = !significant(base, &shifted, time, base.globals() - 1, OFF_BY_CHANCE);
+        let needed = significant(&shifted, &self.base.nominal, time, 1, SHIFTED_BY_CHANCE);
+        let nominal = &base.hypothesis.nominal;
+        let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
+        let angle = shifted.point.globals.first().copied().unwrap_or_default();
+        let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
+        let reach = normal_above(0.025) * error;
+        Ok((enough && needed).then(|| Shift {
+            torque: Interval {
+                value: torque(angle),
+                interval_95: [torque(angle - reach), torque(angle + reach)],
+            },
+        }))
+    }
+
+    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out segments better
+    /// than the calibrated simulator.
+    pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
+        let nominal = interleaved(self.data, &self.base.nominal, Moving::Starts)?;
+        let recalibrated = interleaved(self.data, &self.base.calibrated, Moving::All)?;
+        let third = last_third(self.data, &self.base.calibrated, Moving::All)?;
+        let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
+        for w in weighed.iter().take(4) {
+            if w.fit.hypothesis.candidates.is_empty() {
+                break;
+            }
+            // A set whose motion cannot be followed from parts of the data predicts nothing.
+            let Ok(after) = interleaved(self.data, w.fit, Moving::All) else { continue };
+            let Ok(later) = last_third(self.data, w.fit, Moving::All) else { continue };
+            if after.mean_square() < recalibrated.mean_square() {
+                let last_third = [third, later];
+                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit });
+            }
+        }
+        let repaired = calibrated
+            .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
+        let after = recalibrated.clone();
+        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired })
+    }
+
+    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its interval from a
+    /// bootstrap over segments.
+    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
+        let count = repaired.hypothesis.candidates.len();
+        let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
+            .map(|set| {
+                let members: Vec<Candidate> = repaired
+                    .hypothesis
+                    .candidates
+                    .iter()
+                    .enumerate()
+                    .filter(|(index, _)| set & (1 << index) != 0)
+                    .map(|(_, candidate)| *candidate)
+                    .collect();
+                let known = self.thin.pool.find(&members).cloned();
+                let fitted =
+                    known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
+                let calibrated = self.thin.calibrated;
+                let squares = fitted.unwrap_or_else(|| calibrated.clone()).segment_squares();
+                let before = calibrated.segment_squares();
+                before.iter().zip(squares).map(|(before, after)| before - after).collect()
+            })
+            .collect();
+        // A set explains at least what its subsets do; where its own fit ended in a hollow, the best of theirs stands.
+        for set in 0..worths.len() {
+            let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
+            let subsets = (0..count).map(|member| set & !(1 << member));
+            let best = subsets.max_by(|a, b| total(*a).total_cmp(&total(*b))).unwrap_or(set);
+            if total(best) > total(set) {
+                let better = worths.get(best).cloned();
+                if let (Some(slot), Some(better)) = (worths.get_mut(set), better) {
+                    *slot = better;
+                }
+            }
+        }
+        let by_segment = |pick: &[usize]| -> Vec<f64> {
+            shapley(count, &|set| {
+                let own = worths.get(set);
+                pick.iter().filter_map(|index| own.and_then(|own| own.get(*index))).sum()
+            })
+        };
+        let segments = self.data.segments.len();
+        let all: Vec<usize> = (0..segments).collect();
+        let values = by_segment(&all);
+        let relative = |values: &[f64]| -> Vec<f64> {
+            let total: f64 = values.iter().map(|v| v.max(0.0)).sum();
+            values.iter().map(|v| if total > 0.0 { v.max(0.0) / total } else { 0.0 }).collect()
+        };
+        let mut generator = self.settings.seed.child("shares").generator();
+        let draws: Vec<Vec<f64>> = (0..400)
+            .map(|_| {
+                let drawn: Vec<usize> = all
+                    .iter()
+                    .map(|_| rand::RngExt::random_range(&mut generator, 0..segments.max(1)))
+                    .collect();
+                relative(&by_segment(&drawn))
+            })
+            .collect();
+        values
+            .iter()
+            .zip(relative(&values))
+            .enumerate()
+            .map(|(index, (squares, value))| {
+                let own: Vec<f64> = draws.iter().filter_map(|draw| draw.get(index).copied()).collect();
+                let end = |share: f64| crate::statistics::quantile(&own, share);
+                (*squares, Interval { value, interval_95: [end(0.025), end(0.975)] })
+            })
+            .collect()
+    }
+
+    /// What could stand in the place of each effect, closest first; and the closest set.
+    pub(crate) fn rivals(&self, repaired: &Fit) -> (Vec<Rivalry>, Option<&'a Fit>) {
+        let own = &repaired.hypothesis.candidates;
+        let mut found: Vec<(Rivalry, &'a Fit)> = Vec::new();
+        for fit in &self.pool.fits {
+            let others = &fit.hypothesis.candidates;
+            let gone: Vec<&Candidate> = own.iter().filter(|c| !others.contains(c)).collect();
+            let come: Vec<&Candidate> = others.iter().filter(|c| !own.contains(c)).collect();
+            if let (&[gone], &[come]) = (gone.as_slice(), come.as_slice()) {
+                let distance = (2.0 * ratio(repaired, fit, self.time)).max(0.0).sqrt();
+                found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
+            }
+        }
+        found.sort_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
+        let closest = found.first().map(|(_, fit)| *fit);
+        (found.into_iter().map(|(rivalry, _)| rivalry).collect(), closest)
+    }
+
+    pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {
+        let candidates = &repaired.hypothesis.candidates;
+        candidates
+            .iter()
+            .enumerate()
+            .filter_map(|(left_out, candidate)| {
+                let rest: Vec<Candidate> = candidates.iter().copied().filter(|c| c != candidate).collect();
+                let known = self.pool.find(&rest).cloned();
+                let reduced = known.or_else(|| without(self.data, repaired, |index| index != left_out))?;
+                let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
+                Some(Detectability { effect: candidate.id(), d })
+            })
+            .collect()
+    }
+}

@@ -1,0 +1,193 @@
+//! The equation of motion, for people.
+
+use crate::Repaired;
+use dynamics::{Coordinate, Description};
+use std::fmt::Write;
+
+/// Symbols of the coordinate and its derivatives: as text, and in LaTeX.
+struct Letters {
+    text: [&'static str; 3],
+    latex: [&'static str; 3],
+}
+
+const LETTERS: Letters =
+    Letters { text: ["θ", "θ′", "θ″"], latex: [r"\theta", r"\dot\theta", r"\ddot\theta"] };
+
+/// The left-hand side's coefficients with their symbols, values and units.
+fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'static str)> {
+    use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
+    let nominal = repaired.system.nominal();
+    let all = [
+        ("I", "I", nominal.inertia(), repaired.unit(Inertia)),
+        ("c", "c", nominal.damping(), repaired.unit(Damping)),
+        ("k", "k", nominal.stiffness(), repaired.unit(Stiffness)),
+        ("θ_rest", r"\theta_\mathrm{rest}", nominal.rest_angle(), repaired.unit(Position)),
+    ];
+    let springless = nominal.stiffness() == 0.0;
+    let shown = |index: usize| if index == 0 { nominal.inertia() != 1.0 } else { index == 1 || !springless };
+    all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
+}
+
+/// The equation of motion as text; its numbers follow, one a line, and what acts on the measurement.
+#[must_use]
+pub fn equation_text(repaired: &Repaired) -> String {
+    let [x, v, a] = LETTERS.text;
+    let nominal = repaired.system.nominal();
+    let mut left = if nominal.inertia() == 1.0 { format!("{a} + c {v}") } else { format!("I {a} + c {v}") };
+    if nominal.stiffness() != 0.0 {
+        let _ = write!(left, " + k ({x} - θ_rest)");
+    }
+    // Effects say in words what a term alone does not: one a line, under its title.
+    let mut terms: Vec<String> = Vec::new();
+    if repaired.driven {
+        terms.push("input: g u(t)".to_owned());
+    }
+    terms.extend(repaired.system.effects().iter().map(|active| {
+        let description = active.effect().description();
+        format!("{}: {}", description.title, description.equation)
+    }));
+    let mut text = match terms.len() {
+        0 => format!("{left} = 0"),
+        1 => format!("{left} = what follows"),
+        _ => format!("{left} = the sum of what follows"),
+    };
+    for term in terms {
+        let _ = write!(text, "\n  {term}");
+    }
+    text.push_str("\n\nwhere");
+    for (symbol, _, value, unit) in coefficients(repaired) {
+        let _ = write!(text, "\n  {symbol} = {value:.6e} {unit}");
+    }
+    if repaired.driven {
+        let _ = write!(text, "\n  g = {:.6e}, torque per unit of the input u", nominal.input_gain());
+    }
+    for (description, symbol, value, unit) in parameters(repaired) {
+        let _ = write!(text, "\n  {symbol} = {value:.6e} {unit} ({})", description.title);
+    }
+    if nominal.coordinate() == Coordinate::Displacement {
+        text.push_str("\n\nθ is the displacement, I the mass.");
+    }
+    for active in &repaired.chain {
+        let description = active.effect().description();
+        let _ = write!(text, "\n\nOn the way to the file: {}: {}", description.title, description.equation);
+    }
+    text.push('\n');
+    text
+}
+
+/// The same as LaTeX: an aligned display, then the numbers as a list.
+#[must_use]
+pub fn equation_latex(repaired: &Repaired) -> String {
+    let [x, v, a] = LETTERS.latex;
+    let nominal = repaired.system.nominal();
+    let mut left = if nominal.inertia() == 1.0 { format!("{a}+c{v}") } else { format!("I{a}+c{v}") };
+    if nominal.stiffness() != 0.0 {
+        let _ = write!(left, r"+k({x}-\theta_\mathrm{{rest}})");
+    }
+    let mut right: Vec<String> = Vec::new();
+    if repaired.driven {
+        right.push("g\\,u(t)".to_owned());
+    }
+    right.extend(repaired.system.effects().iter().map(|a| a.effect().description().latex.to_owned()));
+    let right = if right.is_empty() { "0".to_owned() } else { right.join("\\\\\n  &\\quad ") };
+    let mut text =
+        format!("\\begin{{align*}}\n  {left} ={{}}& {right}\n\\end{{align*}}\n\\begin{{itemize}}\n");
+    for (_, symbol, value, unit) in coefficients(repaired) {
+        let _ = writeln!(text, "  \\item ${symbol} = {}$ {}", latex_number(value), latex_unit(unit));
+    }
+    if repaired.driven {
+        let _ = writeln!(text, "  \\item $g = {}$", latex_number(nominal.input_gain()));
+    }
+    for (description, symbol, value, unit) in parameters(repaired) {
+        let _ = writeln!(
+            text,
+            "  \\item ${} = {}$ {} ({})",
+            latex_symbol(symbol),
+            latex_number(value),
+            latex_unit(unit),
+            description.title
+        );
+    }
+    for active in &repaired.chain {
+        let description = active.effect().description();
+        let _ =
+            writeln!(text, "  \\item on the way to the file: {}, ${}$", description.title, description.latex);
+    }
+    text.push_str("\\end{itemize}\n");
+    text
+}
+
+/// Every parameter of every effect.
+fn parameters(repaired: &Repaired) -> Vec<(&'static Description, &'static str, f64, &'static str)> {
+    let all = repaired.system.effects().iter().chain(&repaired.chain);
+    all.flat_map(|active| {
+        let description = active.effect().description();
+        let own = description.parameters.iter().zip(active.values());
+        own.map(move |(parameter, value)| {
+            (description, parameter.symbol, *value, repaired.unit(parameter.quantity))
+        })
+    })
+    .collect()
+}
+
+fn latex_number(value: f64) -> String {
+    let text = format!("{value:.5e}");
+    match text.split_once('e') {
+        Some((mantissa, "0")) => mantissa.to_owned(),
+        Some((mantissa, exponent)) => format!("{mantissa}\\times10^{{{exponent}}}"),
+        None => text,
+    }
+}
+
+/// `N m s/rad^2` as `N\,m\,s/rad$^2$`.
+fn latex_unit(unit: &str) -> String {
+    let mut text = String::new();
+    let mut letters = unit.chars().peekable();
+    while let Some(letter) = letters.next() {
+        match letter {
+            ' ' => text.push_str("\\,"),
+            '^' => {
+                let power = letters.next().unwrap_or_default();
+                let _ = write!(text, "$^{power}$");
+            }
+            other => text.push(other),
+        }
+    }
+    text
+}
+
+/// A symbol of the registry as LaTeX: Greek letters by name, what follows `_` as an index.
+fn latex_symbol(symbol: &str) -> String {
+    let mut text = String::new();
+    for letter in symbol.chars() {
+        match greek(letter) {
+            Some(name) => {
+                let _ = write!(text, "\\{name} ");
+            }
+            None => text.push(letter),
+        }
+    }
+    match text.split_once('_') {
+        Some((base, index)) => format!("{}_{{{}}}", base.trim_end(), index.trim_end()),
+        None => text.trim_end().to_owned(),
+    }
+}
+
+fn greek(letter: char) -> Option<&'static str> {
+    Some(match letter {
+        'α' => "alpha",
+        'β' => "beta",
+        'δ' => "delta",
+        'ε' => "varepsilon",
+        'θ' => "theta",
+        'σ' => "sigma",
+        'τ' => "tau",
+        'φ' => "varphi",
+        'χ' => "chi",
+        'ψ' => "psi",
+        'ω' => "omega",
+        'Ω' => "Omega",
+        'Δ' => "Delta",
+        _ => return None,
+    })
+}

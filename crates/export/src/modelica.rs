@@ -1,0 +1,70 @@
+//! A Modelica model.
+
+use crate::Repaired;
+use crate::configuration::one_line;
+use crate::terms::Terms;
+use std::fmt::Write;
+
+/// A Modelica model that starts where the first record does.
+#[must_use]
+pub fn modelica(repaired: &Repaired) -> String {
+    let terms = Terms::of(repaired);
+    let mut text = String::from("model Repaired \"The repaired simulator\"\n");
+    text.push_str("  // Dry friction's sign is blurred over small_speed.\n");
+    for sentence in &terms.left_out {
+        let _ = writeln!(text, "  // Not part of it: {}", one_line(sentence));
+    }
+    for constant in &terms.constants {
+        let _ = writeln!(
+            text,
+            "  parameter Real {} = {:?}; // {}",
+            constant.name,
+            constant.value,
+            one_line(&constant.comment)
+        );
+    }
+    let _ = writeln!(text, "  parameter Real small_speed = {:?};", terms.small_speed);
+    if let Some(delay) = terms.delay {
+        let _ = writeln!(text, "  parameter Real input_delay = {delay:?}; // s");
+    }
+    if repaired.driven {
+        text.push_str("  input Real u;\n");
+    }
+    let start = repaired.start;
+    let _ = writeln!(text, "  parameter Real start_position = {:?};", start.position);
+    let _ = writeln!(text, "  parameter Real start_velocity = {:?};", start.velocity);
+    text.push_str("  Real position(start = start_position, fixed = true);\n");
+    text.push_str("  Real velocity(start = start_velocity, fixed = true);\n");
+    for state in &terms.states {
+        let start = state.start.replace("position", "start_position").replace("velocity", "start_velocity");
+        let _ = writeln!(text, "  Real {}(start = {start}, fixed = true);", state.name);
+    }
+    text.push_str("  Real direction;\n  Real drive;\nequation\n  der(position) = velocity;\n");
+    text.push_str("  direction = tanh(velocity / small_speed);\n");
+    let _ = writeln!(
+        text,
+        "  drive = {};",
+        match (repaired.driven, terms.delay) {
+            (false, _) => "0",
+            (true, None) => "input_gain * u",
+            (true, Some(_)) => "input_gain * delay(u, input_delay)",
+        }
+    );
+    text.push_str(
+        "  inertia * der(velocity) = drive - damping * velocity - stiffness * (position - rest_angle)",
+    );
+    for term in &terms.torques {
+        // Modelica has no sign after a binary operator.
+        let _ = write!(text, "\n    + ({}) /* {} */", term.expression, term.title);
+    }
+    text.push_str(";\n");
+    for state in &terms.states {
+        let _ = writeln!(text, "  der({}) = {};", state.name, state.rate);
+    }
+    let _ = writeln!(
+        text,
+        "  annotation(experiment(StopTime = {:?}, Tolerance = 1e-8));\nend Repaired;",
+        repaired.seconds
+    );
+    text
+}

@@ -1,0 +1,192 @@
+//! The effects of a system as named constants, states and expressions, for languages that read alike.
+
+use crate::Repaired;
+use dynamics::{Active, Description, Effect, Joint};
+
+/// A constant with the comment that belongs to it.
+pub(crate) struct Constant {
+    pub(crate) name: String,
+    pub(crate) value: f64,
+    pub(crate) comment: String,
+}
+
+/// A hidden state.
+pub(crate) struct State {
+    pub(crate) name: String,
+    pub(crate) rate: String,
+    pub(crate) start: String,
+}
+
+/// A torque with the effect that it is of.
+pub(crate) struct Term {
+    pub(crate) title: &'static str,
+    pub(crate) expression: String,
+}
+
+/// A system taken apart.
+pub(crate) struct Terms {
+    pub(crate) constants: Vec<Constant>,
+    pub(crate) states: Vec<State>,
+    pub(crate) torques: Vec<Term>,
+    /// Delay of the input in seconds.
+    pub(crate) delay: Option<f64>,
+    /// What these terms leave out, each in a sentence.
+    pub(crate) left_out: Vec<String>,
+    /// Speed below which the direction of motion is blurred.
+    pub(crate) small_speed: f64,
+}
+
+impl Terms {
+    pub(crate) fn of(repaired: &Repaired) -> Self {
+        use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
+        let nominal = repaired.system.nominal();
+        let constant = |name: &str, value, comment: &str| Constant {
+            name: name.to_owned(),
+            value,
+            comment: comment.to_owned(),
+        };
+        let mut terms = Self {
+            constants: vec![
+                constant("inertia", nominal.inertia(), repaired.unit(Inertia)),
+                constant("damping", nominal.damping(), repaired.unit(Damping)),
+                constant("stiffness", nominal.stiffness(), repaired.unit(Stiffness)),
+                constant("rest_angle", nominal.rest_angle(), repaired.unit(Position)),
+            ],
+            states: Vec::new(),
+            torques: Vec::new(),
+            delay: None,
+            left_out: left_out(repaired),
+            small_speed: small_speed(repaired),
+        };
+        if repaired.driven {
+            let gain = constant("input_gain", nominal.input_gain(), "torque or force per unit of the input");
+            terms.constants.push(gain);
+        }
+        for active in repaired.system.effects() {
+            if let Effect::System(effect) = active.effect() {
+                terms.add(repaired, active, effect);
+            }
+        }
+        terms
+    }
+
+    fn add(&mut self, repaired: &Repaired, active: &Active, effect: dynamics::SystemEffect) {
+        let (description, export) = (effect.description(), effect.export());
+        for (parameter, value) in description.parameters.iter().zip(active.values()) {
+            self.constants.push(Constant {
+                name: own(description, parameter.name),
+                value: *value,
+                comment: format!("{}, {}", repaired.unit(parameter.quantity), parameter.meaning),
+            });
+        }
+        for state in export.states {
+            self.states.push(State {
+                name: own(description, state.name),
+                rate: filled(state.rate, description),
+                start: state.start.to_owned(),
+            });
+        }
+        if let Some(expression) = export.torque {
+            self.torques.push(Term { title: description.title, expression: filled(expression, description) });
+        } else {
+            let mut values = [0.0; dynamics::MOST_PARAMETERS];
+            for (slot, value) in values.iter_mut().zip(active.values()) {
+                *slot = *value;
+            }
+            match effect.input_delay(&values) {
+                Some(delay) => self.delay = Some(delay),
+                None => self.left_out.push(format!("{}: {}", description.title, description.equation)),
+            }
+        }
+    }
+}
+
+/// The name of an effect's own quantity.
+fn own(description: &Description, name: &str) -> String {
+    format!("{}_{name}", description.id)
+}
+
+/// An expression with the braces filled.
+fn filled(expression: &str, description: &Description) -> String {
+    expression.replace('{', &format!("{}_", description.id)).replace('}', "")
+}
+
+/// What acts between the motion and the file, and what could not be part of the repaired simulator.
+pub(crate) fn left_out(repaired: &Repaired) -> Vec<String> {
+    let measured = repaired.chain.iter().map(|active| {
+        let description = active.effect().description();
+        let values: Vec<String> = description
+            .parameters
+            .iter()
+            .zip(active.values())
+            .map(|(parameter, value)| {
+                format!("{} = {value:?} {}", parameter.symbol, repaired.unit(parameter.quantity))
+            })
+            .collect();
+        format!(
+            "{} acts on the measurement, not on the motion: {} ({})",
+            description.title,
+            description.equation,
+            values.join(", ")
+        )
+    });
+    measured.chain(repaired.left_out.iter().cloned()).collect()
+}
+
+/// A hundred-thousandth of the largest speed of the start: so slow a creep moves nothing that is seen.
+fn small_speed(repaired: &Repaired) -> f64 {
+    let nominal = repaired.system.nominal();
+    let swing = (repaired.start.position - nominal.rest_angle()).abs() * nominal.angular_frequency();
+    let speed = swing.max(repaired.start.velocity.abs());
+    if speed > 0.0 { 1e-5 * speed } else { 1e-5 }
+}
+
+/// What a joint of a robot's description can hold, and in sentences what it cannot.
+pub(crate) struct JointTerms {
+    pub(crate) friction: Option<f64>,
+    pub(crate) rest: f64,
+    /// Weight times lever arm, and the angle from hanging straight down.
+    pub(crate) weight: Option<(f64, f64)>,
+    pub(crate) left_out: Vec<String>,
+}
+
+impl JointTerms {
+    pub(crate) fn of(repaired: &Repaired) -> Self {
+        let nominal = repaired.system.nominal();
+        let mut terms =
+            Self { friction: None, rest: nominal.rest_angle(), weight: None, left_out: left_out(repaired) };
+        for active in repaired.system.effects() {
+            let Effect::System(effect) = active.effect() else { continue };
+            let value = |name: &str| active.value(name).unwrap_or_default();
+            match effect.export().joint {
+                Joint::Friction(torque) => terms.friction = Some(value(torque)),
+                Joint::SpringShift(torque) if nominal.stiffness() > 0.0 => {
+                    terms.rest += value(torque) / nominal.stiffness();
+                }
+                Joint::Weight { torque, angle }
+                    if nominal.coordinate() == dynamics::Coordinate::Angle && value(torque) > 0.0 =>
+                {
+                    terms.weight = Some((value(torque), value(angle)));
+                }
+                _ => {
+                    let description = active.effect().description();
+                    let values: Vec<String> = description
+                        .parameters
+                        .iter()
+                        .zip(active.values())
+                        .map(|(parameter, value)| {
+                            format!("{} = {value:?} {}", parameter.symbol, repaired.unit(parameter.quantity))
+                        })
+                        .collect();
+                    terms.left_out.push(format!(
+                        "{} has no place in a joint: {} ({})",
+                        description.title,
+                        description.equation,
+                        values.join(", ")
+                    ));
+                }
+            }
+        }
+        terms
+    }
+}

@@ -1,0 +1,98 @@
+//! Of the texts for people.
+
+use crate::{Repaired, configuration, equation_latex, equation_text, files, python};
+use dynamics::chain::Observed;
+use dynamics::{Active, Coefficients, Coordinate, Nominal, Start, System};
+
+fn repaired(nominal: Nominal, effects: &[(&str, &[f64])]) -> Repaired {
+    let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+    Repaired {
+        system: System::new(nominal, active).unwrap(),
+        units: nominal.units(),
+        chain: Vec::new(),
+        left_out: Vec::new(),
+        driven: false,
+        start: Start::release(0.5),
+        observed: Observed::Position,
+        noise: 1e-3,
+        rate_hz: 260.0,
+        seconds: 25.0,
+    }
+}
+
+fn pendulum() -> Nominal {
+    Nominal::new(5e-4, 1.9e-4, 0.238, 0.02).unwrap()
+}
+
+#[test]
+fn an_equation_lists_its_terms_and_every_number_with_its_unit() {
+    let text =
+        equation_text(&repaired(pendulum(), &[("coulomb_friction", &[7e-5]), ("gravity", &[0.1, 1.5])]));
+    for line in [
+        "I θ″ + c θ′ + k (θ - θ_rest) = the sum of what follows",
+        "  Coulomb friction: -τ_c sign(θ′), and at rest whatever up to τ_c holds it",
+        "  Gravity: -m g l sin(θ + φ)",
+        "  I = 5.000000e-4 kg m^2",
+        "  τ_c = 7.000000e-5 N m (Coulomb friction)",
+        "  φ = 1.500000e0 rad (Gravity)",
+    ] {
+        assert!(text.lines().any(|found| found == line), "no `{line}` in\n{text}");
+    }
+    assert!(equation_text(&repaired(pendulum(), &[])).starts_with("I θ″ + c θ′ + k (θ - θ_rest) = 0\n"));
+}
+
+#[test]
+fn a_drive_without_a_spring_has_no_spring_in_its_equation() {
+    let nominal = Nominal::from_coefficients(Coefficients {
+        inertia: 95.0,
+        damping: 203.0,
+        stiffness: 0.0,
+        rest_angle: 0.0,
+        input_gain: 35.0,
+    })
+    .unwrap()
+    .with_coordinate(Coordinate::Displacement);
+    let drive = Repaired { driven: true, ..repaired(nominal, &[]) };
+    let text = equation_text(&drive);
+    assert!(text.starts_with("I θ″ + c θ′ = what follows\n  input: g u(t)\n"), "{text}");
+    assert!(text.contains("I = 9.500000e1 kg\n") && text.contains("θ is the displacement"), "{text}");
+    assert!(configuration(&drive).contains("coordinate = \"displacement\""));
+    assert!(python(&drive).contains("drive = input_gain * u(time)"));
+}
+
+#[test]
+fn what_is_per_inertia_stays_so_when_calibration_moves_the_inertia() {
+    let given = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
+    let moved = Nominal::new(1.002, 0.3, 484.0, 0.0).unwrap();
+    let repaired = Repaired { units: given.units(), ..repaired(moved, &[("coulomb_friction", &[2.0])]) };
+    assert!(equation_text(&repaired).contains("τ_c = 2.000000e0 rad/s^2"));
+    assert!(configuration(&repaired).contains("# rad/s^2"));
+}
+
+#[test]
+fn latex_has_symbols_numbers_and_units() {
+    let text = equation_latex(&repaired(pendulum(), &[("coulomb_friction", &[7e-5])]));
+    for part in [
+        r"I\ddot\theta+c\dot\theta+k(\theta-\theta_\mathrm{rest}) ={}& -\tau_c\,\operatorname{sign}\dot\theta",
+        r"\item $\tau_{c} = 7.00000\times10^{-5}$ N\,m (Coulomb friction)",
+        r"\item $I = 5.00000\times10^{-4}$ kg\,m$^2$",
+    ] {
+        assert!(text.contains(part), "no `{part}` in\n{text}");
+    }
+    assert_eq!(text.matches('{').count(), text.matches('}').count());
+}
+
+#[test]
+fn nothing_that_was_left_out_breaks_a_comment_or_a_string() {
+    let mut repaired = repaired(pendulum(), &[]);
+    repaired.left_out = vec!["one \"quoted\"\nand */ --> broken".to_owned()];
+    for (name, text) in files(&repaired) {
+        if name.starts_with("equation") {
+            continue;
+        }
+        assert!(text.contains("broken"), "{name}");
+        let line = text.lines().find(|line| line.contains("broken")).unwrap().trim_start();
+        let commented = ["#", "//", "<!--"].iter().any(|start| line.starts_with(start));
+        assert!(commented || (name.ends_with(".py") && !line.contains('"')), "{name}: {line}");
+    }
+}

@@ -1,0 +1,60 @@
+//! What the plots of a diagnosis share.
+
+use crate::figures::Figure;
+use crate::plot::{Drawing, Hue, Mark, Series};
+
+/// A drawing with what stands around it.
+pub(super) fn framed(
+    id: &'static str,
+    title: String,
+    explanation: String,
+    drawing: Drawing,
+    (csv, rows): (String, String),
+) -> Figure {
+    let mut notes = Vec::new();
+    if drawing.left_out > 0 {
+        notes.push(format!("Values that are not finite are left out: {}.", drawing.left_out));
+    }
+    if drawing.thinned {
+        notes.push(
+            "Drawn with fewer points than there are; of every stretch the lowest and the highest are kept."
+                .to_owned(),
+        );
+    }
+    Figure {
+        id: id.into(),
+        title: title.into(),
+        explanation,
+        notes,
+        legend: drawing.legend,
+        wide: drawing.wide,
+        narrow: drawing.narrow,
+        csv,
+        rows,
+    }
+}
+
+/// The simulator that a series is of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Simulator {
+    Given,
+    Recalibrated,
+    Repaired,
+}
+
+impl Simulator {
+    /// Its series; each has one color on the whole page.
+    pub(super) fn series(self, mark: Mark, points: Vec<(f64, f64)>) -> Series {
+        let (label, hue) = match self {
+            Self::Given => ("simulator as given", Hue::Third),
+            Self::Recalibrated => ("recalibrated", Hue::Oracle),
+            Self::Repaired => ("repaired", Hue::Estimate),
+        };
+        Series { label: label.to_owned(), hue, mark, points }
+    }
+}
+
+/// What was recorded.
+pub(super) fn recorded(mark: Mark, points: Vec<(f64, f64)>) -> Series {
+    Series { label: "recorded".to_owned(), hue: Hue::Data, mark, points }
+}

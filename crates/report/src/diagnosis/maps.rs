@@ -1,0 +1,160 @@
+//! Where the gap lies: over time, amplitude, the phase plane and frequency.
+
+use runs::result::{DiagnosisResult, MapCell};
+
+use super::figures::{Simulator, framed};
+use crate::figures::{Figure, csv, number};
+use crate::plot::{Axis, HeatCell, HeatMap, Hue, Mark, Plot, Series};
+
+/// Cells of the spectrum that are shown beyond the last significant one.
+const BEYOND: usize = 6;
+
+pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
+    let [position, velocity, _] = &result.units;
+    let place = &result.place;
+    [
+        along(
+            result,
+            "gap-over-time",
+            "The gap over time",
+            Axis::linear("time (s)"),
+            Scale::Linear,
+            &place.time,
+            "A gap that fades with the swing depends on amplitude; one that stays or grows depends on time.",
+        ),
+        along(
+            result,
+            "gap-over-amplitude",
+            "The gap over amplitude",
+            Axis::linear(format!("amplitude of the swing ({position})")),
+            Scale::Linear,
+            &place.amplitude,
+            "Stiffening, gravity and drag grow with amplitude; dry friction and play matter most where the swing is \
+             small.",
+        ),
+        phase(result, position, velocity),
+        along(
+            result,
+            "gap-over-frequency",
+            "The gap over frequency",
+            Axis::linear("angular frequency (rad/s)"),
+            Scale::Log,
+            spectrum(&place.frequency),
+            "A peak at the swing’s own frequency is a wrong phase or loss, peaks at its multiples are nonlinear, a \
+             line elsewhere is something that shakes or a second mode.",
+        ),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+enum Scale {
+    Linear,
+    Log,
+}
+
+/// The part of a spectrum with something to see: beyond the last significant cell it is noise up to half the sampling
+/// rate.
+fn spectrum(cells: &[MapCell]) -> &[MapCell] {
+    let last = cells.iter().rposition(|cell| cell.significant).unwrap_or(0);
+    cells.get(..(last + 1 + BEYOND).min(cells.len())).unwrap_or(cells)
+}
+
+fn along(
+    result: &DiagnosisResult,
+    id: &'static str,
+    title: &str,
+    x: Axis,
+    scale: Scale,
+    cells: &[MapCell],
+    reading: &str,
+) -> Option<Figure> {
+    let label = format!("RMS of what is left over ({})", result.gap.unit);
+    let steps = |value: fn(&MapCell) -> f64| -> Vec<(f64, f64)> {
+        let ends = |cell: &MapCell| cell.bounds.first().copied().unwrap_or([f64::NAN; 2]);
+        cells.iter().flat_map(|cell| ends(cell).map(|end| (end, value(cell)))).collect()
+    };
+    let significant = cells.iter().filter(|cell| cell.significant);
+    let marked = significant.filter_map(|cell| {
+        let [from, to] = cell.bounds.first().copied()?;
+        Some((0.5 * (from + to), cell.value))
+    });
+    let plot = Plot {
+        x,
+        y: match scale {
+            Scale::Linear => Axis::linear(label),
+            Scale::Log => Axis::log(label),
+        },
+        series: vec![
+            Series {
+                label: "significance band (5 % of chance in any cell)".to_owned(),
+                hue: Hue::Data,
+                mark: Mark::DottedLine,
+                points: steps(|cell| cell.band),
+            },
+            Simulator::Recalibrated.series(Mark::Line, steps(|cell| cell.value)),
+            Simulator::Repaired.series(Mark::Line, steps(|cell| cell.repaired)),
+            Series {
+                label: "significant".to_owned(),
+                hue: Hue::Oracle,
+                mark: Mark::Dots,
+                points: marked.collect(),
+            },
+        ],
+        shaded: vec![],
+    };
+    let drawing = plot.draw(&format!("{title}, with its significance band."))?;
+    let count = cells.iter().filter(|cell| cell.significant).count();
+    let explanation = format!(
+        "{reading} Above the dotted band the recalibrated simulator’s error is more than noise: so it is in {count} \
+         of {} cells.",
+        cells.len()
+    );
+    Some(framed(id, title.to_owned(), explanation, drawing, table(cells)))
+}
+
+fn phase(result: &DiagnosisResult, position: &str, velocity: &str) -> Option<Figure> {
+    let cells = &result.place.phase;
+    let map = HeatMap {
+        x: Axis::linear(format!("position ({position})")),
+        y: Axis::linear(format!("velocity ({velocity})")),
+        cells: cells
+            .iter()
+            .filter_map(|cell| match cell.bounds.as_slice() {
+                [x, y] => Some(HeatCell { x: *x, y: *y, value: cell.value, outlined: cell.significant }),
+                _ => None,
+            })
+            .collect(),
+        unit: result.gap.unit.clone(),
+        outline: "significant".to_owned(),
+    };
+    let drawing = map.draw("The gap over position and velocity.")?;
+    let explanation = "RMS error of the recalibrated simulator by where the motion is: the deeper the color, the \
+                       larger. Left and right are the turning points, top and bottom the fastest passages. Outlined \
+                       cells lie above what noise alone reaches in any cell with 5 % probability."
+        .to_owned();
+    Some(framed(
+        "gap-in-the-phase-plane",
+        "The gap in the phase plane".to_owned(),
+        explanation,
+        drawing,
+        table(cells),
+    ))
+}
+
+fn table(cells: &[MapCell]) -> (String, String) {
+    let header = ["bounds", "recalibrated", "repaired", "band", "significant", "samples"];
+    csv(&header, cells, |cell: &MapCell| {
+        let bounds: Vec<String> =
+            cell.bounds.iter().map(|[from, to]| format!("{}..{}", number(*from), number(*to))).collect();
+        vec![
+            bounds.join(" "),
+            number(cell.value),
+            number(cell.repaired),
+            number(cell.band),
+            cell.significant.to_string(),
+            cell.samples.to_string(),
+        ]
+    })
+}

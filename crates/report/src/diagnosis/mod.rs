@@ -1,0 +1,138 @@
+//! The page on a diagnosis.
+
+mod budget;
+mod figures;
+mod maps;
+mod portrait;
+mod record;
+mod tables;
+#[cfg(test)]
+mod tests;
+
+use askama::Template;
+use runs::result::DiagnosisResult;
+
+use crate::figures::Figure;
+use crate::frame::Frame;
+use crate::parse::Diagnosis;
+use crate::plot::Hue;
+use crate::tables::Fact;
+use crate::verdict::{self, Origin, Tone, Verdict, in_a_sentence};
+use crate::{ReportError, RunTexts, format};
+use budget::Share;
+use tables::{CoefficientView, EffectView, GapView, RecordView};
+
+#[derive(Template)]
+#[template(path = "diagnosis.html")]
+struct DiagnosisPage<'a> {
+    frame: Frame<'a>,
+    gap: Vec<GapView>,
+    gap_notes: Vec<String>,
+    shares: Vec<Share>,
+    effects: Vec<EffectView>,
+    apart: Vec<String>,
+    experiment: &'a str,
+    experiments: Vec<String>,
+    record_figures: Vec<Figure>,
+    place_figures: Vec<Figure>,
+    portrait_figures: Vec<Figure>,
+    no_backbone: bool,
+    coefficients: Vec<CoefficientView>,
+    chain: Vec<Fact>,
+    findings: Vec<String>,
+    records: Vec<RecordView<'a>>,
+    equation: &'a str,
+    latex: &'a str,
+    stages: String,
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<String, ReportError> {
+    let result = &diagnosis.result;
+    let page = DiagnosisPage {
+        frame: Frame {
+            hues: &Hue::ALL,
+            name: texts.name,
+            kicker: "where a simulator and records part, and what closes the gap",
+            verdict: headline(result),
+            origin: origin(result),
+            warnings: warnings(result),
+            pipelines: Vec::new(),
+            data: Vec::new(),
+            findings: &[],
+            files: [
+                ("Repaired simulator (repaired.toml)", texts.config),
+                ("Environment (environment.json)", texts.environment),
+                ("Every number, unrounded (diagnosis.json)", texts.result),
+            ],
+        },
+        gap: tables::gap(&result.gap),
+        gap_notes: tables::gap_notes(result),
+        shares: budget::shares(&result.place.budget),
+        effects: tables::effects(result),
+        apart: tables::apart(result),
+        experiment: &result.next_experiment.text,
+        experiments: tables::experiments(result),
+        record_figures: record::figures(result, &diagnosis.series),
+        place_figures: maps::figures(result),
+        portrait_figures: portrait::figures(result),
+        no_backbone: result.backbone.measured.is_empty(),
+        coefficients: tables::coefficients(result),
+        chain: tables::chain(result),
+        findings: tables::findings(result),
+        records: tables::records(result),
+        equation: &result.equation.text,
+        latex: &result.equation.latex,
+        stages: tables::stages(result),
+    };
+    Ok(page.render()?)
+}
+
+fn headline(result: &DiagnosisResult) -> Verdict {
+    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    let [ratio, _] = result.gap.ratio_to_floor_interval_95;
+    let explained = if ratio.powi(2) > 2.0 { Tone::Caution } else { Tone::Good };
+    let (tone, label) = match result.verdict.status.as_str() {
+        "none" => (explained, "Nothing is missing"),
+        "calibration" => (explained, "Only calibration"),
+        "effect" => (explained, "Missing effect"),
+        "unknown" => (Tone::Caution, "Unknown: a gap without a name"),
+        _ => (Tone::Caution, "Verdict not known to this report"),
+    };
+    let probability = format::quantity(&format::fixed(100.0 * result.verdict.confidence, 1), "%");
+    let sentence = format!("{} Probability of this verdict: {probability}.", result.verdict.summary);
+    Verdict { tone, label, sentence }
+}
+
+fn origin(result: &DiagnosisResult) -> Origin {
+    let mut origins: Vec<&str> = result.records.iter().map(|record| record.origin.as_str()).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    match origins[..] {
+        [one] => verdict::origin(one),
+        _ => verdict::origin("unstated"),
+    }
+}
+
+fn warnings(result: &DiagnosisResult) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for class in &result.verdict.equivalent {
+        let titles: Vec<String> = class.iter().map(|id| title(result, id)).collect();
+        warnings.push(format!(
+            "These data cannot tell {} apart: whichever is named, the others would do as well.",
+            titles.join(" and ")
+        ));
+    }
+    if result.samples_used < 0.9999 {
+        warnings.push(format!(
+            "The records are long: {} of their samples were used, whole stretches evenly spaced.",
+            format::quantity(&format::fixed(100.0 * result.samples_used, 1), "%")
+        ));
+    }
+    warnings
+}
+
+/// The name of an id in words, inside a sentence.
+fn title(result: &DiagnosisResult, id: &str) -> String {
+    let known = result.effects.iter().find(|row| row.id == id);
+    known.map_or_else(|| id.replace('_', " "), |row| in_a_sentence(&row.title))
+}

@@ -1,0 +1,179 @@
+//! The record against the simulators, and what each leaves over.
+
+use runs::result::{DiagnosisResult, SeriesRow};
+
+use super::figures::{Simulator, framed, recorded};
+use crate::figures::{Figure, csv, number};
+use crate::format;
+use crate::plot::{Axis, Hue, Mark, Plot, Series};
+
+/// Samples of the worst stretch that are shown: a few periods of an ordinary record.
+const MOST_SHOWN: usize = 500;
+/// Records drawn in one plot.
+const MOST_RECORDS: usize = 4;
+
+/// The stretch in which the recalibrated simulator is farthest off.
+struct Worst<'a> {
+    record: usize,
+    rows: &'a [SeriesRow],
+}
+
+impl Worst<'_> {
+    fn span(&self) -> (f64, f64) {
+        let time = |row: Option<&SeriesRow>| row.map_or(0.0, |row| row.time_s);
+        (time(self.rows.first()), time(self.rows.last()))
+    }
+}
+
+pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figure> {
+    let Some(worst) = worst(rows) else { return Vec::new() };
+    [overview(result, rows, &worst), zoom(result, &worst), residuals(result, rows, &worst)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
+fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
+    let off = |row: &SeriesRow| (row.observed - row.recalibrated).powi(2);
+    let segments = rows.chunk_by(|one, next| one.segment == next.segment);
+    let mean = |rows: &[SeriesRow]| rows.iter().map(off).sum::<f64>() / rows.len().max(1) as f64;
+    let segment = segments.max_by(|a, b| mean(a).total_cmp(&mean(b)))?;
+    // Of a long segment the part about its largest deviation.
+    let at = segment.iter().enumerate().max_by(|a, b| off(a.1).total_cmp(&off(b.1)))?.0;
+    let start = at.saturating_sub(MOST_SHOWN / 2).min(segment.len().saturating_sub(MOST_SHOWN));
+    let rows = segment.get(start..(start + MOST_SHOWN).min(segment.len()))?;
+    Some(Worst { record: rows.first()?.record, rows })
+}
+
+fn observed_axis(result: &DiagnosisResult) -> Axis {
+    let what = match (result.quantity.as_str(), result.gap.unit.as_str()) {
+        ("position", "rad") => "angle",
+        ("position", "m") => "displacement",
+        (other, _) => other,
+    };
+    Axis::linear(format!("{what} ({})", result.gap.unit))
+}
+
+fn time() -> Axis {
+    Axis::linear("time (s)")
+}
+
+fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> Option<Figure> {
+    let records = rows.chunk_by(|one, next| one.record == next.record).take(MOST_RECORDS);
+    let several = result.records.len() > 1;
+    let series = records
+        .enumerate()
+        .map(|(index, rows)| Series {
+            label: if several {
+                format!("record {}", rows.first().map_or(0, |row| row.record))
+            } else {
+                "recorded".to_owned()
+            },
+            hue: if several { Hue::of_series(index) } else { Hue::Data },
+            mark: Mark::Line,
+            points: pieces(rows, |row| row.observed),
+        })
+        .collect();
+    let plot = Plot { x: time(), y: observed_axis(result), series, shaded: vec![worst.span()] };
+    let drawing = plot.draw("What was recorded, over time.")?;
+    let explanation =
+        "What was recorded, on the clock that is believed. Shaded: the stretch in which the recalibrated \
+                       simulator is farthest off; the next plot shows it enlarged."
+            .to_owned();
+    let table = csv(&["record", "time_s", "observed"], rows, |row: &SeriesRow| {
+        vec![row.record.to_string(), number(row.time_s), number(row.observed)]
+    });
+    Some(framed("record", "The record".to_owned(), explanation, drawing, table))
+}
+
+/// A line that breaks where time jumps: between records and where stretches were left out.
+fn pieces(rows: &[SeriesRow], value: impl Fn(&SeriesRow) -> f64) -> Vec<(f64, f64)> {
+    let mut steps: Vec<f64> = rows.windows(2).map(pair_step).filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let usual = steps.get(steps.len() / 2).copied().unwrap_or(f64::INFINITY);
+    let mut points = Vec::with_capacity(rows.len());
+    let mut last: Option<f64> = None;
+    for row in rows {
+        if last.is_some_and(|last| row.time_s - last > 20.0 * usual || row.time_s < last) {
+            points.push((row.time_s, f64::NAN));
+        }
+        points.push((row.time_s, value(row)));
+        last = Some(row.time_s);
+    }
+    points
+}
+
+fn pair_step(pair: &[SeriesRow]) -> f64 {
+    match pair {
+        [one, next] => next.time_s - one.time_s,
+        _ => 0.0,
+    }
+}
+
+fn zoom(result: &DiagnosisResult, worst: &Worst<'_>) -> Option<Figure> {
+    let points =
+        |value: fn(&SeriesRow) -> f64| worst.rows.iter().map(|row| (row.time_s, value(row))).collect();
+    let plot = Plot {
+        x: time(),
+        y: observed_axis(result),
+        series: vec![
+            recorded(Mark::Dots, points(|row| row.observed)),
+            Simulator::Given.series(Mark::DottedLine, points(|row| row.nominal)),
+            Simulator::Recalibrated.series(Mark::Dashes, points(|row| row.recalibrated)),
+            Simulator::Repaired.series(Mark::Line, points(|row| row.repaired)),
+        ],
+        shaded: vec![],
+    };
+    let drawing = plot.draw("The worst stretch: record and simulators over time.")?;
+    let (from, to) = worst.span();
+    let title = format!(
+        "The worst stretch: {} to {}{}",
+        format::significant(from, 3),
+        format::quantity(&format::significant(to, 3), "s"),
+        if result.records.len() > 1 { format!(" of record {}", worst.record) } else { String::new() }
+    );
+    let explanation = "Record and simulators where the recalibrated one is farthest off. Each simulator starts this \
+                       stretch from the state that suits it best; its coefficients were fitted to other stretches. \
+                       The simulator as given was not fitted at all."
+        .to_owned();
+    let table =
+        csv(&["time_s", "observed", "given", "recalibrated", "repaired"], worst.rows, |row: &SeriesRow| {
+            [row.time_s, row.observed, row.nominal, row.recalibrated, row.repaired].map(number).to_vec()
+        });
+    Some(framed("worst-stretch", title, explanation, drawing, table))
+}
+
+fn residuals(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> Option<Figure> {
+    let own: Vec<SeriesRow> = rows.iter().filter(|row| row.record == worst.record).copied().collect();
+    let level = |height: f64| Series {
+        label: "noise floor, two standard deviations".to_owned(),
+        hue: Hue::Data,
+        mark: Mark::DottedLevel,
+        points: vec![(own.first().map_or(0.0, |row| row.time_s), height)],
+    };
+    let floor = 2.0 * result.gap.noise_floor;
+    let plot = Plot {
+        x: time(),
+        y: Axis::linear(format!("record less simulator ({})", result.gap.unit)),
+        series: vec![
+            Simulator::Recalibrated.series(Mark::Line, pieces(&own, |row| row.observed - row.recalibrated)),
+            Simulator::Repaired.series(Mark::Line, pieces(&own, |row| row.observed - row.repaired)),
+            level(floor),
+            level(-floor),
+        ],
+        shaded: vec![worst.span()],
+    };
+    let drawing = plot.draw("Residuals before and after the repair, over time.")?;
+    let title = if result.records.len() > 1 {
+        format!("What is left over, record {}", worst.record)
+    } else {
+        "What is left over".to_owned()
+    };
+    let explanation = "The record less each simulator, on stretches that simulator was not fitted to. What lies \
+                       within the dotted lines is noise; a wave beyond them is structure that the simulator lacks."
+        .to_owned();
+    let table = csv(&["time_s", "recalibrated", "repaired"], &own, |row: &SeriesRow| {
+        [row.time_s, row.observed - row.recalibrated, row.observed - row.repaired].map(number).to_vec()
+    });
+    Some(framed("residuals", title, explanation, drawing, table))
+}

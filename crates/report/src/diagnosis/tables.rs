@@ -1,0 +1,262 @@
+//! The tables of a diagnosis: which number stands where, and to how many digits.
+
+use runs::result::{CalibratedRow, DiagnosisResult, GapSummary, RecordRow, WithInterval};
+
+use super::title;
+use crate::format::{fixed, interval, quantity, significant};
+use crate::tables::{Fact, fact, whole};
+
+/// A simulator and how far it is off.
+pub(super) struct GapView {
+    pub(super) name: &'static str,
+    pub(super) meaning: &'static str,
+    pub(super) rms: String,
+    pub(super) floors: String,
+    /// Length of its bar in percent of the longest, on a logarithmic scale from the floor on.
+    pub(super) bar: String,
+}
+
+pub(super) fn gap(gap: &GapSummary) -> Vec<GapView> {
+    let rows = [
+        ("simulator as given", "only its start states fitted", gap.nominal),
+        ("recalibrated", "its coefficients fitted, no effect added", gap.recalibrated),
+        ("repaired", "with the named effects", gap.repaired),
+        ("ceiling", "a free torque on top: what any further effect could reach", gap.ceiling),
+        ("noise floor", "measured from what is left over", gap.noise_floor),
+    ];
+    let least = rows.iter().map(|row| row.2).filter(|rms| *rms > 0.0).fold(f64::INFINITY, f64::min);
+    let most = rows.iter().map(|row| row.2).fold(0.0, f64::max);
+    let span = (most / least).ln();
+    rows.into_iter()
+        .map(|(name, meaning, rms)| {
+            let share = if span > 0.0 && rms > 0.0 { (rms / least).ln() / span } else { 0.0 };
+            GapView {
+                name,
+                meaning,
+                rms: quantity(&significant(rms, 3), &gap.unit),
+                floors: if gap.noise_floor > 0.0 {
+                    significant(rms / gap.noise_floor, 3)
+                } else {
+                    "–".to_owned()
+                },
+                bar: format!("{:.1}", 4.0 + 96.0 * share.clamp(0.0, 1.0)),
+            }
+        })
+        .collect()
+}
+
+pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
+    let gap = &result.gap;
+    let mut notes = vec![format!(
+        "Closed of the whole gap: {}; of what recalibration leaves: {}. Closure compares squares above the noise \
+         floor, so that 99 % can still be several floors: the ratio to the floor says more.",
+        share(&gap.closure),
+        share(&gap.closure_of_recalibrated)
+    )];
+    let [recalibrated, repaired] = gap.last_third;
+    if recalibrated.is_finite() && repaired.is_finite() {
+        notes.push(format!(
+            "Fitted to the first two thirds and scored on the last third: recalibrated {}, repaired {}.",
+            quantity(&significant(recalibrated, 3), &gap.unit),
+            quantity(&significant(repaired, 3), &gap.unit)
+        ));
+    }
+    notes.push(format!(
+        "Noise floor, 95 % interval: {} {}. Held out: {}",
+        interval(gap.noise_floor_interval_95),
+        gap.unit,
+        gap.held_out
+    ));
+    notes
+}
+
+/// A share with its interval, in percent.
+fn share(of: &WithInterval) -> String {
+    let [low, high] = of.interval_95;
+    format!("{} [{}, {}]", percent(of.value), percent(low), percent(high))
+}
+
+fn percent(share: f64) -> String {
+    let left = (1.0 - share).abs();
+    quantity(&fixed(100.0 * share, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
+}
+
+/// An effect as it stands in the table.
+pub(super) struct EffectView {
+    pub(super) title: String,
+    pub(super) id: String,
+    pub(super) probability: String,
+    /// Length of its bar in percent.
+    pub(super) bar: String,
+    /// One coefficient each.
+    pub(super) coefficients: Vec<String>,
+    pub(super) share: String,
+    pub(super) is_named: bool,
+}
+
+pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
+    result
+        .effects
+        .iter()
+        .map(|row| EffectView {
+            title: row.title.clone(),
+            id: row.id.clone(),
+            probability: probability(row.probability),
+            bar: format!("{:.1}", 100.0 * row.probability.clamp(0.0, 1.0)),
+            coefficients: row
+                .parameters
+                .iter()
+                .map(|(name, parameter)| {
+                    let unit = unit(&parameter.unit);
+                    let value = quantity(&significant(parameter.value, 4), unit);
+                    format!("{} = {value}, 95 %: {}", name.replace('_', " "), interval(parameter.interval_95))
+                })
+                .collect(),
+            share: row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share),
+            is_named: result.verdict.effects.contains(&row.id),
+        })
+        .collect()
+}
+
+fn probability(value: f64) -> String {
+    if value > 0.0 && value < 5e-4 { "< 0.001".to_owned() } else { fixed(value, 3) }
+}
+
+/// A unit symbol; that of a pure number says nothing.
+fn unit(symbol: &str) -> &str {
+    if symbol == "1" { "" } else { symbol }
+}
+
+/// What can and what cannot be told apart, in sentences.
+pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
+    let mut sentences: Vec<String> = result
+        .rivals
+        .iter()
+        .filter(|rival| rival.distance.is_finite())
+        .take(4)
+        .map(|rival| {
+            let verdict =
+                if rival.distance < 3.29 { "cannot be told apart here" } else { "told apart on these data" };
+            format!(
+                "{} and {}: {} noise units between the best fits, {verdict}.",
+                title(result, &rival.effect),
+                title(result, &rival.rival),
+                significant(rival.distance, 2)
+            )
+        })
+        .collect();
+    sentences.extend(result.detectability.iter().filter(|row| row.d.is_finite()).map(|row| {
+        format!("Leaving out {} costs {} noise units.", title(result, &row.effect), significant(row.d, 2))
+    }));
+    sentences
+}
+
+pub(super) fn experiments(result: &DiagnosisResult) -> Vec<String> {
+    result
+        .next_experiment
+        .considered
+        .iter()
+        .map(|(text, distance)| match distance {
+            Some(distance) => format!("{text}: distance {}", significant(*distance, 2)),
+            None => format!("{text}: cannot be predicted"),
+        })
+        .collect()
+}
+
+/// A nominal coefficient before and after.
+pub(super) struct CoefficientView {
+    pub(super) name: &'static str,
+    pub(super) unit: String,
+    pub(super) given: String,
+    pub(super) recalibrated: String,
+    pub(super) repaired: String,
+}
+
+pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
+    let all = &result.calibration;
+    let view = |name, row: &CalibratedRow| {
+        let estimate = |found: &Option<WithInterval>| {
+            found.as_ref().map_or_else(
+                || "held: these data cannot tell it".to_owned(),
+                |found| format!("{} {}", significant(found.value, 5), interval(found.interval_95)),
+            )
+        };
+        CoefficientView {
+            name,
+            unit: row.unit.clone(),
+            given: significant(row.nominal, 5),
+            recalibrated: estimate(&row.recalibrated),
+            repaired: estimate(&row.repaired),
+        }
+    };
+    vec![
+        view("inertia", &all.inertia),
+        view("damping", &all.damping),
+        view("stiffness", &all.stiffness),
+        view("rest position", &all.rest_angle),
+    ]
+}
+
+pub(super) fn chain(result: &DiagnosisResult) -> Vec<Fact> {
+    let chain = &result.measuring_chain;
+    vec![
+        fact("Clock believed", format!("{}: {}", chain.clock, chain.clock_reason)),
+        fact("Sampling rate", quantity(&significant(chain.sample_rate_hz, 6), "Hz")),
+        fact(
+            "Resolution",
+            chain.resolution.map_or_else(
+                || "the values lie on no lattice".to_owned(),
+                |step| quantity(&significant(step, 4), &result.gap.unit),
+            ),
+        ),
+        fact("Noise, standard deviation", quantity(&significant(chain.noise, 3), &result.gap.unit)),
+        fact("Samples used", percent(result.samples_used)),
+    ]
+}
+
+pub(super) fn findings(result: &DiagnosisResult) -> Vec<String> {
+    result
+        .measuring_chain
+        .findings
+        .iter()
+        .map(|finding| match &finding.effect {
+            Some(effect) => format!("{}: {}", effect.replace('_', " "), finding.text),
+            None => finding.text.clone(),
+        })
+        .collect()
+}
+
+/// A record as it stands in the list.
+pub(super) struct RecordView<'a> {
+    pub(super) path: &'a str,
+    pub(super) facts: Vec<Fact>,
+    pub(super) findings: &'a [String],
+}
+
+pub(super) fn records(result: &DiagnosisResult) -> Vec<RecordView<'_>> {
+    fn view(record: &RecordRow) -> RecordView<'_> {
+        let RecordRow { path, digest, origin, samples, duration_s, clock, clock_reason, findings } = record;
+        RecordView {
+            path,
+            facts: vec![
+                fact("Samples", whole(*samples)),
+                fact("Length", quantity(&significant(*duration_s, 4), "s")),
+                fact("Clock", format!("{clock}: {clock_reason}")),
+                fact("Origin", origin.as_str()),
+                fact("Digest", digest.as_str()),
+            ],
+            findings,
+        }
+    }
+    result.records.iter().map(view).collect()
+}
+
+pub(super) fn stages(result: &DiagnosisResult) -> String {
+    let stages: Vec<String> = result
+        .stages
+        .iter()
+        .filter(|stage| stage.seconds >= 0.01 * result.seconds)
+        .map(|stage| format!("{} {}", stage.name, quantity(&fixed(stage.seconds, 2), "s")))
+        .collect();
+    format!("{}: {}", quantity(&fixed(result.seconds, 2), "s"), stages.join(", "))
+}

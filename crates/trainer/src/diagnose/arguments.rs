@@ -1,0 +1,147 @@
+//! The arguments of `trainer diagnose`.
+
+use crate::cli::Output;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use record::{Quantity, TimeUnit, Unit};
+use std::path::PathBuf;
+
+/// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer diagnose record.csv --nominal nominal.toml
+  trainer diagnose near.csv far.csv --nominal nominal.toml --out DIR
+                                   several records of one system, diagnosed together
+  trainer diagnose log.txt --nominal nominal.toml        a host log (wall clock, elapsed s, angle deg)
+  trainer diagnose log.csv --time t --angle theta --unit deg --nominal nominal.toml
+  trainer diagnose drive.csv --angle qm_m --input vir_V --unit m --nominal drive.toml
+  trainer diagnose box.csv --angle output_v --input input_v --unit V --sample-rate 610.35 \\
+      --remove-mean --nominal box.toml                   no time column: laid out at that rate
+  trainer diagnose gyro.csv --angle rate --unit deg/s --quantity velocity --nominal nominal.toml
+  trainer diagnose --batch CASES --out ANSWERS --threads 8
+                                   every CASES/<id>/ with record-*.csv and nominal.toml
+
+Columns found without being named: time_s, time or t; angle_rad, angle, angle_deg, position_m,
+velocity_rad_s, velocity_m_s, acceleration_rad_s2 or acceleration_m_s2; torque_nm.
+
+nominal.toml holds inertia, damping, stiffness and rest_angle in SI units, or all divided by the
+inertia with inertia = 1.0; and, where they apply, coordinate = \"displacement\", input_gain (torque
+or force per unit of the input) and sensor_resolution.
+
+Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch gave no answer; 2 wrong input
+or usage; 130 interrupted.")]
+pub(crate) struct DiagnoseArguments {
+    /// Records of one system
+    #[arg(value_name = "RECORD", required_unless_present = "batch", conflicts_with = "batch")]
+    pub(crate) records: Vec<PathBuf>,
+    /// The simulator as it is: a nominal.toml
+    #[arg(long, value_name = "FILE", required_unless_present = "batch", conflicts_with = "batch")]
+    pub(crate) nominal: Option<PathBuf>,
+    /// Diagnoses every folder CASES/<id>/ holding record-*.csv and nominal.toml
+    #[arg(long, value_name = "CASES", requires = "out")]
+    pub(crate) batch: Option<PathBuf>,
+    /// Folder for the answer: new or empty [default: a new one below reports/runs]. With --batch, for
+    /// ANSWERS/<id>/diagnosis.json; answers that are there already are left alone
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// Most effects named together, 1 to 4 [default: 4]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    pub(crate) most_effects: Option<u8>,
+    /// Probability with which an effect is named where there is none
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
+    pub(crate) false_alarm: f64,
+    /// Root of the random draws (bootstraps)
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Threads; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// How to read record files.
+#[derive(Debug, Clone, Args)]
+#[command(next_help_heading = "How to read the records")]
+pub(crate) struct Reading {
+    /// Format of the files
+    #[arg(long, value_enum, default_value_t = FormatChoice::Auto)]
+    pub(crate) format: FormatChoice,
+    /// Clock to believe: the stamps as written, even in the sample index, or what stamps and values speak for
+    #[arg(long, value_name = "CLOCK", default_value = "auto",
+          value_parser = PossibleValuesParser::new(record::ClockChoice::NAMES))]
+    pub(crate) clock: String,
+    /// The time column
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) time: Option<String>,
+    /// The observed column, whatever it holds
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) angle: Option<String>,
+    /// The column of the measured input
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) input: Option<String>,
+    /// Unit of the observed column [default: by its name, else of the nominal's coordinate]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::NAMES))]
+    pub(crate) unit: Option<String>,
+    /// Unit of the time column
+    #[arg(long, value_name = "UNIT", default_value = "s",
+          value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
+    pub(crate) time_unit: String,
+    /// What the sensor observes [default: by the column's name, else position]
+    #[arg(long, value_enum)]
+    pub(crate) quantity: Option<QuantityChoice>,
+    /// Rate at which to lay out a file without a time column
+    #[arg(long, value_name = "HZ", value_parser = rate)]
+    pub(crate) sample_rate: Option<f64>,
+    /// Where the numbers came from, where the files do not say: for the report's headline, not for the diagnosis
+    #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
+    pub(crate) origin: Option<String>,
+    /// Takes the mean of the observed column and of the input away: for channels with an arbitrary zero
+    #[arg(long)]
+    pub(crate) remove_mean: bool,
+}
+
+/// Format of a record file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FormatChoice {
+    /// By the first line
+    Auto,
+    /// A header with column names, then comma-separated numbers
+    Csv,
+    /// Two header lines, then wall clock, elapsed s, angle deg
+    HostLog,
+}
+
+/// What the sensor observes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum QuantityChoice {
+    /// Angle or displacement
+    Position,
+    /// Its first derivative: a gyroscope, a laser vibrometer
+    Velocity,
+    /// Its second derivative: an accelerometer
+    Acceleration,
+}
+
+impl QuantityChoice {
+    pub(crate) fn quantity(self) -> Quantity {
+        match self {
+            Self::Position => Quantity::Position,
+            Self::Velocity => Quantity::Velocity,
+            Self::Acceleration => Quantity::Acceleration,
+        }
+    }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| "expected a number of samples per second".to_owned())?;
+    if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err("expected a number above 0".to_owned()) }
+}
+
+fn false_alarm(text: &str) -> Result<f64, String> {
+    let level: f64 = text.parse().map_err(|_| "expected a probability".to_owned())?;
+    if (0.001..=0.2).contains(&level) { Ok(level) } else { Err("expected 0.001 to 0.2".to_owned()) }
+}

@@ -1,0 +1,131 @@
+//! `trainer diagnose`: where the gap between a nominal simulator and records lies, and what closes it.
+
+pub(crate) mod arguments;
+mod batch;
+mod nominal;
+mod read;
+mod repair;
+mod result;
+mod sentence;
+mod summary;
+
+use crate::Outcome;
+use crate::environment::Environment;
+use crate::error::TrainerError;
+use crate::rerender::write_report;
+use arguments::{DiagnoseArguments, Reading};
+use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use export::Repaired;
+use nominal::Stated;
+use read::Given;
+use result::{Beside, result, series_rows};
+use runs::result::DiagnosisResult;
+use runs::{RunFolder, default_root, to_csv};
+use seed::Seed;
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Diagnoses the records named, or every case of a batch.
+pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
+    match (&arguments.batch, &arguments.out, &arguments.nominal) {
+        (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
+        (_, _, Some(nominal)) => single(arguments, nominal),
+        // clap asks for these.
+        _ => Err(TrainerError::NoConfig),
+    }
+}
+
+/// One diagnosis with all that it needs to be shown.
+struct Answer {
+    found: Diagnosis,
+    repaired: Repaired,
+    result: DiagnosisResult,
+}
+
+fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
+    if let Some(path) = &arguments.out {
+        // Better to know before the work than after it; the folder itself is made once there is an answer.
+        RunFolder::check_free(path)?;
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    let question = Question::read(&arguments.records, nominal, &arguments.reading)?;
+    let answer = pool.install(|| question.answer(&settings(arguments), arguments.seed))?;
+    let folder = match &arguments.out {
+        Some(path) => RunFolder::create_at(path)?,
+        None => RunFolder::create(&default_root(), "diagnosis")?,
+    };
+    folder.write("nominal.toml", simulator::nominal_text(&question.stated.nominal).as_bytes())?;
+    folder.write_json("diagnosis.json", &answer.result)?;
+    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
+    let digests: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
+    folder
+        .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
+    for (name, text) in export::files(&answer.repaired) {
+        folder.write(name, text.as_bytes())?;
+    }
+    write_report(&folder)?;
+    folder.record_event("end", &json!({ "status": answer.result.verdict.status }))?;
+    arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
+    Ok(Outcome::Done)
+}
+
+fn settings(arguments: &DiagnoseArguments) -> Settings {
+    Settings {
+        false_alarm: arguments.false_alarm,
+        most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
+        seed: Seed::new(arguments.seed),
+    }
+}
+
+/// Records of one system and what is believed of it.
+struct Question {
+    stated: Stated,
+    given: Vec<Given>,
+    nominal: PathBuf,
+}
+
+impl Question {
+    fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, TrainerError> {
+        let stated = nominal::read(nominal)?;
+        let given =
+            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<_, _>>()?;
+        Ok(Self { stated, given, nominal: nominal.to_owned() })
+    }
+
+    fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, TrainerError> {
+        let start = Instant::now();
+        let observations: Vec<Observations> =
+            self.given.iter().map(|given| given.observations.clone()).collect();
+        let stopwatch = || start.elapsed().as_secs_f64();
+        let found = diagnosis::diagnose(&observations, &self.stated.nominal, settings, &stopwatch)
+            .map_err(|source| self.refused(source))?;
+        let seconds = stopwatch();
+        let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())
+            .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
+        let nominal = self.nominal.display().to_string();
+        let beside = Beside { given: &self.given, nominal: &nominal, seed, seconds, repaired: &repaired };
+        let result = result(&found, &beside);
+        Ok(Answer { found, repaired, result })
+    }
+
+    /// A refusal with the file that it is about; where there are several records, the core counts them from 1.
+    fn refused(&self, source: DiagnosisError) -> TrainerError {
+        use DiagnosisError as E;
+        let record = match &source {
+            E::TooFewSamples { record, .. }
+            | E::TooFewCycles { record, .. }
+            | E::NoMotion { record, .. }
+            | E::MissingInput { record }
+            | E::AnotherPeriod { record, .. }
+            | E::LooksLikeDegrees { record, .. }
+            | E::MixedQuantities { record } => *record,
+            _ => 1,
+        };
+        let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
+        TrainerError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
+    }
+}

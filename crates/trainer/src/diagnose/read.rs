@@ -1,0 +1,180 @@
+//! From files to what a diagnosis may see: no name and no path among it.
+
+use super::arguments::{FormatChoice, Reading};
+use super::nominal::Stated;
+use crate::error::TrainerError;
+use crate::input::summarize;
+use diagnosis::Observations;
+use dynamics::Coordinate;
+use dynamics::chain::Observed;
+use record::{
+    Clock, ClockChoice, CsvColumns, Fault, Format, Quantity, ReadOptions, Record, Statements, Unit,
+};
+use runs::result::RecordRow;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use serde::de::value::Error;
+use std::path::Path;
+
+/// A record as the diagnosis sees it, and what people are told of it.
+pub(crate) struct Given {
+    pub(crate) observations: Observations,
+    pub(crate) row: RecordRow,
+    pub(crate) quantity: Quantity,
+    pub(crate) driven: bool,
+    pub(crate) rate_hz: f64,
+}
+
+/// Columns that are found without being named: what they hold is in their name. `angle` alone leaves it open.
+const NAMED: &[(&str, Option<(Unit, Quantity)>)] = &[
+    ("angle_rad", Some((Unit::Radian, Quantity::Position))),
+    ("angle", None),
+    ("angle_deg", Some((Unit::Degree, Quantity::Position))),
+    ("position_m", Some((Unit::Meter, Quantity::Position))),
+    ("velocity_rad_s", Some((Unit::RadianPerSecond, Quantity::Velocity))),
+    ("velocity_m_s", Some((Unit::MeterPerSecond, Quantity::Velocity))),
+    ("acceleration_rad_s2", Some((Unit::RadianPerSecondSquared, Quantity::Acceleration))),
+    ("acceleration_m_s2", Some((Unit::MeterPerSecondSquared, Quantity::Acceleration))),
+];
+
+/// Reads a record by the options and, where these are silent, by its header and the nominal simulator.
+pub(crate) fn read(path: &Path, reading: &Reading, stated: &Stated) -> Result<Given, TrainerError> {
+    let name = path.display().to_string();
+    let fault = |fault: Fault| TrainerError::DiagnosedRecord(fault.in_file(&name));
+    if path.is_dir() {
+        return Err(fault(Fault::Folder));
+    }
+    let bytes =
+        std::fs::read(path).map_err(|error| fault(Fault::Unreadable { problem: error.to_string() }))?;
+    let header = header(&bytes);
+    let options = options(reading, stated.nominal.coordinate(), &header);
+    let (record, source) =
+        record::read_text(&name, &bytes, &options).map_err(TrainerError::DiagnosedRecord)?;
+    check_unit(&name, &record, stated.nominal.coordinate())?;
+    if stated.driven && record.input().is_none() {
+        return Err(TrainerError::MissingInput { file: name, columns: header.join(", ") });
+    }
+    let record = if reading.remove_mean { centered(&record).map_err(fault)? } else { record };
+    let choice = word(&reading.clock).unwrap_or_default();
+    let clock_of = |choice: ClockChoice| Clock::new(&record, choice).map_err(fault);
+    let (clock, believed) = (clock_of(choice)?, clock_of(ClockChoice::Auto)?);
+    let stated = Statements { origin: reading.origin.as_deref().and_then(word), ..Statements::default() };
+    let summary = summarize(&record, &source, &clock, &believed, stated);
+    let (first, last) = (clock.times_s.first(), clock.times_s.last());
+    Ok(Given {
+        observations: Observations::new(&record, &clock),
+        row: RecordRow {
+            path: summary.path,
+            digest: summary.digest,
+            origin: summary.origin,
+            samples: summary.samples,
+            duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
+            clock: summary.clock,
+            clock_reason: summary.clock_reason,
+            findings: summary.findings,
+        },
+        quantity: record.quantity(),
+        driven: record.input().is_some(),
+        rate_hz: clock.sample_rate_hz,
+    })
+}
+
+/// The names in the first line that is neither empty nor a comment.
+fn header(bytes: &[u8]) -> Vec<String> {
+    let text = String::from_utf8_lossy(bytes);
+    let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    let line = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
+    line.split(',').map(|name| name.trim().to_owned()).collect()
+}
+
+fn options(reading: &Reading, coordinate: Coordinate, header: &[String]) -> ReadOptions {
+    let format = match reading.format {
+        FormatChoice::Csv => Format::Csv,
+        FormatChoice::HostLog => Format::HostLog,
+        FormatChoice::Auto if is_host_log(header) => Format::HostLog,
+        FormatChoice::Auto => Format::Csv,
+    };
+    let found = NAMED.iter().find(|(name, _)| header.iter().any(|title| title == name));
+    let angle = reading.angle.clone().or_else(|| found.map(|(name, _)| (*name).to_owned()));
+    let own = angle.as_ref().and_then(|angle| NAMED.iter().find(|(name, _)| name == angle)?.1);
+    let quantity = reading
+        .quantity
+        .map(super::arguments::QuantityChoice::quantity)
+        .or(own.map(|(_, quantity)| quantity))
+        .unwrap_or_default();
+    let unit = reading
+        .unit
+        .as_deref()
+        .and_then(word)
+        .or(own.map(|(unit, _)| unit))
+        .unwrap_or_else(|| usual_unit(coordinate, quantity));
+    ReadOptions {
+        format,
+        columns: CsvColumns {
+            time: reading.time.clone(),
+            angle,
+            input: reading.input.clone(),
+            unit: Some(unit),
+            time_unit: word(&reading.time_unit).unwrap_or_default(),
+            sample_rate_hz: reading.sample_rate,
+        },
+        quantity,
+    }
+}
+
+fn is_host_log(header: &[String]) -> bool {
+    let lower: Vec<String> = header.iter().map(|name| name.to_lowercase()).collect();
+    matches!(lower.as_slice(), [_, elapsed, angle] if elapsed.contains("elapsed") && angle.contains("angle"))
+}
+
+fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> Unit {
+    match (coordinate, quantity) {
+        (Coordinate::Angle, Quantity::Position) => Unit::Radian,
+        (Coordinate::Angle, Quantity::Velocity) => Unit::RadianPerSecond,
+        (Coordinate::Angle, Quantity::Acceleration) => Unit::RadianPerSecondSquared,
+        (Coordinate::Displacement, Quantity::Position) => Unit::Meter,
+        (Coordinate::Displacement, Quantity::Velocity) => Unit::MeterPerSecond,
+        (Coordinate::Displacement, Quantity::Acceleration) => Unit::MeterPerSecondSquared,
+    }
+}
+
+/// A record whose unit cannot be that of the nominal coordinate is of another system, or mislabeled. A voltage stands
+/// for a displacement, whatever its derivative.
+fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(), TrainerError> {
+    let expected = usual_unit(coordinate, record.quantity()).si();
+    let voltage = record.unit() == Unit::Volt.si() && coordinate == Coordinate::Displacement;
+    if record.unit() == expected || voltage {
+        return Ok(());
+    }
+    Err(TrainerError::OtherUnit { file: file.to_owned(), found: record.unit(), expected })
+}
+
+/// The record with the means of the observed column and of the input taken away.
+fn centered(record: &Record) -> Result<Record, Fault> {
+    let center = |values: &[f64]| -> Vec<f64> {
+        let mean = values.iter().sum::<f64>() / values.len() as f64;
+        values.iter().map(|value| value - mean).collect()
+    };
+    Record::new(
+        record.stamps_s().to_vec(),
+        center(record.values()),
+        record.input().map(center),
+        record.quantity(),
+        record.unit(),
+    )
+}
+
+/// A word as configurations write it; the command line admits no other.
+fn word<'de, T: Deserialize<'de>>(text: &'de str) -> Option<T> {
+    let deserializer = IntoDeserializer::<Error>::into_deserializer(text);
+    T::deserialize(deserializer).ok()
+}
+
+/// What a simulator would call what the sensor observes.
+pub(crate) fn observed(quantity: Quantity) -> Observed {
+    match quantity {
+        Quantity::Position => Observed::Position,
+        Quantity::Velocity => Observed::Velocity,
+        Quantity::Acceleration => Observed::Acceleration,
+    }
+}

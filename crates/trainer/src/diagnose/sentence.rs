@@ -1,0 +1,95 @@
+//! The verdict and its limits in plain sentences.
+
+use super::result::title;
+use diagnosis::{Diagnosis, Status};
+use report::{format, in_a_sentence};
+
+/// What the diagnosis comes to, in one sentence.
+pub(crate) fn verdict(found: &Diagnosis) -> String {
+    let gap = &found.gap;
+    let floor = if gap.ratio_to_floor.value.is_finite() {
+        format!("{} times the noise floor", format::significant(gap.ratio_to_floor.value, 3))
+    } else {
+        format!("{} {}", format::significant(gap.repaired, 3), gap.unit)
+    };
+    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    let rest = if gap.ratio_to_floor.interval_95.first().is_some_and(|low| low.powi(2) > 2.0) {
+        "; most of what is left is still not noise"
+    } else {
+        ""
+    };
+    match found.verdict.status {
+        Status::None => format!(
+            "Nothing is missing: the simulator as given explains what was recorded, down to {floor} on parts that \
+             were not fitted."
+        ),
+        Status::Calibration => format!(
+            "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
+             on parts that were not fitted, and no effect is missing{rest}."
+        ),
+        Status::Effect => format!(
+            "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
+             that were not fitted{rest}.",
+            lacking(found),
+            if gap.closure.value >= 1.0 { "all".to_owned() } else { percent(gap.closure.value) }
+        ),
+        Status::Unknown => format!(
+            "Something is missing that no known effect explains: the best named model leaves {floor}, and a torque \
+             without a name predicts better, so it is left unnamed{}.",
+            match found.verdict.effects.is_empty() {
+                true => String::new(),
+                false => format!("; {}", in_a_sentence(&lacking(found))),
+            }
+        ),
+    }
+}
+
+/// What is missing, and what the record shows without a fit: stamps in bursts, say.
+fn lacking(found: &Diagnosis) -> String {
+    let is_fitted = |id: &&'static str| {
+        found
+            .effects
+            .iter()
+            .any(|row| row.id == *id && (row.gap_share.is_some() || !row.parameters.is_empty()))
+    };
+    let (fitted, seen): (Vec<&'static str>, Vec<&'static str>) =
+        found.verdict.effects.iter().copied().partition(is_fitted);
+    match (fitted.is_empty(), seen.is_empty()) {
+        (false, true) => format!("The simulator lacks {}", names(&fitted)),
+        (false, false) => {
+            format!("The simulator lacks {}, and the record shows {}", names(&fitted), names(&seen))
+        }
+        (true, _) => format!("The record shows {}, which the simulator lacks", names(&seen)),
+    }
+}
+
+/// Titles of ids as they stand in a sentence, with an `and` before the last.
+fn names(ids: &[&str]) -> String {
+    let titles: Vec<String> = ids.iter().map(|id| in_a_sentence(&title(id))).collect();
+    match titles.as_slice() {
+        [] => "nothing".to_owned(),
+        [one] => one.clone(),
+        [most @ .., last] => format!("{} and {last}", most.join(", ")),
+    }
+}
+
+/// Why no experiment is proposed.
+pub(crate) fn no_experiment(found: &Diagnosis) -> &'static str {
+    match found.verdict.status {
+        Status::None | Status::Calibration => {
+            "None: nothing was named that would have to be told from something else."
+        }
+        Status::Effect => "None: nothing fitted here could stand in the place of what was named.",
+        Status::Unknown => {
+            "None that these data suggest: what is missing has no name yet. A second release from another amplitude \
+             tells whether it depends on amplitude or on time."
+        }
+    }
+}
+
+/// A share in percent; not beyond what its rounding can carry near 1.
+pub(crate) fn percent(share: f64) -> String {
+    let left = (1.0 - share).abs();
+    let decimals = if left < 0.001 && left > 0.0 { 3 } else { 1 };
+    format!("{} %", format::fixed(100.0 * share, decimals))
+}

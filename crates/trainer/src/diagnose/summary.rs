@@ -1,0 +1,258 @@
+//! The terminal's answer: one screen.
+
+use super::sentence::percent;
+use crate::summary::table;
+use report::format::{interval, quantity, significant};
+use runs::result::{CalibratedRow, DiagnosisResult, EffectRow, MapCell, WithInterval};
+use std::path::Path;
+
+/// Distance in noise units from which on two explanations are told apart.
+const DISTINCT: f64 = 3.29;
+/// Effects listed; the rest is counted.
+const MOST_EFFECTS: usize = 6;
+
+/// The answer as a person wants to read it.
+pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
+    let parts = [
+        verdict(result),
+        gap(result),
+        effects(result),
+        apart(result),
+        whereabouts(result),
+        calibration(result),
+        chain(result),
+        format!("took: {}", stages(result)),
+        format!(
+            "report: {path}/report.html\nrepaired simulator: {path}/repaired.toml, .py, .mo, .mjcf.xml, .urdf.xml; equation.txt, equation.tex",
+            path = folder.display()
+        ),
+    ];
+    parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("\n\n")
+}
+
+fn verdict(result: &DiagnosisResult) -> String {
+    let label = match result.verdict.status.as_str() {
+        "none" => "NOTHING IS MISSING",
+        "calibration" => "CALIBRATION",
+        "effect" => "MISSING EFFECT",
+        _ => "UNKNOWN",
+    };
+    let confidence = percent(result.verdict.confidence);
+    format!("{label} (probability {confidence})\n{}", result.verdict.summary)
+}
+
+fn gap(result: &DiagnosisResult) -> String {
+    let gap = &result.gap;
+    let row = |name: &str, value: f64, note: String| {
+        let ratio =
+            if gap.noise_floor > 0.0 { significant(value / gap.noise_floor, 3) } else { "–".to_owned() };
+        vec![name.to_owned(), quantity(&significant(value, 3), &gap.unit), ratio, note]
+    };
+    let closed = |of: &WithInterval| format!("closes {}", share(of));
+    let same = gap.repaired == gap.recalibrated;
+    let mut rows = vec![
+        row("simulator as given", gap.nominal, String::new()),
+        row("recalibrated", gap.recalibrated, String::new()),
+        row(
+            if same { "repaired (the same)" } else { "repaired" },
+            gap.repaired,
+            format!("{} of the whole gap", closed(&gap.closure)),
+        ),
+        row("ceiling: a free torque on top", gap.ceiling, String::new()),
+        row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
+    ];
+    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same) {
+        note.push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
+    }
+    table(&["held-out error", "RMS", "floors", ""], rows)
+}
+
+/// A share with its interval, in percent.
+fn share(of: &WithInterval) -> String {
+    let [low, high] = of.interval_95;
+    format!("{} [{}, {}]", percent(of.value), percent(low), percent(high))
+}
+
+fn effects(result: &DiagnosisResult) -> String {
+    let shown: Vec<&EffectRow> = result
+        .effects
+        .iter()
+        .enumerate()
+        .filter(|(index, row)| *index < MOST_EFFECTS || row.gap_share.is_some())
+        .map(|(_, row)| row)
+        .collect();
+    let rows = shown
+        .iter()
+        .map(|row| {
+            let coefficients: Vec<String> = row
+                .parameters
+                .iter()
+                .map(|(name, parameter)| {
+                    let value = quantity(&significant(parameter.value, 3), unit(&parameter.unit));
+                    format!("{name} {value} {}", interval(parameter.interval_95))
+                })
+                .collect();
+            vec![
+                row.id.clone(),
+                significant(row.probability, 2),
+                row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share),
+                coefficients.join("\n"),
+            ]
+        })
+        .collect();
+    let mut text = table(&["effect", "probability", "share of the gap", "coefficients, 95 % interval"], rows);
+    let rest = result.effects.len() - shown.len();
+    if rest > 0 {
+        text.push_str(&format!("\nand {rest} more in diagnosis.json"));
+    }
+    text
+}
+
+/// A unit symbol; that of a pure number says nothing.
+fn unit(symbol: &str) -> &str {
+    if symbol == "1" { "" } else { symbol }
+}
+
+fn apart(result: &DiagnosisResult) -> String {
+    let mut lines: Vec<String> = result
+        .verdict
+        .equivalent
+        .iter()
+        .map(|class| format!("cannot be told apart on these data: {}", class.join(" ~ ")))
+        .collect();
+    if lines.is_empty() {
+        lines.push(match result.rivals.first() {
+            Some(rival) if rival.distance.is_finite() => format!(
+                "told apart: closest to {} is {}, {} noise units away (one class below 3.29)",
+                rival.effect,
+                rival.rival,
+                significant(rival.distance, 2)
+            ),
+            _ => "nothing here that could not be told apart".to_owned(),
+        });
+    }
+    let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
+        let enough = if distance < DISTINCT { ", too little by itself" } else { "" };
+        format!(" (predicted distance {}{enough})", significant(distance, 2))
+    });
+    lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
+    lines.join("\n")
+}
+
+fn whereabouts(result: &DiagnosisResult) -> String {
+    let budget = &result.place.budget;
+    let mut shares = [
+        ("dissipative", budget.dissipative),
+        ("conservative", budget.conservative),
+        ("time-dependent", budget.time_dependent),
+        ("sensor", budget.sensor),
+        ("clock", budget.clock),
+    ];
+    shares.sort_by(|a, b| b.1.total_cmp(&a.1));
+    let named: Vec<String> = shares
+        .iter()
+        .filter(|(_, share)| *share >= 0.005)
+        .map(|(name, share)| format!("{name} {}", percent(*share)))
+        .collect();
+    let kinds = if named.is_empty() {
+        "the gap beyond recalibration: none worth dividing".to_owned()
+    } else {
+        format!("the gap beyond recalibration: {}", named.join(", "))
+    };
+    let unit = &result.gap.unit;
+    let [position, ..] = &result.units;
+    let places: Vec<String> = [
+        worst("time", &result.place.time, "s", unit),
+        worst("amplitude", &result.place.amplitude, position, unit),
+        worst("frequency", &result.place.frequency, "rad/s", unit),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if places.is_empty() { kinds } else { format!("{kinds}\nlargest at {}", places.join("; ")) }
+}
+
+/// The significant cell with the largest value along an axis.
+fn worst(axis: &str, cells: &[MapCell], axis_unit: &str, unit: &str) -> Option<String> {
+    let significant_cells = cells.iter().filter(|cell| cell.significant);
+    let cell = significant_cells.max_by(|a, b| a.value.total_cmp(&b.value))?;
+    let [low, high] = cell.bounds.first()?;
+    Some(format!(
+        "{axis} {} to {} ({})",
+        significant(*low, 3),
+        quantity(&significant(*high, 3), axis_unit),
+        quantity(&significant(cell.value, 2), unit)
+    ))
+}
+
+fn calibration(result: &DiagnosisResult) -> String {
+    let all = &result.calibration;
+    let rows: Vec<Vec<String>> = [
+        ("inertia", &all.inertia),
+        ("damping", &all.damping),
+        ("stiffness", &all.stiffness),
+        ("rest_angle", &all.rest_angle),
+    ]
+    .into_iter()
+    .filter(|(_, row)| row.recalibrated.is_some() || row.repaired.is_some())
+    .map(|(name, row)| calibrated(name, row))
+    .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    table(&["coefficient", "given", "recalibrated", "repaired, 95 % interval"], rows)
+}
+
+fn calibrated(name: &str, row: &CalibratedRow) -> Vec<String> {
+    let value = |found: &Option<WithInterval>| {
+        found.as_ref().map_or_else(|| "held".to_owned(), |found| significant(found.value, 4))
+    };
+    let repaired = row.repaired.as_ref().map_or_else(
+        || "held".to_owned(),
+        |found| {
+            format!(
+                "{} {}",
+                quantity(&significant(found.value, 4), unit(&row.unit)),
+                interval(found.interval_95)
+            )
+        },
+    );
+    vec![name.to_owned(), significant(row.nominal, 4), value(&row.recalibrated), repaired]
+}
+
+fn chain(result: &DiagnosisResult) -> String {
+    let chain = &result.measuring_chain;
+    let resolution = chain.resolution.map_or_else(String::new, |step| {
+        format!(", resolution {}", quantity(&significant(step, 3), &result.gap.unit))
+    });
+    let mut lines = vec![format!(
+        "measuring chain: clock {}, {}{resolution}",
+        chain.clock,
+        quantity(&significant(chain.sample_rate_hz, 5), "Hz")
+    )];
+    lines.extend(chain.findings.iter().map(|finding| match &finding.effect {
+        Some(effect) => format!("  {effect}: {}", finding.text),
+        None => format!("  {}", finding.text),
+    }));
+    for record in &result.records {
+        lines.extend(record.findings.iter().map(|finding| format!("  {}: {finding}", record.path)));
+    }
+    if result.samples_used < 0.9999 {
+        lines.push(format!(
+            "  {} of the samples were used: whole stretches, evenly spaced",
+            percent(result.samples_used)
+        ));
+    }
+    lines.join("\n")
+}
+
+fn stages(result: &DiagnosisResult) -> String {
+    let mut stages: Vec<String> = result
+        .stages
+        .iter()
+        .filter(|stage| stage.seconds >= 0.01 * result.seconds)
+        .map(|stage| format!("{} {:.2}", stage.name, stage.seconds))
+        .collect();
+    stages.insert(0, format!("{:.2} s", result.seconds));
+    stages.join(", ")
+}

@@ -1,0 +1,397 @@
+//! `trainer diagnose`: what it leaves, what scripts may rely on, and that bad input gets one message and no name.
+
+use crate::support::{number, result, root, trainer};
+use serde_json::Value;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// An oscillator of 3.5 Hz; per unit of inertia.
+const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
+
+/// A configuration of a short decay with dry friction that the nominal simulator lacks.
+const FRICTION: &str = r#"
+name = "friction"
+inertia = 1.0
+damping = 0.3
+stiffness = 484.0
+rest_angle = 0.0
+[record]
+rate_hz = 130.0
+seconds = 8.0
+[start]
+position = 0.7
+[sensor]
+noise = 5e-4
+[[effects]]
+id = "coulomb_friction"
+parameters.torque = 2.0
+"#;
+
+fn write(folder: &Path, name: &str, text: &str) -> String {
+    let path = folder.join(name);
+    std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+    std::fs::write(&path, text).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// A simulated record with its nominal simulator, in a scratch folder.
+fn simulated(overrides: &[&str]) -> (TempDir, String, String) {
+    let scratch = tempfile::tempdir().unwrap();
+    let config = write(scratch.path(), "friction.toml", FRICTION);
+    let out = scratch.path().join("made");
+    let mut arguments = vec!["simulate", config.as_str()];
+    arguments.extend(overrides);
+    arguments.extend(["--quiet", "--out", out.to_str().unwrap()]);
+    let output = trainer(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let file = |name: &str| out.join("records").join(name).to_str().unwrap().to_owned();
+    let (record, nominal) = (file("record-000.csv"), file("nominal.toml"));
+    (scratch, record, nominal)
+}
+
+fn is_interval(value: &Value) -> bool {
+    value.as_array().is_some_and(|ends| {
+        ends.len() == 2 && ends[0].as_f64().unwrap_or(f64::NAN) <= ends[1].as_f64().unwrap_or(f64::NAN)
+    })
+}
+
+/// The keys and types of the contract; more keys are allowed.
+fn check_contract(found: &Value) {
+    assert_eq!(found["schema"], "ringdown.diagnosis/1");
+    let verdict = &found["verdict"];
+    assert!(["none", "calibration", "effect", "unknown"].contains(&verdict["status"].as_str().unwrap()));
+    assert!(verdict["effects"].as_array().unwrap().iter().all(Value::is_string));
+    assert!((0.0..=1.0).contains(&number(found, "/verdict/confidence")));
+    for class in verdict["equivalent"].as_array().unwrap() {
+        assert!(class.as_array().unwrap().len() > 1 && class[0].is_string());
+    }
+    let summary = verdict["summary"].as_str().unwrap();
+    assert!(summary.ends_with('.') && !summary.contains('\n') && !summary.contains("e-"), "{summary}");
+    let ids: Vec<&str> =
+        found["effects"].as_array().unwrap().iter().map(|effect| effect["id"].as_str().unwrap()).collect();
+    for id in ["none", "calibration", "unknown"] {
+        assert!(ids.contains(&id), "{ids:?}");
+    }
+    let mut last = 1.0;
+    for effect in found["effects"].as_array().unwrap() {
+        let probability = effect["probability"].as_f64().unwrap();
+        assert!((0.0..=1.0).contains(&probability) && probability <= last, "best first: {ids:?}");
+        last = probability;
+        for parameter in effect["parameters"].as_object().unwrap().values() {
+            assert!(parameter["value"].is_number() && parameter["unit"].is_string());
+            assert!(is_interval(&parameter["interval_95"]), "{parameter}");
+        }
+        let share = &effect["gap_share"];
+        assert!(share.is_null() || share["value"].is_number() && is_interval(&share["interval_95"]));
+    }
+    for key in ["nominal", "recalibrated", "repaired", "ceiling", "noise_floor", "ratio_to_floor"] {
+        assert!(number(found, &format!("/gap/{key}")) >= 0.0, "{key}");
+    }
+    assert!(found["gap"]["unit"].is_string() && found["gap"]["held_out"].is_string());
+    assert!(found["gap"]["closure"]["value"].is_number());
+    assert!(is_interval(&found["gap"]["closure"]["interval_95"]));
+    let budget: f64 = ["dissipative", "conservative", "time_dependent", "sensor", "clock"]
+        .iter()
+        .map(|class| number(found, &format!("/where/budget/{class}")))
+        .sum();
+    assert!(budget == 0.0 || (budget - 1.0).abs() < 1e-9, "{budget}");
+    for (map, axes) in [("time", 1), ("amplitude", 1), ("phase", 2), ("frequency", 1)] {
+        for cell in found["where"][map].as_array().unwrap() {
+            let bounds = cell["bounds"].as_array().unwrap();
+            assert!(bounds.len() == axes && bounds.iter().all(is_interval), "{map}: {cell}");
+            assert!(cell["value"].is_number() && cell["band"].is_number(), "{map}: {cell}");
+            assert_eq!(
+                cell["significant"].as_bool().unwrap(),
+                cell["value"].as_f64() > cell["band"].as_f64(),
+                "{map}: {cell}"
+            );
+        }
+    }
+    let chain = &found["measuring_chain"];
+    assert!(["host", "uniform-index"].contains(&chain["clock"].as_str().unwrap()));
+    assert!(chain["sample_rate_hz"].is_number() && chain["noise"].is_number());
+    assert!(chain["resolution"].is_number() || chain["resolution"].is_null());
+    assert!(chain["findings"].is_array());
+    for key in ["inertia", "damping", "stiffness", "rest_angle"] {
+        assert!(found["calibration"][key]["nominal"].is_number(), "{key}");
+    }
+    assert!(found["next_experiment"]["text"].is_string());
+    assert!(found["next_experiment"]["separates"].is_array());
+    assert!(number(found, "/seconds") > 0.0);
+}
+
+#[test]
+fn a_missing_effect_is_named_and_the_answer_has_the_contracts_form() {
+    let (_scratch, record, nominal) = simulated(&[]);
+    let (code, found, folder) = result(&["diagnose", &record, "--nominal", &nominal]);
+    assert_eq!(code, 0, "{found}");
+    check_contract(&found);
+    assert_eq!(found["verdict"]["status"], "effect");
+    assert_eq!(found["verdict"]["effects"][0], "coulomb_friction");
+    let torque = &found["effects"][0]["parameters"]["torque"];
+    let ends = torque["interval_95"].as_array().unwrap();
+    assert!(ends[0].as_f64() < Some(2.0) && ends[1].as_f64() > Some(2.0), "{torque}");
+    assert_eq!(torque["unit"], "rad/s^2");
+    assert!(number(&found, "/gap/ratio_to_floor") < 1.1);
+
+    let written = std::fs::read_to_string(folder.path().join("diagnosis.json")).unwrap();
+    let written: Value = serde_json::from_str(&written).unwrap();
+    assert_eq!(written, found);
+    let series = std::fs::read_to_string(folder.path().join("series.csv")).unwrap();
+    assert_eq!(series.lines().count(), 1 + 1040);
+
+    the_repaired_simulator_runs(folder.path(), &record);
+    the_report_is_derived(folder.path());
+}
+
+/// What is written loads back into the simulator and gives the record again, down to its noise.
+fn the_repaired_simulator_runs(folder: &Path, record: &str) {
+    let again = tempfile::tempdir().unwrap();
+    let repaired = folder.join("repaired.toml");
+    let output = trainer(&[
+        "simulate",
+        repaired.to_str().unwrap(),
+        "sensor.noise=0",
+        "--quiet",
+        "--out",
+        again.path().to_str().unwrap(),
+    ]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let values = |path: &Path| -> Vec<f64> {
+        let text = std::fs::read_to_string(path).unwrap();
+        let rows = text.lines().filter(|line| !line.starts_with(['#', 't']));
+        rows.map(|line| line.split(',').nth(1).unwrap().parse().unwrap()).collect()
+    };
+    let (made, measured) = (values(&again.path().join("records/record-000.csv")), values(Path::new(record)));
+    assert!(made.len().abs_diff(measured.len()) <= 1, "{} {}", made.len(), measured.len());
+    let count = made.len().min(measured.len()) as f64;
+    let squares: f64 = made.iter().zip(&measured).map(|(a, b)| (a - b).powi(2)).sum();
+    // Noise 5e-4; a free run over the whole record adds what the coefficients are off by.
+    let rms = (squares / count).sqrt();
+    assert!(rms < 1.5e-3, "{rms}");
+    for (name, words) in [
+        ("repaired.py", "def rhs(time, state"),
+        ("repaired.mo", "model Repaired"),
+        ("repaired.mjcf.xml", "frictionloss="),
+        ("repaired.urdf.xml", "<dynamics damping="),
+        ("equation.txt", "Coulomb friction: -τ_c sign(θ′)"),
+        ("equation.tex", r"-\tau_c\,\operatorname{sign}\dot\theta"),
+    ] {
+        let text = std::fs::read_to_string(folder.join(name)).unwrap();
+        assert!(text.contains(words), "{name}: {text}");
+    }
+}
+
+/// The report follows from the folder's other files.
+fn the_report_is_derived(folder: &Path) {
+    let report = folder.join("report.html");
+    let first = std::fs::read_to_string(&report).unwrap();
+    for part in [
+        "Missing effect",
+        "How far the gap shrinks",
+        "Gap budget:",
+        "id=\"worst-stretch\"",
+        "id=\"gap-in-the-phase-plane\"",
+        "id=\"backbone-frequency\"",
+        "id=\"restoring-force\"",
+        "Simulated record",
+    ] {
+        assert!(first.contains(part), "{part}");
+    }
+    assert!(
+        !first.contains("http://")
+            || first.replace("http://www.w3.org/2000/svg", "").find("http://").is_none()
+    );
+    let output = trainer(&["report", folder.to_str().unwrap(), "--quiet"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert_eq!(std::fs::read_to_string(&report).unwrap(), first);
+}
+
+#[test]
+fn the_terminal_has_one_screen_and_the_threads_change_nothing() {
+    let (_scratch, record, nominal) = simulated(&["effects.1.probability=0"]);
+    let run = |threads: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().to_str().unwrap();
+        let output =
+            trainer(&["diagnose", &record, "--nominal", &nominal, "--threads", threads, "--out", out]);
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        let text = std::fs::read_to_string(folder.path().join("diagnosis.json")).unwrap();
+        let mut found: Value = serde_json::from_str(&text).unwrap();
+        for timed in ["seconds", "stages"] {
+            found.as_object_mut().unwrap().remove(timed);
+        }
+        (String::from_utf8(output.stdout).unwrap(), found)
+    };
+    let (text, found) = run("1");
+    assert!(["none", "calibration"].contains(&found["verdict"]["status"].as_str().unwrap()), "{text}");
+    assert!(text.lines().count() < 50, "{text}");
+    for part in ["noise floor", "probability", "next experiment:", "measuring chain:", "took:", "report:"] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+    assert_eq!(found, run("2").1);
+}
+
+#[test]
+fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
+    let (scratch, record, nominal) = simulated(&[]);
+    let cases = scratch.path().join("cases");
+    let copy = |from: &str, to: &str| {
+        write(&cases, to, &std::fs::read_to_string(from).unwrap());
+    };
+    copy(&record, "good/record-000.csv");
+    copy(&nominal, "good/nominal.toml");
+    copy(&record, "without-nominal/record-000.csv");
+    write(&cases, "garbled/record-000.csv", "time_s,angle_rad\n0,zero\n");
+    copy(&nominal, "garbled/nominal.toml");
+    copy(&nominal, "empty/nominal.toml");
+    let answers = scratch.path().join("answers");
+    let batch = || {
+        let output = trainer(&[
+            "diagnose",
+            "--batch",
+            cases.to_str().unwrap(),
+            "--out",
+            answers.to_str().unwrap(),
+            "--threads",
+            "2",
+            "--json",
+        ]);
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        (output.status.code(), found, String::from_utf8(output.stderr).unwrap())
+    };
+    let (code, found, message) = batch();
+    assert_eq!(code, Some(1), "{message}");
+    assert_eq!((&found["cases"], &found["diagnosed"]), (&4.into(), &1.into()));
+    assert_eq!(found["failed"].as_array().unwrap().len(), 3);
+    assert_eq!(message.lines().count(), 3, "{message}");
+    assert!(message.contains("garbled: ") && message.contains("`zero` in column `angle_rad`"), "{message}");
+    assert!(message.contains("without-nominal: ") && message.contains("nominal.toml"), "{message}");
+    let path = answers.join("good/diagnosis.json");
+    let first = std::fs::read_to_string(&path).unwrap();
+    check_contract(&serde_json::from_str(&first).unwrap());
+    assert!(!answers.join("garbled").exists());
+
+    let (code, found, _) = batch();
+    assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &1.into(), &0.into()));
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
+
+    let nothing = tempfile::tempdir().unwrap();
+    let folder = nothing.path().to_str().unwrap();
+    let message = refusal(&["diagnose", "--batch", folder, "--out", answers.to_str().unwrap()]);
+    assert!(message.contains("there is no case in it"), "{message}");
+}
+
+/// Runs the program and expects exit code 2, one line on standard error and nothing on standard output.
+fn refusal(arguments: &[&str]) -> String {
+    let output = trainer(arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(output.stdout.is_empty(), "{:?}", String::from_utf8_lossy(&output.stdout));
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    assert!(message.starts_with("error: ") && !message.contains("panicked"), "{message}");
+    message
+}
+
+/// Refuses a record and a nominal simulator with these words.
+fn refused(record: &str, nominal: &str, options: &[&str], expected: &str) {
+    let scratch = tempfile::tempdir().unwrap();
+    let record = write(scratch.path(), "record.csv", record);
+    let nominal = write(scratch.path(), "nominal.toml", nominal);
+    let out = scratch.path().join("out");
+    let mut arguments = vec!["diagnose", &record, "--nominal", &nominal, "--out", out.to_str().unwrap()];
+    arguments.extend(options);
+    let message = refusal(&arguments);
+    assert!(message.contains(expected), "no `{expected}` in: {message}");
+    assert!(!out.exists(), "a refusal leaves nothing behind");
+}
+
+/// A decay of 22 rad/s, 130 samples a second.
+fn decay(samples: usize, amplitude: f64) -> String {
+    let rows = (0..samples).map(|index| {
+        let t = index as f64 / 130.0;
+        format!("{t:.6},{:.6}\n", amplitude * (-0.15 * t).exp() * (22.0 * t).cos())
+    });
+    "time_s,angle_rad\n".to_owned() + &rows.collect::<String>()
+}
+
+#[test]
+fn records_that_say_nothing_are_refused() {
+    refused(&decay(40, 0.7), NOMINAL, &[], "40 samples; a diagnosis needs at least 50");
+    refused(&decay(80, 0.7), NOMINAL, &[], "a diagnosis needs at least 3. Record longer");
+    refused(&decay(800, 0.0), NOMINAL, &[], "does not move");
+    let noise = (0..800)
+        .map(|index| format!("{},{}\n", index as f64 / 130.0, if index % 7 == 0 { 1e-3 } else { 0.0 }));
+    let noise = "time_s,angle_rad\n".to_owned() + &noise.collect::<String>();
+    let coarse = format!("{NOMINAL}sensor_resolution = 1e-3\n");
+    refused(&noise, &coarse, &[], "does not move");
+}
+
+#[test]
+fn another_system_and_other_units_are_refused() {
+    let other = NOMINAL.replace("484.0", "100.0");
+    refused(&decay(800, 0.7), &other, &[], "this is not the same system, or the units are wrong");
+    refused(&decay(800, 0.7), NOMINAL, &["--time-unit", "ms"], "this is not the same system");
+    refused(&decay(800, 40.0), NOMINAL, &[], "look like degrees. Set --unit deg");
+    let drive = format!("coordinate = \"displacement\"\n{NOMINAL}");
+    refused(
+        &decay(800, 0.7),
+        &drive,
+        &[],
+        "the record is in rad, the nominal simulator's coordinate asks for m",
+    );
+}
+
+#[test]
+fn a_driven_system_needs_its_input() {
+    let driven = format!("{NOMINAL}input_gain = 2.0\n");
+    refused(&decay(800, 0.7), &driven, &[], "no input column; name it with --input");
+    let free = NOMINAL.replace("484.0", "0.0");
+    refused(&decay(800, 0.7), &free, &[], "no input column");
+    refused(&decay(800, 0.7), &driven, &["--input", "volts"], "there is no column `volts`");
+}
+
+#[test]
+fn files_that_cannot_be_used_are_refused_with_their_place() {
+    refused("time_s,angle_rad\n0,0.5\n0.01,x\n", NOMINAL, &[], "record.csv:3: `x` in column `angle_rad`");
+    refused("t,theta\n0,0.5\n", NOMINAL, &[], "Set --angle to the column's name");
+    refused("", NOMINAL, &[], "record.csv: is empty");
+    refused(&decay(800, 0.7), &format!("{NOMINAL}mass = 2\n"), &[], "nominal.toml:5:1: unknown key `mass`");
+    refused(&decay(800, 0.7), "inertia = 1.0\n", &[], "`damping` is missing");
+    refused(&decay(800, 0.7), &NOMINAL.replace("0.3", "-0.3"), &[], "`damping` is -0.3");
+    let scratch = tempfile::tempdir().unwrap();
+    let record = write(scratch.path(), "record.csv", &decay(800, 0.7));
+    let message = refusal(&["diagnose", &record, "--nominal", "no-such.toml"]);
+    assert!(message.contains("no-such.toml: cannot be used"), "{message}");
+    let nominal = write(scratch.path(), "nominal.toml", NOMINAL);
+    let message = refusal(&["diagnose", "no-such.csv", "--nominal", &nominal]);
+    assert!(message.contains("no-such.csv: cannot be read"), "{message}");
+    // The folder of another answer is not written over.
+    let full = scratch.path().to_str().unwrap();
+    let message = refusal(&["diagnose", &record, "--nominal", &nominal, "--out", full]);
+    assert!(message.contains("is not empty"), "{message}");
+}
+
+#[test]
+fn names_are_escaped_in_the_report() {
+    let scratch = tempfile::tempdir().unwrap();
+    let record = write(scratch.path(), "<script>alert(1)<script>.csv", &decay(800, 0.7));
+    let nominal = write(scratch.path(), "nominal.toml", NOMINAL);
+    let (code, found, folder) = result(&["diagnose", &record, "--nominal", &nominal]);
+    assert_eq!(code, 0, "{found}");
+    let html = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(!html.contains("<script"), "a name came through");
+    assert!(html.contains("&#60;script&#62;alert(1)"));
+}
+
+#[test]
+fn help_shows_examples_and_how_columns_are_found() {
+    let output = trainer(&["diagnose", "--help"]);
+    let text = String::from_utf8(output.stdout).unwrap();
+    for part in
+        ["trainer diagnose record.csv --nominal", "--batch", "--quantity", "velocity_rad_s", "Exit codes"]
+    {
+        assert!(text.contains(part), "{part}");
+    }
+    assert!(root().join("crates/diagnosis").exists());
+}
