@@ -3,6 +3,7 @@
 use crate::answer::Finding;
 use crate::fit::Fit;
 use crate::observations::Observations;
+use crate::period::swing;
 use crate::segments::Data;
 use crate::statistics::{mean_and_error, median, normal_above};
 use dynamics::Nominal;
@@ -107,6 +108,27 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         }
     }
     findings
+}
+
+/// Part by which frequencies of records differ that are said to differ.
+const APART: f64 = 0.1;
+
+/// Whether the records swing at frequencies of their own. Amplitude can do that, and so can records of several systems.
+pub(crate) fn frequencies(records: &[Observations]) -> Option<Finding> {
+    let free = records.iter().filter(|record| record.input.is_none());
+    let found: Vec<f64> = free
+        .filter_map(|record| swing(&record.times_s, &record.values))
+        .map(|swing| std::f64::consts::TAU / swing.period_s)
+        .collect();
+    let highest = found.iter().copied().fold(0.0, f64::max);
+    let lowest = found.iter().copied().fold(f64::INFINITY, f64::min);
+    (highest > (1.0 + APART) * lowest).then(|| Finding {
+        effect: None,
+        text: format!(
+            "the records swing at {lowest:.1} to {highest:.1} rad/s; unless their amplitudes differ much they are not of \
+             one system: diagnose them one by one"
+        ),
+    })
 }
 
 /// Runs of equal values at an end of the range.

@@ -222,6 +222,7 @@ pub fn diagnose(
 fn refit(data: &Data, found: &Fit) -> Result<Fit, DiagnosisError> {
     Ok(fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::HELD_OUT)?)
 }
+
 fn chain(
     records: &[Observations],
     kept: &[Vec<bool>],
@@ -236,6 +237,7 @@ fn chain(
         .flat_map(|(record, kept)| chain_statistics::findings(record, kept, nominal))
         .collect();
     findings.extend(chain_statistics::quantization(data, noise, nominal));
+    findings.extend(chain_statistics::frequencies(records));
     let host = records.iter().any(|record| record.clock == ClockKind::Host);
     let known = findings.iter().any(|finding| finding.effect == Some("timestamp_jitter"));
     if host && !known {
@@ -250,6 +252,7 @@ fn chain(
         findings,
     }
 }
+
 fn series(data: &Data, [nominal, recalibrated, repaired]: [&HeldOut; 3], paths: &[Path]) -> Series {
     let mut series = Series::default();
     for (segment, path) in data.segments.iter().zip(paths) {
