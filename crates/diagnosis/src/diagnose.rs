@@ -82,7 +82,7 @@ pub fn diagnose(
             candidate.applies(&data.facts, data.quantity == Quantity::Position, nominal.stiffness() > 0.0)
         })
         .collect();
-    let (coarse, _) = data.strided();
+    let coarse = data.strided();
     let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
     let coarse_base =
         fit(&coarse, &base.calibrated.hypothesis, base.calibrated.point.clone(), Moving::All, Effort::FINAL)?;
@@ -148,10 +148,9 @@ pub fn diagnose(
     let (rivals, closest) = work.rivals(repaired);
     let detectability = work.detectability(repaired);
     let noise_coarse = floor.value * time.sqrt();
-    let next_experiment = closest.filter(|rival| !rival.hypothesis.candidates.is_empty()).and_then(|rival| {
-        let strided = |fit: &Fit| fit.clone();
-        experiment::next(&coarse, &strided(repaired), &strided(rival), noise_coarse / finer.sqrt())
-    });
+    let next_experiment = closest
+        .filter(|rival| !rival.hypothesis.candidates.is_empty())
+        .and_then(|rival| experiment::next(&coarse, repaired, rival, noise_coarse / finer.sqrt()));
     lap("identifiability");
 
     let left = (held.after.mean_square() - noise_square).max(0.0) * data.samples() as f64;

@@ -154,8 +154,7 @@ const DOUBTFUL: f64 = 2.0;
 
 /// Weights of the segments: 1 up to [`DOUBTFUL`], falling with the mean square beyond.
 fn trust(predictions: &[Prediction]) -> Vec<f64> {
-    let squares = |p: &Prediction| p.residual.norm_squared() / p.residual.len().max(1) as f64;
-    let own: Vec<f64> = predictions.iter().map(squares).collect();
+    let own: Vec<f64> = predictions.iter().map(Prediction::mean_square).collect();
     let usual = median(&own).max(f64::MIN_POSITIVE);
     own.into_iter().map(|square| (DOUBTFUL * usual / square.max(f64::MIN_POSITIVE)).min(1.0)).collect()
 }

@@ -251,6 +251,11 @@ impl Hypothesis {
         2 + self.candidates.iter().map(|candidate| candidate.free_hidden()).sum::<usize>()
     }
 
+    /// The places of its candidates in the vocabulary: what tells sets apart.
+    pub(crate) fn ranks(&self) -> Vec<usize> {
+        self.candidates.iter().map(|candidate| candidate.rank()).collect()
+    }
+
     pub(crate) fn ids(&self) -> Vec<&'static str> {
         self.candidates.iter().map(|candidate| candidate.id()).collect()
     }

@@ -41,6 +41,13 @@ pub(crate) struct Prediction {
     pub(crate) jacobian: DMatrix<f64>,
 }
 
+impl Prediction {
+    /// Mean square of the residual.
+    pub(crate) fn mean_square(&self) -> f64 {
+        self.residual.norm_squared() / self.residual.len().max(1) as f64
+    }
+}
+
 /// The motion along a segment.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Motion {

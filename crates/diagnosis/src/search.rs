@@ -302,13 +302,10 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
 }
 
 fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
-    let set = |proposal: &Proposal| -> Vec<usize> {
-        proposal.hypothesis.candidates.iter().map(|c| c.rank()).collect()
-    };
     // A set may come with several shapes to begin from, but only in one round.
     let fresh: Vec<Proposal> =
-        proposals.into_iter().filter(|proposal| !tried.contains(&set(proposal))).collect();
-    tried.extend(fresh.iter().map(set));
+        proposals.into_iter().filter(|proposal| !tried.contains(&proposal.hypothesis.ranks())).collect();
+    tried.extend(fresh.iter().map(|proposal| proposal.hypothesis.ranks()));
     for fit in fit_all(data, &fresh) {
         pool.admit(data, fit);
     }
@@ -352,10 +349,7 @@ pub(crate) fn search(
             .into_iter()
             .filter(|fit| !fit.hypothesis.candidates.is_empty())
             .take(breadth.beam)
-            .filter(|fit| {
-                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
-                expanded.insert(set)
-            })
+            .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
             .cloned()
             .collect();
         if bases.is_empty() {
@@ -388,10 +382,7 @@ pub(crate) fn search(
         let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
         let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
         if now - before < threshold
-            && pool.ranked(time).first().is_some_and(|fit| {
-                let set: Vec<usize> = fit.hypothesis.candidates.iter().map(|c| c.rank()).collect();
-                expanded.contains(&set)
-            })
+            && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))
         {
             break;
         }

@@ -93,8 +93,8 @@ impl Data {
     }
 
     /// Every so many samples only, for a search: a swing sampled 75 times a period says hardly more about which
-    /// law it follows than one sampled 20 times. Gives the stride too.
-    pub(crate) fn strided(&self) -> (Self, usize) {
+    /// law it follows than one sampled 20 times.
+    pub(crate) fn strided(&self) -> Self {
         let per_period = TAU / (self.facts.frequency * self.facts.interval);
         let stride = ((per_period / SEARCHED_PER_PERIOD) as usize).max(1);
         let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
@@ -104,7 +104,7 @@ impl Data {
             values: segment.values.iter().copied().step_by(stride).collect(),
             ..segment.clone()
         });
-        (Self { segments: segments.collect(), ..self.clone() }, stride)
+        Self { segments: segments.collect(), ..self.clone() }
     }
 
     /// The same, integrated as accurately as a noise of this size asks for.

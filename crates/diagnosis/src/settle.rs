@@ -27,11 +27,10 @@ pub(crate) fn settle(
     starts: &mut [Vec<f64>],
     predictions: &mut [Prediction],
 ) -> Result<bool, DynamicsError> {
-    let squares = |p: &Prediction| p.residual.norm_squared() / p.residual.len().max(1) as f64;
-    let usual = median(&predictions.iter().map(squares).collect::<Vec<_>>());
+    let usual = median(&predictions.iter().map(Prediction::mean_square).collect::<Vec<_>>());
     let mut better = false;
     for ((segment, start), prediction) in segments.iter().zip(starts).zip(predictions) {
-        if squares(prediction) <= BEHIND * usual {
+        if prediction.mean_square() <= BEHIND * usual {
             continue;
         }
         let rest = extended(&[mean(&segment.values), 0.0], hypothesis);

@@ -30,7 +30,7 @@ pub(crate) struct Work<'a> {
     pub(crate) settings: &'a Settings,
 }
 
-/// The same on every stride-th sample: enough for shares, and many times as fast.
+/// The same on fewer samples: enough for shares, and many times as fast.
 pub(crate) struct Thin<'a> {
     pub(crate) data: &'a Data,
     pub(crate) calibrated: &'a Fit,

@@ -1,5 +1,6 @@
 //! Units of what a system is made of.
 
+use crate::chain::Observed;
 use serde::{Deserialize, Serialize};
 
 /// What the coordinate of a system is.
@@ -109,6 +110,33 @@ impl Quantity {
             (Self::QuadraticDamping, Units::Si(Displacement)) => "N s^2/m^2",
             (Self::QuadraticDamping, Units::PerInertia(Angle)) => "1/rad",
             (Self::QuadraticDamping, Units::PerInertia(Displacement)) => "1/m",
+        }
+    }
+
+    /// The unit's symbol where the sensor observes positions, velocities or accelerations: those of
+    /// [`Quantity::Observed`] and [`Quantity::ObservedPerTime`] depend on it, every other is [`Self::unit`]'s.
+    #[must_use]
+    pub fn unit_seen(self, units: Units, observed: Observed) -> &'static str {
+        let derivatives = match observed {
+            Observed::Position => 0,
+            Observed::Velocity => 1,
+            Observed::Acceleration => 2,
+        };
+        let order = match self {
+            Self::Observed => derivatives,
+            Self::ObservedPerTime => derivatives + 1,
+            _ => return self.unit(units),
+        };
+        let (Units::Si(coordinate) | Units::PerInertia(coordinate)) = units;
+        match (coordinate, order) {
+            (Coordinate::Angle, 0) => "rad",
+            (Coordinate::Angle, 1) => "rad/s",
+            (Coordinate::Angle, 2) => "rad/s^2",
+            (Coordinate::Angle, _) => "rad/s^3",
+            (Coordinate::Displacement, 0) => "m",
+            (Coordinate::Displacement, 1) => "m/s",
+            (Coordinate::Displacement, 2) => "m/s^2",
+            (Coordinate::Displacement, _) => "m/s^3",
         }
     }
 }

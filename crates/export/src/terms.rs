@@ -111,23 +111,26 @@ fn filled(expression: &str, description: &Description) -> String {
     expression.replace('{', &format!("{}_", description.id)).replace('}', "")
 }
 
+/// An effect's parameters by symbol, with values and units.
+fn values(repaired: &Repaired, active: &Active) -> String {
+    let parameters = active.effect().description().parameters.iter().zip(active.values());
+    let stated: Vec<String> = parameters
+        .map(|(parameter, value)| {
+            format!("{} = {value:?} {}", parameter.symbol, repaired.unit(parameter.quantity))
+        })
+        .collect();
+    stated.join(", ")
+}
+
 /// What acts between the motion and the file, and what could not be part of the repaired simulator.
 pub(crate) fn left_out(repaired: &Repaired) -> Vec<String> {
     let measured = repaired.chain.iter().map(|active| {
         let description = active.effect().description();
-        let values: Vec<String> = description
-            .parameters
-            .iter()
-            .zip(active.values())
-            .map(|(parameter, value)| {
-                format!("{} = {value:?} {}", parameter.symbol, repaired.unit(parameter.quantity))
-            })
-            .collect();
         format!(
             "{} acts on the measurement, not on the motion: {} ({})",
             description.title,
             description.equation,
-            values.join(", ")
+            values(repaired, active)
         )
     });
     measured.chain(repaired.left_out.iter().cloned()).collect()
@@ -170,19 +173,11 @@ impl JointTerms {
                 }
                 _ => {
                     let description = active.effect().description();
-                    let values: Vec<String> = description
-                        .parameters
-                        .iter()
-                        .zip(active.values())
-                        .map(|(parameter, value)| {
-                            format!("{} = {value:?} {}", parameter.symbol, repaired.unit(parameter.quantity))
-                        })
-                        .collect();
                     terms.left_out.push(format!(
                         "{} has no place in a joint: {} ({})",
                         description.title,
                         description.equation,
-                        values.join(", ")
+                        values(repaired, active)
                     ));
                 }
             }

@@ -320,27 +320,7 @@ impl ConfiguredUnits {
     }
 
     fn of(self, quantity: dynamics::Quantity) -> &'static str {
-        let derivatives = match self.observed {
-            Observed::Position => 0,
-            Observed::Velocity => 1,
-            Observed::Acceleration => 2,
-        };
-        let order = match quantity {
-            dynamics::Quantity::Observed => derivatives,
-            dynamics::Quantity::ObservedPerTime => derivatives + 1,
-            _ => return quantity.unit(self.units),
-        };
-        let (Units::Si(coordinate) | Units::PerInertia(coordinate)) = self.units;
-        match (coordinate, order) {
-            (Coordinate::Angle, 0) => "rad",
-            (Coordinate::Angle, 1) => "rad/s",
-            (Coordinate::Angle, 2) => "rad/s^2",
-            (Coordinate::Angle, _) => "rad/s^3",
-            (Coordinate::Displacement, 0) => "m",
-            (Coordinate::Displacement, 1) => "m/s",
-            (Coordinate::Displacement, 2) => "m/s^2",
-            (Coordinate::Displacement, _) => "m/s^3",
-        }
+        quantity.unit_seen(self.units, self.observed)
     }
 }
 
