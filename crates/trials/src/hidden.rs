@@ -1,0 +1,79 @@
+//! What a case hides.
+
+use serde::{Deserialize, Serialize};
+
+/// The `schema` of a hidden truth's text.
+pub const HIDDEN_SCHEMA: &str = "ringdown.trial/1";
+
+/// The kind of a case: what is asked of the diagnosis there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Bank {
+    /// Nothing is missing and the nominal simulator is exact.
+    None,
+    /// Nothing is missing; the nominal coefficients are off.
+    Calibration,
+    /// One effect of the vocabulary.
+    Single,
+    /// Two effects of the vocabulary.
+    Pair,
+    /// One effect of the vocabulary that the diagnosis is told not to consider: `unknown` is right.
+    LeftOut,
+    /// Something outside the vocabulary: `unknown` is right.
+    Foreign,
+    /// One effect, several releases of one system.
+    Releases,
+    /// One effect, a measured input.
+    Driven,
+    /// One effect by a law unlike the vocabulary's own, with another integrator and correlated disturbances.
+    Stressed,
+    /// One effect added to what a diagnosis left over of a measured record.
+    Measured,
+    /// One effect in records of a physics engine.
+    Engine,
+}
+
+/// What a case hides, and whatever else its records follow from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Hidden {
+    /// [`HIDDEN_SCHEMA`].
+    pub schema: String,
+    /// The kind of case.
+    pub bank: Bank,
+    /// The hidden effects of the vocabulary, the most detectable first; empty where none is.
+    pub effects: Vec<HiddenEffect>,
+    /// In words, what acts from outside the vocabulary.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub foreign: Option<String>,
+    /// Ids of effects of the measuring chain that come with records of every bank alike. They count neither for nor
+    /// against an answer.
+    pub nuisances: Vec<String>,
+    /// Whether the nominal coefficients are off.
+    pub miscalibrated: bool,
+    /// The effect that the diagnosis is told not to consider.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub without: Option<String>,
+    /// Standard deviation of the sensor's white noise, in the observed quantity's unit.
+    pub noise: f64,
+    /// The system as it is, where it can be said in the vocabulary: a repaired simulator is laid beside its motion.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub records: Vec<truth::Truth>,
+    /// How the records were made, in words; for whoever repeats one.
+    pub made: String,
+}
+
+/// A hidden effect.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct HiddenEffect {
+    /// Its id in the vocabulary.
+    pub id: String,
+    /// Its parameters by the vocabulary's law, or the nearest to them where the law is another, in SI units.
+    pub parameters: Vec<f64>,
+    /// The law that acted: `vocabulary`, or its name.
+    pub law: String,
+    /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration can absorb of
+    /// it, over the noise's standard deviation.
+    pub detectability: f64,
+}
