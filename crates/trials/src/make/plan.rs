@@ -232,6 +232,7 @@ impl TrialPlan {
         job.make(self, id(index))
     }
 
+    #[cfg(test)]
     pub(crate) fn job(&self, index: usize) -> Option<Job> {
         self.jobs.get(index).copied()
     }
