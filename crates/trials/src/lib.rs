@@ -7,5 +7,6 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod hidden;
+pub mod make;
 
 pub use hidden::{Bank, HIDDEN_SCHEMA, Hidden, HiddenEffect};
