@@ -9,6 +9,7 @@ use report::ReportError;
 use runs::RunError;
 use settings::SettingsError;
 use simulator::{GenerationError, SimulationError};
+use crate::trials::TrialsError;
 use thiserror::Error;
 
 /// Why a command gave no result.
@@ -75,6 +76,8 @@ pub(crate) enum TrainerError {
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
+    Trials(#[from] TrialsError),
+    #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -106,6 +109,7 @@ impl TrainerError {
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
+            | Self::Trials(_)
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,
