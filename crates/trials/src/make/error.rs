@@ -1,0 +1,64 @@
+//! Why a case cannot be made.
+
+use dynamics::DynamicsError;
+use record::{Fault, RecordError};
+use simulator::GenerationError;
+use thiserror::Error;
+
+/// Why a case cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum TrialError {
+    /// A case beyond the plan's.
+    #[error("there is no case {index}; the plan has {cases}, counted from 0")]
+    NoSuchCase {
+        /// The number asked for.
+        index: usize,
+        /// How many there are.
+        cases: usize,
+    },
+    /// The system, its motion or its measuring chain is impossible.
+    #[error(transparent)]
+    Dynamics(#[from] DynamicsError),
+    /// A record could not be generated.
+    #[error(transparent)]
+    Generation(#[from] GenerationError),
+    /// What the measuring chain leaves is no record.
+    #[error("what is left is no record: {0}")]
+    Fault(#[from] Fault),
+    /// A file of a bank from outside cannot be read.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// No size of an effect is as detectable as wanted.
+    #[error(
+        "{effect}: no size up to {most} reaches a detectability of {wanted} in {attempts} draws of its shape; \
+         lengthen the record (record.seconds) or leave that detectability out (trials.detectabilities)"
+    )]
+    OutOfReach {
+        /// The effect's id, or the name of the law.
+        effect: String,
+        /// The detectability wanted.
+        wanted: f64,
+        /// The largest size tried last.
+        most: f64,
+        /// How many shapes were drawn.
+        attempts: usize,
+    },
+    /// A recalibration without a unique answer: the record is too short for its period.
+    #[error("the recalibration is singular: {samples} samples do not determine {unknowns} unknowns")]
+    Singular {
+        /// Number of samples.
+        samples: usize,
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// A file of a bank from outside that says what it must not.
+    #[error("{path}: {problem}; {remedy}")]
+    Outside {
+        /// The file.
+        path: String,
+        /// What is wrong with it.
+        problem: String,
+        /// What to do.
+        remedy: &'static str,
+    },
+}

@@ -1,0 +1,36 @@
+//! Drawing cases: records, a nominal simulator, and the truth that is hidden from whoever diagnoses.
+//!
+//! A [`TrialPlan`] is resolved from a configuration; [`TrialPlan::case`] makes any of its cases alone, from the seed and its
+//! number. Systems, starts, sensors and what the logger does to stamps are drawn alike in every bank, so that none of it tells
+//! what is hidden.
+//!
+//! # Sizes
+//! Hidden effects are as large as makes them as *detectable* as configured: d = ‖P·Δ‖/σ, where Δ is what the effect adds
+//! to the samples, P takes away what a recalibration of damping, stiffness, rest angle, starts (and inertia, where there is an
+//! input) makes up for, and σ is the standard deviation of all that is white: the sensor's noise, its rounding, what
+//! scattered stamps do. In a pair each is sized as if alone. For effects that are random, and for lost samples, see
+//! `shape.rs`.
+
+mod case;
+mod draws;
+mod error;
+mod foreign;
+mod hiding;
+mod integrator;
+mod laws;
+mod outside;
+mod own_record;
+mod plan;
+mod recalibration;
+mod schema;
+mod shape;
+mod situation;
+mod size;
+mod stressed;
+
+#[cfg(test)]
+mod tests;
+
+pub use case::Case;
+pub use error::TrialError;
+pub use plan::{LeftOutBank, TrialPlan};

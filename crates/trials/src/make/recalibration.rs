@@ -1,0 +1,158 @@
+//! What no recalibration absorbs of a record.
+//!
+//! The size of an effect in noise units is d = ‖P·Δ‖/σ: Δ is what it adds to the samples, P takes away whatever damping,
+//! stiffness, rest angle, the start of each record and, where there is an input, inertia can make up for. It is computed by
+//! doing so: the noise-free samples with the effect are fitted by the nominal oscillator from its true coefficients
+//! (Gauss–Newton with exact sensitivities), and the root of the residual's sum of squares is taken over σ.
+
+use super::error::TrialError;
+use super::situation::Situation;
+use dynamics::chain::Samples;
+use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
+use dynamics::{Hold, Input, System};
+use nalgebra::{DMatrix, DVector};
+
+/// What a recalibration may move beside damping, stiffness and the starts.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Absorbed {
+    /// The rest angle; not where the hidden effect is a preload, which is a rest angle that the simulator does not have.
+    pub(crate) rest_angle: bool,
+}
+
+/// Most rounds of the fit. From the truth it is nearly linear, and two are enough for most.
+const ROUNDS: usize = 8;
+
+/// How well a round's prediction of the next residual's norm has to come true for the fit to end.
+const SETTLED: f64 = 1e-3;
+
+/// Root of the sum of squares that the best recalibrated oscillator leaves of noise-free records, in rad.
+pub(crate) fn left_over(
+    situation: &Situation,
+    seen: &[Samples<f64>],
+    absorbed: Absorbed,
+) -> Result<f64, TrialError> {
+    Recalibration::new(situation, seen, absorbed)?.run()
+}
+
+/// One round of the fit.
+struct Round {
+    /// Root of the residual's sum of squares at the present unknowns.
+    norm: f64,
+    /// The same after the step, if the record were linear in the unknowns.
+    expected: f64,
+    step: DVector<f64>,
+}
+
+struct Recalibration<'a> {
+    situation: &'a Situation,
+    seen: &'a [Samples<f64>],
+    model: Model,
+    /// Free coefficients, shared by the records; then position and velocity at the start of each.
+    unknowns: Vec<f64>,
+    shared: usize,
+}
+
+impl<'a> Recalibration<'a> {
+    fn new(
+        situation: &'a Situation,
+        seen: &'a [Samples<f64>],
+        absorbed: Absorbed,
+    ) -> Result<Self, TrialError> {
+        let is = situation.nominal.coefficients();
+        let mut free = vec![(Free::Damping, is.damping), (Free::Stiffness, is.stiffness)];
+        if absorbed.rest_angle {
+            free.push((Free::RestAngle, is.rest_angle));
+        }
+        if situation.excitation.is_some() {
+            free.push((Free::Inertia, is.inertia));
+        }
+        let shared = free.len();
+        let mut unknowns: Vec<f64> = free.iter().map(|(_, value)| *value).collect();
+        unknowns.extend(situation.starts.iter().flat_map(|start| [start.position, start.velocity]));
+        let mut names: Vec<Free> = free.into_iter().map(|(name, _)| name).collect();
+        names.extend([Free::StartPosition, Free::StartVelocity]);
+        let system = System::new(situation.nominal, Vec::new())?;
+        let model = Model::new(&system, &names, Settings::default())?;
+        Ok(Self { situation, seen, model, unknowns, shared })
+    }
+
+    fn run(mut self) -> Result<f64, TrialError> {
+        let mut expected = f64::INFINITY;
+        let mut least = f64::INFINITY;
+        for _ in 0..ROUNDS {
+            let round = self.round()?;
+            if (round.norm - expected).abs() <= SETTLED * round.norm {
+                return Ok(round.expected);
+            }
+            least = least.min(round.norm);
+            expected = round.expected;
+            for (unknown, step) in self.unknowns.iter_mut().zip(round.step.iter()) {
+                *unknown += step;
+            }
+        }
+        Ok(least)
+    }
+
+    fn round(&mut self) -> Result<Round, TrialError> {
+        let count = self.unknowns.len();
+        let mut normal = DMatrix::<f64>::zeros(count, count);
+        let mut gradient = DVector::<f64>::zeros(count);
+        let unknowns = self.unknowns.clone();
+        let (coefficients, starts) = unknowns.split_at(self.shared);
+        self.model.set(coefficients)?;
+        let mut squares = 0.0;
+        let mut samples = 0;
+        let mut response = Response::default();
+        for (record, (seen, start)) in self.seen.iter().zip(starts.chunks_exact(2)).enumerate() {
+            let &[position, velocity] = start else { continue };
+            // The first sample may bear a later stamp than its time: the motion starts at the first sample's time.
+            let start_time = seen.times_s.first().copied().unwrap_or_default().min(0.0);
+            let times: Vec<f64> = std::iter::once(start_time).chain(seen.stamps_s.iter().copied()).collect();
+            let state = FullState { position, velocity, hidden: None };
+            let input = self.input(seen)?;
+            self.model.run_into(state, input.as_ref(), &times, &mut response)?;
+            let column = |own: usize| if own < self.shared { own } else { own + 2 * record };
+            for (index, value) in seen.values.iter().enumerate() {
+                let predicted = response.position.get(index + 1).copied().unwrap_or_default();
+                let residual = value - predicted;
+                squares += residual * residual;
+                let row = response.position_row(index + 1);
+                for (own, sensitivity) in row.iter().enumerate() {
+                    if let Some(slot) = gradient.get_mut(column(own)) {
+                        *slot += sensitivity * residual;
+                    }
+                    for (other, second) in row.iter().enumerate().take(own + 1) {
+                        if let Some(slot) = normal.get_mut((column(own), column(other))) {
+                            *slot += sensitivity * second;
+                        }
+                    }
+                }
+            }
+            samples += seen.values.len();
+        }
+        let singular = TrialError::Singular { samples, unknowns: count };
+        let step = solve(normal, gradient.clone()).ok_or(singular)?;
+        let expected = (squares - gradient.dot(&step)).max(0.0).sqrt();
+        Ok(Round { norm: squares.sqrt(), expected, step })
+    }
+
+    /// The input as the file tells it: its samples bear the stamps of the values beside them.
+    fn input(&self, seen: &Samples<f64>) -> Result<Option<Input>, TrialError> {
+        let Some(excitation) = self.situation.excitation else { return Ok(None) };
+        let duration = self.situation.duration();
+        let values = seen.times_s.iter().map(|&time| excitation.at(time, duration)).collect();
+        Ok(Some(Input::new(seen.stamps_s.clone(), values, Hold::Zero)?))
+    }
+}
+
+/// Solves normal equations of which the lower triangle is given, each unknown scaled to a unit diagonal.
+fn solve(mut normal: DMatrix<f64>, mut gradient: DVector<f64>) -> Option<DVector<f64>> {
+    let scale = normal.diagonal().map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 });
+    for (index, entry) in normal.iter_mut().enumerate() {
+        let (row, column) = (index % scale.len(), index / scale.len());
+        *entry *= scale.get(row)? * scale.get(column)?;
+    }
+    gradient.component_mul_assign(&scale);
+    let solution = normal.cholesky()?.solve(&gradient);
+    Some(solution.component_mul(&scale))
+}

@@ -1,0 +1,172 @@
+//! The configuration keys of trials.
+
+use settings::{Default, Field, Kind, Section};
+
+/// A field without unit and source, to be refined by struct update.
+const PLAIN: Field =
+    Field { key: "", kind: Kind::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+/// Every section of a configuration of trials.
+pub(crate) const SECTIONS: &[Section<'static>] = &[
+    Section { name: "", fields: TOP },
+    Section { name: "trials", fields: TRIALS },
+    Section { name: "record", fields: RECORD },
+    Section { name: "system", fields: SYSTEM },
+    Section { name: "sensor", fields: SENSOR },
+];
+
+const TOP: &[Field] = &[
+    Field {
+        key: "task",
+        kind: Kind::Choice(&["trials"]),
+        default: Default::Text("trials"),
+        meaning: "What the configuration is for.",
+        ..PLAIN
+    },
+    Field {
+        key: "name",
+        default: Default::Text("trials"),
+        meaning: "Start of the run folder's name.",
+        ..PLAIN
+    },
+    Field {
+        key: "seed",
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        default: Default::Integer(0),
+        meaning: "Root of every random draw; a case draws from a branch of its own.",
+        ..PLAIN
+    },
+];
+
+const fn count(key: &'static str, meaning: &'static str) -> Field {
+    Field {
+        key,
+        kind: Kind::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(0),
+        unit: "cases",
+        meaning,
+        source: "",
+    }
+}
+
+const TRIALS: &[Field] = &[
+    count("none", "Cases in which nothing is missing and the nominal simulator is exact."),
+    count("calibration", "Cases in which nothing is missing and the nominal coefficients are off."),
+    count("single", "Cases with one effect of the vocabulary, each effect at each detectability in turn."),
+    count("pair", "Cases with two effects, each pair at each detectability in turn."),
+    count("left_out", "Cases with one effect that the diagnosis is told not to consider."),
+    count("foreign", "Cases with something that the vocabulary does not have."),
+    count("releases", "Cases with one effect and two or three releases of different amplitude."),
+    count("driven", "Cases with one effect and a measured input."),
+    count("stressed", "Cases with one effect by another law, another integrator, correlated disturbances."),
+    count(
+        "measured_cases",
+        "Cases with one effect added to what a diagnosis left over of a measured record.",
+    ),
+    count("engine_cases", "Cases of a physics engine, at most; those of the folder, in order."),
+    Field {
+        key: "measured",
+        meaning: "Folder with residual-*.csv (columns time_s and residual, in rad) of measured records.",
+        ..PLAIN
+    },
+    Field {
+        key: "engine",
+        meaning: "Folder with the records of a physics engine, as experiments/physics-engine makes it.",
+        ..PLAIN
+    },
+    Field {
+        key: "detectabilities",
+        kind: Kind::Floats { min: 0.1, max: 1000.0, at_least: 1, at_most: 20 },
+        default: Default::Floats(&[3.0, 6.0, 12.0, 25.0, 50.0, 100.0]),
+        unit: "noise units",
+        meaning: "Sizes of hidden effects: root of the sum of squares of what no recalibration absorbs.",
+        ..PLAIN
+    },
+];
+
+const RECORD: &[Field] = &[
+    Field {
+        key: "rate_hz",
+        kind: Kind::Float { min: 20.0, max: 100_000.0 },
+        default: Default::Float(260.0),
+        unit: "Hz",
+        meaning: "Samples per second of the sensor's own clock.",
+        source: "the paper's rig",
+    },
+    Field {
+        key: "seconds",
+        kind: Kind::Float { min: 1.0, max: 10_000.0 },
+        default: Default::Float(25.0),
+        unit: "s",
+        meaning: "Length of a record.",
+        source: "the paper's rig",
+    },
+    Field {
+        key: "smallest_release_deg",
+        kind: Kind::Float { min: 1.0, max: 120.0 },
+        default: Default::Float(20.0),
+        unit: "deg",
+        meaning: "Smallest release, or largest swing of a driven record, from the rest angle.",
+        ..PLAIN
+    },
+    Field {
+        key: "largest_release_deg",
+        kind: Kind::Float { min: 1.0, max: 120.0 },
+        default: Default::Float(60.0),
+        unit: "deg",
+        meaning: "Largest release, or largest swing of a driven record, from the rest angle.",
+        ..PLAIN
+    },
+];
+
+const SYSTEM: &[Field] = &[
+    Field {
+        key: "lowest_frequency_hz",
+        kind: Kind::Float { min: 0.1, max: 100.0 },
+        default: Default::Float(1.0),
+        unit: "Hz",
+        meaning: "Lowest natural frequency; drawn uniformly in its logarithm.",
+        ..PLAIN
+    },
+    Field {
+        key: "highest_frequency_hz",
+        kind: Kind::Float { min: 0.1, max: 100.0 },
+        default: Default::Float(8.0),
+        unit: "Hz",
+        meaning: "Highest natural frequency.",
+        ..PLAIN
+    },
+    Field {
+        key: "smallest_damping_ratio",
+        kind: Kind::Float { min: 1e-4, max: 0.5 },
+        default: Default::Float(0.002),
+        meaning: "Smallest damping ratio; drawn uniformly in its logarithm.",
+        ..PLAIN
+    },
+    Field {
+        key: "largest_damping_ratio",
+        kind: Kind::Float { min: 1e-4, max: 0.5 },
+        default: Default::Float(0.03),
+        meaning: "Largest damping ratio.",
+        ..PLAIN
+    },
+];
+
+const SENSOR: &[Field] = &[
+    Field {
+        key: "smallest_noise",
+        kind: Kind::Float { min: 1e-7, max: 0.1 },
+        default: Default::Float(2e-4),
+        unit: "rad",
+        meaning: "Smallest standard deviation of the sensor's white noise; drawn uniformly in its logarithm.",
+        ..PLAIN
+    },
+    Field {
+        key: "largest_noise",
+        kind: Kind::Float { min: 1e-7, max: 0.1 },
+        default: Default::Float(1e-3),
+        unit: "rad",
+        meaning: "Largest standard deviation of the sensor's white noise.",
+        ..PLAIN
+    },
+];

@@ -1,0 +1,86 @@
+//! Finding the size of an effect from how detectable it is to be.
+
+use super::error::TrialError;
+
+/// How close the detectability found is to the one wanted, relatively.
+pub(crate) const CLOSE: f64 = 0.01;
+
+/// Most trial sizes. The detectability is nearly a power of the size, and four are enough for most.
+const ROUNDS: usize = 24;
+
+/// A size and how detectable it is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Sized {
+    pub(crate) size: f64,
+    pub(crate) detectability: f64,
+}
+
+/// The size at which `detectability` is as wanted, by the secant rule on the logarithms of both; a bracket, once there is
+/// one, is kept by bisection. `None` where no size up to `most` is enough, or no size is close.
+pub(crate) fn solve(
+    wanted: f64,
+    guess: f64,
+    most: f64,
+    mut detectability: impl FnMut(f64) -> Result<f64, TrialError>,
+) -> Result<Option<Sized>, TrialError> {
+    let top = most.ln();
+    let mut at = guess.ln().min(top);
+    let (mut below, mut above): (Option<f64>, Option<f64>) = (None, None);
+    let mut before: Option<(f64, f64)> = None;
+    for _ in 0..ROUNDS {
+        let found = detectability(at.exp())?;
+        if (found / wanted - 1.0).abs() <= CLOSE {
+            return Ok(Some(Sized { size: at.exp(), detectability: found }));
+        }
+        if !found.is_finite() {
+            return Ok(None);
+        }
+        let miss = (found.max(1e-12) / wanted).ln();
+        if miss < 0.0 {
+            below = Some(below.map_or(at, |edge| edge.max(at)));
+        } else {
+            above = Some(above.map_or(at, |edge| edge.min(at)));
+        }
+        if miss < 0.0 && at >= top {
+            return Ok(None);
+        }
+        let slope = before.map_or(1.0, |(place, other)| (miss - other) / (at - place));
+        before = Some((at, miss));
+        let slope = if slope.is_finite() { slope.clamp(0.4, 4.0) } else { 1.0 };
+        // Far from the answer a power law is no more than a direction.
+        let mut next = (at - (miss / slope).clamp(-7.0, 7.0)).min(top);
+        if let (Some(low), Some(high)) = (below, above) {
+            let inside =
+                low.min(high) + 0.02 * (high - low).abs()..=low.max(high) - 0.02 * (high - low).abs();
+            if !inside.contains(&next) {
+                next = 0.5 * (low + high);
+            }
+        }
+        at = next;
+    }
+    Ok(None)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CLOSE, solve};
+
+    #[test]
+    fn powers_steps_and_plateaus_are_solved() {
+        let laws: [(&dyn Fn(f64) -> f64, f64); 4] = [
+            (&|size: f64| 300.0 * size, 12.0),
+            (&|size: f64| 4e5 * size.powf(2.5), 50.0),
+            (&|size: f64| 100.0 * size / (size + 0.3), 60.0),
+            (&|size: f64| (size - 0.2).max(0.0) * 40.0, 3.0),
+        ];
+        for (law, wanted) in laws {
+            let found = solve(wanted, 1e-3, 10.0, |size| Ok(law(size))).unwrap().unwrap();
+            assert!((law(found.size) / wanted - 1.0).abs() <= CLOSE, "{found:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_reach_is_said_to_be() {
+        assert_eq!(solve(60.0, 1e-3, 10.0, |size| Ok(50.0 * size / (size + 1.0))).unwrap(), None);
+    }
+}
