@@ -15,7 +15,6 @@ use crate::interrupt;
 use crate::rerender::write_report;
 use crate::run::{new_folder, read_config, thread_pool};
 use arguments::TrialsArguments;
-use estimator::Cancel;
 use open::Opened;
 use rayon::ThreadPool;
 use runs::result::{LeftOutBank, TrialsManifest};
