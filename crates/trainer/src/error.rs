@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::trials::TrialsError;
 use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
 use estimator::FitError;
@@ -9,7 +10,6 @@ use report::ReportError;
 use runs::RunError;
 use settings::SettingsError;
 use simulator::{GenerationError, SimulationError};
-use crate::trials::TrialsError;
 use thiserror::Error;
 
 /// Why a command gave no result.

@@ -30,18 +30,19 @@ pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
     }
     let rows: Vec<(&Reliability, &ReliabilityBin)> =
         shown.iter().flat_map(|study| study.bins.iter().map(move |bin| (*study, bin))).collect();
-    let table = csv(&["subject", "banks", "stated", "found", "low", "high", "cases"], &rows, |(study, bin)| {
-        let [low, high] = bin.found.interval_95;
-        vec![
-            study.subject.clone(),
-            study.banks.clone(),
-            number(bin.stated),
-            number(bin.found.share),
-            number(low),
-            number(high),
-            bin.found.of.to_string(),
-        ]
-    });
+    let table =
+        csv(&["subject", "banks", "stated", "found", "low", "high", "cases"], &rows, |(study, bin)| {
+            let [low, high] = bin.found.interval_95;
+            vec![
+                study.subject.clone(),
+                study.banks.clone(),
+                number(bin.stated),
+                number(bin.found.share),
+                number(low),
+                number(high),
+                bin.found.of.to_string(),
+            ]
+        });
     if rows.is_empty() {
         return None;
     }

@@ -30,7 +30,11 @@ pub(super) fn size(value: f64) -> String {
 }
 
 /// Rows by name, columns by size.
-fn by_size(rows: &[&SizeRow], name: impl Fn(&SizeRow) -> String, of: impl Fn(&SizeRow) -> Proportion) -> Grid {
+fn by_size(
+    rows: &[&SizeRow],
+    name: impl Fn(&SizeRow) -> String,
+    of: impl Fn(&SizeRow) -> Proportion,
+) -> Grid {
     let mut sizes: Vec<f64> = rows.iter().map(|row| row.size).collect();
     sizes.sort_by(f64::total_cmp);
     sizes.dedup();
@@ -63,9 +67,16 @@ pub(super) fn accuracy(result: &TrialsResult) -> Section {
     let banks = Grid {
         title: "By kind of case".to_owned(),
         corner: "Bank",
-        columns: ["Status and set right", "First name", "Its class", "Both of two", "Either of two", "False alarms"]
-            .map(str::to_owned)
-            .to_vec(),
+        columns: [
+            "Status and set right",
+            "First name",
+            "Its class",
+            "Both of two",
+            "Either of two",
+            "False alarms",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
         rows: result
             .banks
             .iter()
@@ -180,7 +191,9 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
     let row = |name: &str, cells: Vec<GridCell>| GridRow { name: name.to_owned(), cells };
     let ratio = &result.ratio_to_floor;
     let seconds = &result.seconds_per_case;
-    let number = |value: f64, unit: &str| plain(quantity(&significant(value, 3), unit));
+    let number = |value: f64, unit: &str| {
+        plain(if value.is_finite() { quantity(&significant(value, 3), unit) } else { "–".to_owned() })
+    };
     let left_out: Vec<String> =
         study.left_out.iter().map(|(reason, cases)| format!("{reason} ({cases})")).collect();
     let mut sentences = vec![format!("True closure: {}.", study.means)];
@@ -195,7 +208,9 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
             Grid {
                 title: "Intervals of closure".to_owned(),
                 corner: "",
-                columns: ["Hold the true closure", "Lie above it", "Lie below it"].map(str::to_owned).to_vec(),
+                columns: ["Hold the true closure", "Lie above it", "Lie below it"]
+                    .map(str::to_owned)
+                    .to_vec(),
                 rows: vec![row(
                     "95 % intervals",
                     vec![share(&study.coverage), plain(count(study.below)), plain(count(study.above))],
@@ -204,7 +219,9 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
             Grid {
                 title: String::new(),
                 corner: "",
-                columns: ["Cases", "Median", "95 % interval", "95 % quantile", "Largest"].map(str::to_owned).to_vec(),
+                columns: ["Cases", "Median", "95 % interval", "95 % quantile", "Largest"]
+                    .map(str::to_owned)
+                    .to_vec(),
                 rows: [
                     ("Held-out error over floor, of right answers with a name", ratio, ""),
                     ("Wall time of an answer", seconds, "s"),
@@ -213,7 +230,11 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
                     let cells = vec![
                         plain(count(of.count)),
                         number(of.median.value, unit),
-                        plain(interval(of.median.interval_95)),
+                        plain(if of.median.interval_95[0].is_finite() {
+                            interval(of.median.interval_95)
+                        } else {
+                            "–".to_owned()
+                        }),
                         number(of.quantile_95, unit),
                         number(of.worst, unit),
                     ];

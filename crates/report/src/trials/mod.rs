@@ -150,7 +150,10 @@ fn bar(row: &BarRow) -> BarView<'_> {
     let measured = match (row.value.is_finite(), row.unit.as_str()) {
         (false, _) => "–".to_owned(),
         (true, "%") => format!("{} {}", number(row.value), percents(row.interval_95)),
-        (true, _) => format!("{} {}", number(row.value), interval(row.interval_95)),
+        (true, _) if row.interval_95[0].is_finite() => {
+            format!("{} {}", number(row.value), interval(row.interval_95))
+        }
+        (true, _) => number(row.value),
     };
     let (class, state) = match (row.state.as_str(), row.missed_beyond_chance) {
         ("met", _) => ("good", "met".to_owned()),

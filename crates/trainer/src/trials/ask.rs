@@ -28,8 +28,7 @@ pub(crate) fn ask(
     manifest: &TrialsManifest,
     cancel: &Cancel,
 ) -> Result<Option<BTreeMap<String, String>>, TrainerError> {
-    let is_missing =
-        |id: &str, group: &str| !folder.path().join(open::answer_name(group, id)).exists();
+    let is_missing = |id: &str, group: &str| !folder.path().join(open::answer_name(group, id)).exists();
     let missing = manifest.cases.iter().filter(|line| is_missing(&line.id, &line.group));
     let mut groups: BTreeMap<&str, usize> = BTreeMap::new();
     for line in missing.clone() {
@@ -107,11 +106,7 @@ fn group_answers(
 }
 
 /// Waits for a process, counting meanwhile; once an interruption is requested, for a while only.
-fn watch(
-    child: &mut Child,
-    cancel: &Cancel,
-    count: &dyn Fn(),
-) -> std::io::Result<Option<i32>> {
+fn watch(child: &mut Child, cancel: &Cancel, count: &dyn Fn()) -> std::io::Result<Option<i32>> {
     let mut requested: Option<Instant> = None;
     loop {
         if let Some(status) = child.try_wait()? {

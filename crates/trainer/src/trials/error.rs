@@ -7,11 +7,11 @@ use truth::SealError;
 /// Why trials gave no score.
 #[derive(Debug, Error)]
 pub(crate) enum TrialsError {
-    #[error(
-        "{folder}: trials were begun here; go on with --resume, or name another folder with --out"
-    )]
+    #[error("{folder}: trials were begun here; go on with --resume, or name another folder with --out")]
     Begun { folder: String },
-    #[error("{folder}: there are no trials in it: manifest.json is missing; name the folder that `trainer trials` made")]
+    #[error(
+        "{folder}: there are no trials in it: manifest.json is missing; name the folder that `trainer trials` made"
+    )]
     NoTrials { folder: String },
     #[error(
         "{file}: these trials were begun with another configuration: {difference}; resume with the configuration that they \
@@ -29,7 +29,9 @@ pub(crate) enum TrialsError {
     Unreadable { file: String, problem: String },
     #[error("{file}: {source}")]
     Seal { file: String, source: SealError },
-    #[error("{file}: has the digest {found}, not {stated} as manifest.json says; it was changed after it was made")]
+    #[error(
+        "{file}: has the digest {found}, not {stated} as manifest.json says; it was changed after it was made"
+    )]
     Changed { file: String, stated: String, found: String },
     #[error(
         "{file}: this answer is to other records (digests {found}, not {stated}); delete it and resume the trials"

@@ -77,10 +77,7 @@ pub(crate) fn make(
     Ok(Some(Made { manifest, sealed }))
 }
 
-fn write(
-    folder: &RunFolder,
-    case: &Case,
-) -> Result<(TrialsManifestLine, Sealed<Hidden>), TrainerError> {
+fn write(folder: &RunFolder, case: &Case) -> Result<(TrialsManifestLine, Sealed<Hidden>), TrainerError> {
     let group = case.without.as_ref().map_or_else(|| FULL.to_owned(), |id| format!("{WITHOUT}{id}"));
     let seal = |source| TrialsError::Seal { file: case.id.clone(), source };
     let sealed = Sealed::seal(&case.hidden).map_err(seal)?;

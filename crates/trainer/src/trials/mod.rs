@@ -33,9 +33,8 @@ pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerErr
     let pool = thread_pool(&as_experiment(arguments))?;
     if let Some(folder) = &arguments.score {
         let folder = RunFolder::open(folder);
-        let manifest = make::read_manifest(&folder)?.ok_or_else(|| TrialsError::NoTrials {
-            folder: folder.path().display().to_string(),
-        })?;
+        let manifest = make::read_manifest(&folder)?
+            .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
         return finish(arguments, &folder, &manifest, &pool, &BTreeMap::new(), start);
     }
     let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;

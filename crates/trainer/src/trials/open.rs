@@ -52,7 +52,8 @@ pub(crate) fn first_difference(before: &str, now: &str) -> Option<String> {
             (None, None) => return None,
             (one, other) if one == other => (),
             (one, other) => {
-                let shown = |line: Option<&str>| line.map_or("nothing".to_owned(), |line| format!("`{line}`"));
+                let shown =
+                    |line: Option<&str>| line.map_or("nothing".to_owned(), |line| format!("`{line}`"));
                 return Some(format!("{} then, {} now", shown(one), shown(other)));
             }
         }
@@ -111,8 +112,7 @@ fn one(
     };
     let without = line.group.strip_prefix(WITHOUT).map_or_else(String::new, |id| format!(" --without {id}"));
     let paths: Vec<String> = records.iter().map(|path| path.display().to_string()).collect();
-    let command =
-        format!("trainer diagnose {} --nominal {}{without}", paths.join(" "), nominal.display());
+    let command = format!("trainer diagnose {} --nominal {}{without}", paths.join(" "), nominal.display());
     Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, baseline))
 }
 

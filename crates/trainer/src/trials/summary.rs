@@ -19,7 +19,11 @@ pub(super) fn summary(result: &TrialsResult, folder: &Path) -> String {
             result.cases,
             result.seed,
             result.seconds,
-            if result.unanswered > 0 { format!(": {} WITHOUT AN ANSWER", result.unanswered) } else { String::new() },
+            if result.unanswered > 0 {
+                format!(": {} WITHOUT AN ANSWER", result.unanswered)
+            } else {
+                String::new()
+            },
         ),
         table(&["bar", "", "measured, 95 % interval", "cases", ""], result.bars.iter().map(bar).collect()),
         banks(result),
@@ -59,7 +63,8 @@ fn bar(row: &BarRow) -> Vec<String> {
         (true, [low, high]) if is_share => {
             format!("{} [{}, {}]", number(row.value), fixed(100.0 * low, 1), fixed(100.0 * high, 1))
         }
-        (true, ends) => format!("{} {}", number(row.value), interval(ends)),
+        (true, ends) if ends[0].is_finite() => format!("{} {}", number(row.value), interval(ends)),
+        (true, _) => number(row.value),
     };
     let state = match (row.state.as_str(), row.missed_beyond_chance) {
         ("not met", true) => "NOT MET",
@@ -99,5 +104,6 @@ fn worst(result: &TrialsResult) -> Option<String> {
         .take(MOST_WORST)
         .map(|(effect, right, of)| format!("{effect} {right} of {of}"))
         .collect();
-    (!named.is_empty()).then(|| format!("least often named first, at sizes of about 12 and more: {}", named.join(", ")))
+    (!named.is_empty())
+        .then(|| format!("least often named first, at sizes of about 12 and more: {}", named.join(", ")))
 }

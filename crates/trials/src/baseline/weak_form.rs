@@ -83,9 +83,8 @@ pub fn weak_form(records: &[BaselineRecord], nominal: &Nominal) -> Option<&'stat
         return None;
     }
     let target = DVector::from_iterator(rows.len(), rows.iter().filter_map(|row| row.last().copied()));
-    let column = |index: usize| -> Vec<f64> {
-        rows.iter().filter_map(|row| row.get(index).copied()).collect()
-    };
+    let column =
+        |index: usize| -> Vec<f64> { rows.iter().filter_map(|row| row.get(index).copied()).collect() };
     let squares = |terms: &[usize]| -> Option<f64> {
         let calibration = (0..CALIBRATION).map(column).filter(|values| values.iter().any(|v| *v != 0.0));
         let own = terms.iter().map(|term| column(CALIBRATION + term));
@@ -152,12 +151,7 @@ impl<'a> Motion<'a> {
     }
 
     /// A row: columns of calibration, of the library, and the target.
-    fn window(
-        &self,
-        center: f64,
-        half: f64,
-        nominal: &Nominal,
-    ) -> [f64; CALIBRATION + LIBRARY.len() + 1] {
+    fn window(&self, center: f64, half: f64, nominal: &Nominal) -> [f64; CALIBRATION + LIBRARY.len() + 1] {
         let mut row = [0.0; CALIBRATION + LIBRARY.len() + 1];
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
@@ -247,8 +241,7 @@ mod tests {
         let effects = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
         let system = System::new(nominal, effects).unwrap();
         let times: Vec<f64> = (0..1500).map(|i| f64::from(i) / 130.0).collect();
-        let motion =
-            simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
+        let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
         let record = BaselineRecord { times_s: times, values: motion.position, input: None };
         weak_form(&[record], &nominal)
     }

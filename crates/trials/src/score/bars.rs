@@ -4,9 +4,7 @@ use super::accuracy::{kind_right, range, within};
 use super::judgment::{Judgment, is_without_effect};
 use super::statistics::{NO_NUMBER, proportion};
 use crate::hidden::Bank;
-use runs::result::{
-    BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval,
-};
+use runs::result::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
 /// Size in noise units at which an effect is told from its closest rival in 19 of 20 records, with one, two and three
 /// releases; from the linearized law of a decay of 3.5 Hz with a damping ratio of 0.006, released at 40° (and 10°; at 60°,
@@ -104,11 +102,15 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
         });
     let class = |size| proportion(at(Bank::Single, size).map(|judgment| judgment.class));
     let both = |size| proportion(at(Bank::Pair, size).map(|judgment| judgment.both));
-    let error = |banks: &str| {
+    let error = |metric: &str, banks: &str, bar: f64| {
         let found = measured.reliability.iter().find(|row| row.subject == "confidence" && row.banks == banks);
-        found.map_or((NO_NUMBER, 0), |row| (row.calibration_error, row.count))
+        let (error, count) = found.map_or((NO_NUMBER, 0), |row| (row.calibration_error, row.count));
+        let mut row = row(metric, "", AtMost(bar), error, count);
+        // What scatter alone makes of it is no miss.
+        let chance = found.map_or(f64::NAN, |row| row.calibration_error_by_chance);
+        row.missed_beyond_chance = error.interval_95[0] - chance > bar;
+        row
     };
-    let (own, stressed) = (error("own"), error("stressed"));
     let area = measured.unknown.areas.iter().find(|row| row.size == Some(25.0));
     let of_area = area.map_or((NO_NUMBER, 0), |row| (row.area, row.positives));
     let ratio = measured.ratio_to_floor;
@@ -125,8 +127,8 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
         share("both of a pair, size 25", AtLeast(0.80), &both(twenty_five)),
         share("both of a pair, size 100", AtLeast(0.93), &both(hundred)),
         share("kind of verdict, size 25", AtLeast(0.95), &kind_right(judged, twenty_five)),
-        row("calibration error of confidence, own banks", "", AtMost(0.03), own.0, own.1),
-        row("calibration error of confidence, stressed bank", "", AtMost(0.05), stressed.0, stressed.1),
+        error("calibration error of confidence, own banks", "own", 0.03),
+        error("calibration error of confidence, stressed bank", "stressed", 0.05),
         row("area under the curve of unknown, size 25", "", AtLeast(0.95), of_area.0, of_area.1),
         row("held-out error over floor, median", "", AtMost(1.05), ratio.median, ratio.count),
         share("95 % intervals of closure that hold", Within(0.93, 0.97), &measured.closure.coverage),

@@ -174,12 +174,7 @@ impl Clean {
     }
 
     /// Squares left by the best start state: Levenberg–Marquardt from the clean motion's own.
-    fn fitted(
-        &self,
-        model: &mut Model,
-        segment: &Segment,
-        hidden: usize,
-    ) -> Result<f64, DynamicsError> {
+    fn fitted(&self, model: &mut Model, segment: &Segment, hidden: usize) -> Result<f64, DynamicsError> {
         let first = segment.times.get(..1).unwrap_or_default();
         let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden.unwrap_or_default();
         let mut at = vec![segment.start.position, segment.start.velocity];

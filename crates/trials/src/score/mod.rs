@@ -112,7 +112,8 @@ fn probabilities(judged: &[Judgment<'_>], seed: &Seed) -> (Vec<Reliability>, Pro
         of_confidence(chosen.map(|(_, judgment)| judgment))
     };
     let stressed = || judged.iter().filter(|judgment| judgment.bank() == Bank::Stressed);
-    let elsewhere = || judged.iter().filter(|judgment| matches!(judgment.bank(), Bank::Measured | Bank::Engine));
+    let elsewhere =
+        || judged.iter().filter(|judgment| matches!(judgment.bank(), Bank::Measured | Bank::Engine));
     let all_own = || judged.iter().filter(|judgment| is_own(judgment.bank()));
     let map = isotonic::fit(&own(Some(true)).concat());
     let held_out = own(Some(false));

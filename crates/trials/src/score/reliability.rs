@@ -18,7 +18,9 @@ pub(crate) type Statements = Vec<Vec<(f64, bool)>>;
 
 /// Stated confidence of the answered cases.
 pub(crate) fn of_confidence<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> Statements {
-    judged.filter_map(|judgment| Some(vec![(judgment.answer()?.verdict.confidence, judgment.right)])).collect()
+    judged
+        .filter_map(|judgment| Some(vec![(judgment.answer()?.verdict.confidence, judgment.right)]))
+        .collect()
 }
 
 /// Stated probabilities of effects and of `unknown`, as listed in answers, nuisances struck.
@@ -145,8 +147,7 @@ mod tests {
 
     #[test]
     fn exact_probabilities_are_off_by_chance_only() {
-        let found =
-            reliability("x", "own", &statements(|p, u| u < p, 2000), &Seed::new(1)).unwrap();
+        let found = reliability("x", "own", &statements(|p, u| u < p, 2000), &Seed::new(1)).unwrap();
         assert_eq!((found.count, found.bins.len()), (2000, 10));
         assert!(found.bins.iter().all(|bin| bin.found.of == 200));
         let error = found.calibration_error;
@@ -158,8 +159,7 @@ mod tests {
     #[test]
     fn overconfidence_shows() {
         // Stated p, found p²: off by p − p² = 1/6 on average.
-        let found =
-            reliability("x", "own", &statements(|p, u| u < p * p, 2000), &Seed::new(1)).unwrap();
+        let found = reliability("x", "own", &statements(|p, u| u < p * p, 2000), &Seed::new(1)).unwrap();
         let error = found.calibration_error;
         assert!((error.value - 1.0 / 6.0).abs() < 0.03, "{error:?}");
         assert!(error.interval_95[0] < error.value && error.value < error.interval_95[1]);

@@ -6,11 +6,7 @@ use runs::result::DiagnosisResult;
 use serde_json::json;
 
 /// An answer with a status, names and a confidence; everything else plain.
-pub(crate) fn answered(
-    status: &str,
-    named: &[&str],
-    confidence: f64,
-) -> Result<DiagnosisResult, String> {
+pub(crate) fn answered(status: &str, named: &[&str], confidence: f64) -> Result<DiagnosisResult, String> {
     let estimate = json!({ "value": 0.95, "interval_95": [0.9, 0.99] });
     let coefficient = json!({ "nominal": 0.3, "unit": "1/s", "recalibrated": null, "repaired": null });
     let unknown = if status == "unknown" { confidence } else { 0.01 };

@@ -16,7 +16,8 @@ pub(crate) fn proportion(outcomes: impl IntoIterator<Item = bool>) -> Proportion
 }
 
 /// What could not be measured.
-pub(crate) const NO_NUMBER: WithInterval = WithInterval { value: f64::NAN, interval_95: [f64::NAN, f64::NAN] };
+pub(crate) const NO_NUMBER: WithInterval =
+    WithInterval { value: f64::NAN, interval_95: [f64::NAN, f64::NAN] };
 
 /// A quantile by linear interpolation between the sorted values; not a number without any.
 pub(crate) fn quantile(sorted: &[f64], share: f64) -> f64 {
@@ -36,10 +37,12 @@ pub(crate) fn quantiles(values: impl IntoIterator<Item = f64>) -> Quantiles {
     // The order statistics between which the median lies with 95 % probability, whatever the distribution.
     let rank = Binomial::new(0.5, count as u64).map_or(0, |binomial| binomial.inverse_cdf(0.025));
     let low = usize::try_from(rank).unwrap_or(0).saturating_sub(1);
-    let median = WithInterval {
-        value: quantile(&sorted, 0.5),
-        interval_95: [at(low), at((count.saturating_sub(1)).saturating_sub(low))],
+    // Of fewer than six values not even the smallest and the largest do.
+    let interval_95 = match count {
+        0..6 => [f64::NAN, f64::NAN],
+        count => [at(low), at(count - 1 - low)],
     };
+    let median = WithInterval { value: quantile(&sorted, 0.5), interval_95 };
     Quantiles {
         count: count as u64,
         median,
@@ -100,9 +103,14 @@ mod tests {
     #[test]
     fn quantiles_of_known_values() {
         let found = quantiles((1..=101).rev().map(f64::from).chain([f64::NAN]));
-        assert_eq!((found.count, found.median.value, found.quantile_95, found.worst), (101, 51.0, 96.0, 101.0));
+        assert_eq!(
+            (found.count, found.median.value, found.quantile_95, found.worst),
+            (101, 51.0, 96.0, 101.0)
+        );
         // Of 101 values the 41st and the 61st hold the median with at least 95 % (David and Nagaraja, table 7.1).
         assert_eq!(found.median.interval_95, [41.0, 61.0]);
+        let few = quantiles([1.0, 2.0, 3.0]).median;
+        assert!(few.value == 2.0 && few.interval_95[0].is_nan());
         assert!(quantiles([]).median.value.is_nan());
     }
 

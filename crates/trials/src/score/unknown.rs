@@ -13,8 +13,7 @@ const MOST_POINTS: usize = 200;
 /// outside the vocabulary against those with named effects or none.
 pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
     let score = |judgment: &Judgment<'_>| judgment.probability("unknown");
-    let is_negative =
-        |bank: Bank| matches!(bank, Bank::None | Bank::Calibration | Bank::Single | Bank::Pair);
+    let is_negative = |bank: Bank| matches!(bank, Bank::None | Bank::Calibration | Bank::Single | Bank::Pair);
     let negatives: Vec<f64> =
         judged.iter().filter(|judgment| is_negative(judgment.bank())).filter_map(score).collect();
     let of = |size: Option<f64>, wanted: &dyn Fn(&Judgment<'_>) -> bool| {
