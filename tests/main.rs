@@ -25,3 +25,4 @@ mod recipe;
 mod runs;
 mod simulation;
 mod support;
+mod trials;

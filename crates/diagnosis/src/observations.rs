@@ -52,6 +52,24 @@ impl Observations {
         self.values.is_empty()
     }
 
+    /// Time of each sample in seconds since the first, by the believed clock.
+    #[must_use]
+    pub fn times_s(&self) -> &[f64] {
+        &self.times_s
+    }
+
+    /// What was observed, in SI units.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The input, where there is one.
+    #[must_use]
+    pub fn input(&self) -> Option<&[f64]> {
+        self.input.as_deref()
+    }
+
     pub(crate) fn duration_s(&self) -> f64 {
         self.times_s.last().copied().unwrap_or_default()
     }

@@ -6,7 +6,8 @@
 //!
 //! What was run decides the page: [`render_run`] shows one estimator's estimate,
 //! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
-//! did not see, [`render_diagnosis`] where the gap between a simulator and records lies. The tables of the latter two [`comparison_markdown`] and [`prediction_markdown`] give as
+//! did not see, [`render_diagnosis`] where the gap between a simulator and records lies, [`render_trials`] how often a
+//! diagnosis is right. The tables of comparison and prediction [`comparison_markdown`] and [`prediction_markdown`] give as
 //! Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
@@ -22,6 +23,7 @@ mod parse;
 pub mod plot;
 mod prediction;
 mod tables;
+mod trials;
 mod verdict;
 
 #[cfg(test)]
@@ -66,6 +68,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Compare => render_comparison(texts),
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
+        parse::Task::Trials => render_trials(texts),
     }
 }
 
@@ -104,6 +107,15 @@ pub fn render_prediction(texts: &RunTexts<'_>) -> Result<String, ReportError> {
 /// As [`render`], and where the run was asked for something else.
 pub fn render_diagnosis(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     diagnosis::render(texts, &parse::parse_diagnosis(texts)?)
+}
+
+/// The report on trials whose effect was withheld, `task = "trials"`.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
+pub fn render_trials(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    trials::render(texts, &parse::trials_result(texts.result)?)
 }
 
 /// The verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its

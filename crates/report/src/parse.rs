@@ -2,7 +2,7 @@
 
 use runs::result::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, PredictionCsvRow,
-    PredictionResult, RESULT_SCHEMA, SeriesRow, TraceRow,
+    PredictionResult, RESULT_SCHEMA, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -42,6 +42,7 @@ pub(crate) enum Task {
     Compare,
     Predict,
     Diagnose,
+    Trials,
 }
 
 impl Task {
@@ -52,6 +53,7 @@ impl Task {
             Self::Compare => "compare",
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
+            Self::Trials => "trials",
         }
     }
 }
@@ -102,6 +104,10 @@ pub(crate) fn parse_diagnosis(texts: &RunTexts<'_>) -> Result<Diagnosis, ReportE
     })
 }
 
+pub(crate) fn trials_result(text: &str) -> Result<TrialsResult, ReportError> {
+    result(text, Task::Trials)
+}
+
 fn envelope(text: &str) -> Result<Vec<EnvelopeRow>, ReportError> {
     let rows: Vec<EnvelopeRow> = table("envelope.csv", text)?;
     if rows.is_empty() { Err(ReportError::Empty { file: "envelope.csv" }) } else { Ok(rows) }
@@ -128,6 +134,9 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
     if tag.schema == DIAGNOSIS_SCHEMA {
         return Ok(Task::Diagnose);
+    }
+    if tag.schema == TRIALS_SCHEMA {
+        return Ok(Task::Trials);
     }
     if tag.schema != RESULT_SCHEMA {
         return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });

@@ -1,6 +1,7 @@
 //! The arguments.
 
 use crate::diagnose::arguments::DiagnoseArguments;
+use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -21,6 +22,7 @@ Examples:
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
+  trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer list estimators
   trainer list effects
   trainer report reports/runs/RUN
@@ -83,6 +85,8 @@ pub(crate) enum Command {
     },
     /// Makes records of systems drawn from priors, their truths sealed in a folder apart
     Simulate(ExperimentArguments),
+    /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
+    Trials(Box<TrialsArguments>),
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder

@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::trials::TrialsError;
 use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
 use estimator::FitError;
@@ -75,6 +76,8 @@ pub(crate) enum TrainerError {
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
+    Trials(#[from] TrialsError),
+    #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -106,6 +109,7 @@ impl TrainerError {
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
+            | Self::Trials(_)
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

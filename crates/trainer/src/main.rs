@@ -21,6 +21,7 @@ mod rerender;
 mod run;
 mod simulate;
 mod summary;
+mod trials;
 
 use clap::Parser;
 use cli::{Arguments, Command};
@@ -63,6 +64,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::List { what, output }) => list::list(what, output),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
+        Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

@@ -38,6 +38,11 @@ impl Progress {
         Self::new(cases, "cases", false, quiet)
     }
 
+    /// Over the cases of trials, as they are made.
+    pub(crate) fn over_cases_made(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases made", false, quiet)
+    }
+
     fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
@@ -82,6 +87,15 @@ impl Progress {
         self.bar.inc(1);
         let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
         if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
+            console::remark(&format!("{done} of {all} {}", self.unit));
+        }
+    }
+
+    /// So many of very many are done: a line wherever another tenth part of them is.
+    pub(crate) fn so_many_done(&self, done: u64) {
+        let (before, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        self.bar.set_position(done);
+        if self.lines && all > 0 && done * 10 / all > before * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));
         }
     }

@@ -33,6 +33,26 @@ pub enum Bank {
     Engine,
 }
 
+impl Bank {
+    /// Its name in results.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Calibration => "calibration",
+            Self::Single => "single",
+            Self::Pair => "pair",
+            Self::LeftOut => "left-out",
+            Self::Foreign => "foreign",
+            Self::Releases => "releases",
+            Self::Driven => "driven",
+            Self::Stressed => "stressed",
+            Self::Measured => "measured",
+            Self::Engine => "engine",
+        }
+    }
+}
+
 /// What a case hides, and whatever else its records follow from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

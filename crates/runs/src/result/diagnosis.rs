@@ -443,6 +443,8 @@ pub struct FailedCase {
 }
 
 /// As [`null_is_not_a_number`], for two numbers.
-fn nulls_are_not_numbers<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<[f64; 2], D::Error> {
+pub(super) fn nulls_are_not_numbers<'de, D: serde::Deserializer<'de>>(
+    deserializer: D,
+) -> Result<[f64; 2], D::Error> {
     Ok(<[Option<f64>; 2]>::deserialize(deserializer)?.map(|end| end.unwrap_or(f64::NAN)))
 }

@@ -8,6 +8,7 @@ mod comparison;
 mod diagnosis;
 mod prediction;
 mod simulation;
+mod trials;
 
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
@@ -22,6 +23,11 @@ pub use prediction::{
     SplitSummary,
 };
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
+pub use trials::{
+    AreaRow, BankRow, BarRow, BaselineRow, ClosureStudy, Confusion, FailureRow, LeftOutBank, NuisanceRow,
+    ProbabilityMap, Proportion, Quantiles, Reliability, ReliabilityBin, SizeRow, TRIALS_MANIFEST_SCHEMA,
+    TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine, TrialsResult, UnknownStudy,
+};
 
 use serde::{Deserialize, Deserializer, Serialize};
 

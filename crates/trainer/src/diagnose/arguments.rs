@@ -107,6 +107,25 @@ pub(crate) struct Reading {
     pub(crate) remove_mean: bool,
 }
 
+impl Default for Reading {
+    /// As without options.
+    fn default() -> Self {
+        Self {
+            format: FormatChoice::Auto,
+            clock: "auto".to_owned(),
+            time: None,
+            angle: None,
+            input: None,
+            unit: None,
+            time_unit: "s".to_owned(),
+            quantity: None,
+            sample_rate: None,
+            origin: None,
+            remove_mean: false,
+        }
+    }
+}
+
 /// Format of a record file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum FormatChoice {

@@ -15,9 +15,11 @@ use crate::error::TrainerError;
 use crate::rerender::write_report;
 use arguments::{DiagnoseArguments, Reading};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use dynamics::Nominal;
 use export::Repaired;
 use nominal::Stated;
 use read::Given;
+use record::Quantity;
 use result::{Beside, result, series_rows};
 use runs::result::DiagnosisResult;
 use runs::{RunFolder, default_root, to_csv};
@@ -25,6 +27,7 @@ use seed::Seed;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use trials::BaselineRecord;
 
 /// Diagnoses the records named, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
@@ -34,6 +37,25 @@ pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerE
         // clap asks for these.
         _ => Err(TrainerError::NoConfig),
     }
+}
+
+/// What a diagnosis of a case is given, for those who do simpler things with it.
+pub(crate) struct GivenCase {
+    pub(crate) nominal: Nominal,
+    /// Positions only: none where the sensor observes something else.
+    pub(crate) records: Vec<BaselineRecord>,
+}
+
+/// Reads records and their nominal simulator as a batch does.
+pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, TrainerError> {
+    let question = Question::read(records, nominal, &Reading::default())?;
+    let positions = question.given.iter().filter(|given| given.quantity == Quantity::Position);
+    let records = positions.map(|given| BaselineRecord {
+        times_s: given.observations.times_s().to_vec(),
+        values: given.observations.values().to_vec(),
+        input: given.observations.input().map(<[f64]>::to_vec),
+    });
+    Ok(GivenCase { records: records.collect(), nominal: question.stated.nominal })
 }
 
 /// One diagnosis with all that it needs to be shown.

@@ -1,0 +1,270 @@
+//! The tables of the page on trials.
+
+use runs::result::{Confusion, Proportion, SizeRow, TrialsResult};
+
+use super::{Grid, GridCell, GridRow, Section, percent, percents};
+use crate::format::{count, fixed, interval, quantity, significant};
+
+/// Shading of a cell with everything in it, in percent: text stays readable on it.
+const DEEPEST: f64 = 45.0;
+
+/// A share with its count and interval; empty where there is nothing to count.
+pub(super) fn share(of: &Proportion) -> GridCell {
+    if of.of == 0 {
+        return GridCell { text: "–".to_owned(), ..GridCell::default() };
+    }
+    GridCell {
+        text: percent(of.share),
+        aside: format!("{}/{} {}", of.count, of.of, percents(of.interval_95)),
+        shade: Some(fixed(DEEPEST * of.share, 1)),
+    }
+}
+
+pub(super) fn plain(text: impl Into<String>) -> GridCell {
+    GridCell { text: text.into(), ..GridCell::default() }
+}
+
+/// A size in noise units as it heads a column.
+pub(super) fn size(value: f64) -> String {
+    format!("about {}", fixed(value, 0))
+}
+
+/// Rows by name, columns by size.
+fn by_size(
+    rows: &[&SizeRow],
+    name: impl Fn(&SizeRow) -> String,
+    of: impl Fn(&SizeRow) -> Proportion,
+) -> Grid {
+    let mut sizes: Vec<f64> = rows.iter().map(|row| row.size).collect();
+    sizes.sort_by(f64::total_cmp);
+    sizes.dedup();
+    let mut names: Vec<String> = Vec::new();
+    for row in rows {
+        let name = name(row);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let row = |own: &String| GridRow {
+        name: own.clone(),
+        cells: sizes
+            .iter()
+            .map(|size| {
+                let found = rows.iter().find(|row| row.size == *size && name(row) == *own);
+                found.map_or_else(|| plain("–"), |row| share(&of(row)))
+            })
+            .collect(),
+    };
+    Grid {
+        title: String::new(),
+        corner: "Hidden, size in noise units",
+        columns: sizes.iter().map(|value| size(*value)).collect(),
+        rows: names.iter().map(row).collect(),
+    }
+}
+
+pub(super) fn accuracy(result: &TrialsResult) -> Section {
+    let banks = Grid {
+        title: "By kind of case".to_owned(),
+        corner: "Bank",
+        columns: [
+            "Status and set right",
+            "First name",
+            "Its class",
+            "Both of two",
+            "Either of two",
+            "False alarms",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows: result
+            .banks
+            .iter()
+            .map(|bank| GridRow {
+                name: bank.bank.clone(),
+                cells: [&bank.right, &bank.top_1, &bank.class, &bank.both, &bank.either, &bank.false_alarms]
+                    .map(share)
+                    .into_iter()
+                    .collect(),
+            })
+            .collect(),
+    };
+    let all: Vec<&SizeRow> = result.sizes.iter().collect();
+    let mut grids = vec![
+        banks,
+        Grid {
+            title: "First name right, by kind of case and size".to_owned(),
+            ..by_size(&all, |row| row.bank.clone(), |row| row.top_1)
+        },
+        Grid {
+            title: "Its class right, by kind of case and size".to_owned(),
+            ..by_size(&all, |row| row.bank.clone(), |row| row.class)
+        },
+    ];
+    let pairs: Vec<&SizeRow> = all.iter().copied().filter(|row| row.both.of > 0).collect();
+    if !pairs.is_empty() {
+        grids.push(Grid {
+            title: "Both of two named, by size of the smaller".to_owned(),
+            ..by_size(&pairs, |row| row.bank.clone(), |row| row.both)
+        });
+    }
+    let mut banks: Vec<&str> = result.effects.iter().map(|row| row.bank.as_str()).collect();
+    banks.dedup();
+    for bank in banks.into_iter().filter(|bank| *bank != "pair") {
+        let own: Vec<&SizeRow> = result.effects.iter().filter(|row| row.bank == bank).collect();
+        grids.push(Grid {
+            title: format!("First name right, by effect and size: {bank}"),
+            ..by_size(&own, |row| row.effect.clone(), |row| row.top_1)
+        });
+        grids.push(Grid {
+            title: format!("Its class right, by effect and size: {bank}"),
+            ..by_size(&own, |row| row.effect.clone(), |row| row.class)
+        });
+    }
+    Section {
+        id: "accuracy",
+        title: "Accuracy by effect and size",
+        sentences: vec![
+            "Size is what no recalibration can absorb of the hidden effect, in units of the noise. Of two effects the size \
+             is that of the smaller. A class holds what an answer says it cannot tell from what it named first. Where \
+             nothing is missing the first name is right if there is none; where the effect was not to be considered, \
+             if the answer is unknown."
+                .to_owned(),
+        ],
+        grids,
+        figures: Vec::new(),
+    }
+}
+
+fn counts(title: &str, corner: &'static str, confusion: &Confusion) -> Grid {
+    let row = |(name, own): (&String, &Vec<u64>)| {
+        let all: u64 = own.iter().sum();
+        let cell = |value: &u64| match value {
+            0 => plain(""),
+            value => GridCell {
+                text: count(*value),
+                aside: String::new(),
+                shade: Some(fixed(DEEPEST * *value as f64 / all as f64, 1)),
+            },
+        };
+        GridRow { name: name.clone(), cells: own.iter().map(cell).collect() }
+    };
+    Grid {
+        title: title.to_owned(),
+        corner,
+        columns: confusion.said.iter().map(|name| name.replace('_', " ")).collect(),
+        rows: confusion.hidden.iter().zip(&confusion.counts).map(row).collect(),
+    }
+}
+
+pub(super) fn confusion(result: &TrialsResult) -> Section {
+    let nuisances: Vec<String> = result
+        .nuisances
+        .iter()
+        .map(|row| format!("{} in {} of {}", row.id, row.named.count, row.named.of))
+        .collect();
+    let mut sentences = vec![
+        "Cases by what was hidden (rows) and what was named first (columns), of cases with at most one hidden effect; shaded \
+         by the share of the row."
+            .to_owned(),
+    ];
+    if !nuisances.is_empty() {
+        sentences.push(format!(
+            "What comes with records of every bank alike counts neither for nor against an answer. It was named: {}.",
+            nuisances.join(", ")
+        ));
+    }
+    Section {
+        id: "confusion",
+        title: "What is mistaken for what",
+        sentences,
+        grids: vec![
+            counts("Effects", "Hidden", &result.confusion),
+            counts("Kinds of verdict, of all cases", "Hidden", &result.kinds),
+        ],
+        figures: Vec::new(),
+    }
+}
+
+pub(super) fn closure(result: &TrialsResult) -> Section {
+    let study = &result.closure;
+    let row = |name: &str, cells: Vec<GridCell>| GridRow { name: name.to_owned(), cells };
+    let ratio = &result.ratio_to_floor;
+    let seconds = &result.seconds_per_case;
+    let number = |value: f64, unit: &str| {
+        plain(if value.is_finite() { quantity(&significant(value, 3), unit) } else { "–".to_owned() })
+    };
+    let left_out: Vec<String> =
+        study.left_out.iter().map(|(reason, cases)| format!("{reason} ({cases})")).collect();
+    let mut sentences = vec![format!("True closure: {}.", study.means)];
+    if !left_out.is_empty() {
+        sentences.push(format!("Cases left out of the coverage: {}.", left_out.join("; ")));
+    }
+    Section {
+        id: "closure",
+        title: "How far the gap closes, and how long an answer takes",
+        sentences,
+        grids: vec![
+            Grid {
+                title: "Intervals of closure".to_owned(),
+                corner: "",
+                columns: ["Hold the true closure", "Lie above it", "Lie below it"]
+                    .map(str::to_owned)
+                    .to_vec(),
+                rows: vec![row(
+                    "95 % intervals",
+                    vec![share(&study.coverage), plain(count(study.below)), plain(count(study.above))],
+                )],
+            },
+            Grid {
+                title: String::new(),
+                corner: "",
+                columns: ["Cases", "Median", "95 % interval", "95 % quantile", "Largest"]
+                    .map(str::to_owned)
+                    .to_vec(),
+                rows: [
+                    ("Held-out error over floor, of right answers with a name", ratio, ""),
+                    ("Wall time of an answer", seconds, "s"),
+                ]
+                .map(|(name, of, unit)| {
+                    let cells = vec![
+                        plain(count(of.count)),
+                        number(of.median.value, unit),
+                        plain(if of.median.interval_95[0].is_finite() {
+                            interval(of.median.interval_95)
+                        } else {
+                            "–".to_owned()
+                        }),
+                        number(of.quantile_95, unit),
+                        number(of.worst, unit),
+                    ];
+                    row(name, cells)
+                })
+                .into_iter()
+                .collect(),
+            },
+        ],
+        figures: Vec::new(),
+    }
+}
+
+pub(super) fn baselines(result: &TrialsResult) -> Section {
+    let rows = result.baselines.iter().map(|row| GridRow {
+        name: row.id.clone(),
+        cells: vec![share(&row.top_1), share(&row.diagnosis), share(&row.false_alarms)],
+    });
+    Section {
+        id: "baselines",
+        title: "Simpler diagnosers on the same records",
+        sentences: result.baselines.iter().map(|row| format!("{}: {}.", row.id, row.method)).collect(),
+        grids: vec![Grid {
+            title: "Cases of a single effect".to_owned(),
+            corner: "Diagnoser",
+            columns: ["First name right", "The diagnosis on these", "False alarms where nothing is missing"]
+                .map(str::to_owned)
+                .to_vec(),
+            rows: rows.collect(),
+        }],
+        figures: Vec::new(),
+    }
+}

@@ -1,0 +1,213 @@
+//! The page on trials whose effect was withheld.
+
+mod figures;
+mod grids;
+mod probabilities;
+#[cfg(test)]
+mod tests;
+
+use askama::Template;
+use runs::result::{BarRow, FailureRow, TrialsResult};
+
+use crate::figures::Figure;
+use crate::format::{count, fixed, interval, quantity, significant};
+use crate::frame::Frame;
+use crate::plot::Hue;
+use crate::verdict::{Origin, Tone, Verdict};
+use crate::{ReportError, RunTexts};
+
+/// Failures shown; `cases.csv` has all.
+const MOST_FAILURES: usize = 300;
+
+#[derive(Template)]
+#[template(path = "trials.html")]
+struct TrialsPage<'a> {
+    frame: Frame<'a>,
+    cases: String,
+    right_means: &'a str,
+    bars: Vec<BarView<'a>>,
+    left_out: Vec<String>,
+    sections: Vec<Section>,
+    failure_note: String,
+    failures: Vec<FailureView<'a>>,
+}
+
+/// A section of tables and plots.
+struct Section {
+    id: &'static str,
+    title: &'static str,
+    sentences: Vec<String>,
+    grids: Vec<Grid>,
+    figures: Vec<Figure>,
+}
+
+/// A table whose cells may be shaded by what they hold.
+struct Grid {
+    title: String,
+    corner: &'static str,
+    columns: Vec<String>,
+    rows: Vec<GridRow>,
+}
+
+struct GridRow {
+    name: String,
+    cells: Vec<GridCell>,
+}
+
+/// A cell: a number, what stands small below it, and how deep it is shaded, in percent.
+#[derive(Default)]
+struct GridCell {
+    text: String,
+    aside: String,
+    shade: Option<String>,
+}
+
+struct BarView<'a> {
+    metric: &'a str,
+    bar: String,
+    measured: String,
+    cases: String,
+    state: String,
+    class: &'static str,
+}
+
+struct FailureView<'a> {
+    id: &'a str,
+    bank: &'a str,
+    hidden: &'a str,
+    size: String,
+    said: String,
+    command: &'a str,
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<String, ReportError> {
+    let shown = result.failures.len().min(MOST_FAILURES);
+    let page = TrialsPage {
+        frame: Frame {
+            hues: &Hue::ALL,
+            name: texts.name,
+            kicker: "a diagnosis on effects that were withheld from it",
+            verdict: headline(result),
+            origin: Origin {
+                class: "simulated",
+                label: "Cases with a known truth",
+                note: "Made by the program; where measured records or a physics engine take part, the bank says so.",
+            },
+            warnings: warnings(result),
+            pipelines: Vec::new(),
+            data: Vec::new(),
+            findings: &[],
+            files: [
+                ("Resolved configuration (config.toml)", texts.config),
+                ("Environment (environment.json)", texts.environment),
+                ("Every number, unrounded (result.json)", texts.result),
+            ],
+        },
+        cases: count(result.cases),
+        right_means: &result.right_means,
+        bars: result.bars.iter().map(bar).collect(),
+        left_out: result.left_out.iter().map(|left| format!("{}: {}", left.bank, left.reason)).collect(),
+        sections: vec![
+            grids::accuracy(result),
+            grids::confusion(result),
+            probabilities::section(result),
+            probabilities::unknown(result),
+            grids::closure(result),
+            grids::baselines(result),
+        ],
+        failure_note: if shown < result.failures.len() {
+            format!("The first {shown} of {}; cases.csv has all.", result.failures.len())
+        } else {
+            format!("{} of {} cases. The last column diagnoses one alone.", shown, result.cases)
+        },
+        failures: result.failures.iter().take(shown).map(failure).collect(),
+    };
+    Ok(page.render()?)
+}
+
+/// A share in percent.
+fn percent(share: f64) -> String {
+    if share.is_finite() { quantity(&fixed(100.0 * share, 1), "%") } else { "–".to_owned() }
+}
+
+/// An interval of shares in percent, without its unit.
+fn percents(ends: [f64; 2]) -> String {
+    let [low, high] = ends.map(|end| fixed(100.0 * end, 1));
+    format!("[{low}, {high}]")
+}
+
+fn bar(row: &BarRow) -> BarView<'_> {
+    let number = |value: f64| match row.unit.as_str() {
+        "%" => percent(value),
+        unit => quantity(&significant(value, 3), unit),
+    };
+    let bar = match (row.at_least, row.at_most) {
+        (Some(low), Some(high)) => format!("{} to {}", number(low), number(high)),
+        (Some(low), None) => format!("≥ {}", number(low)),
+        (None, Some(high)) => format!("≤ {}", number(high)),
+        (None, None) => String::new(),
+    };
+    let measured = match (row.value.is_finite(), row.unit.as_str()) {
+        (false, _) => "–".to_owned(),
+        (true, "%") => format!("{} {}", number(row.value), percents(row.interval_95)),
+        (true, _) if row.interval_95[0].is_finite() => {
+            format!("{} {}", number(row.value), interval(row.interval_95))
+        }
+        (true, _) => number(row.value),
+    };
+    let (class, state) = match (row.state.as_str(), row.missed_beyond_chance) {
+        ("met", _) => ("good", "met".to_owned()),
+        ("not met", true) => ("bad", "not met".to_owned()),
+        ("not met", false) => ("caution", "not met, within chance".to_owned()),
+        (other, _) => ("absent", other.to_owned()),
+    };
+    BarView { metric: &row.metric, bar, measured, cases: count(row.cases), state, class }
+}
+
+fn failure(row: &FailureRow) -> FailureView<'_> {
+    FailureView {
+        id: &row.id,
+        bank: &row.bank,
+        hidden: &row.hidden,
+        size: if row.size.is_finite() { fixed(row.size, 1) } else { "–".to_owned() },
+        said: if row.same_class {
+            format!("{} (said to be indistinguishable)", row.said)
+        } else {
+            row.said.clone()
+        },
+        command: &row.command,
+    }
+}
+
+fn headline(result: &TrialsResult) -> Verdict {
+    let of = |state: &str| result.bars.iter().filter(|bar| bar.state == state).count();
+    let beyond = result.bars.iter().filter(|bar| bar.missed_beyond_chance).count();
+    let (met, missed, absent) = (of("met"), of("not met"), of("not measured here"));
+    let (tone, label) = match (missed, beyond, met) {
+        (0, _, 0) => (Tone::Caution, "No bar measured"),
+        (0, ..) => (Tone::Good, "Every measured bar met"),
+        (_, 0, _) => (Tone::Caution, "Some bars not met"),
+        _ => (Tone::Bad, "Some bars missed beyond chance"),
+    };
+    Verdict {
+        tone,
+        label,
+        sentence: format!(
+            "Of {} bars {met} are met, {missed} are not (of these {beyond} with the whole 95 % interval), {absent} are \
+             not measured here.",
+            result.bars.len()
+        ),
+    }
+}
+
+fn warnings(result: &TrialsResult) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if result.unanswered > 0 {
+        warnings.push(format!(
+            "{} of {} cases have no answer; they count as wrong.",
+            count(result.unanswered),
+            count(result.cases)
+        ));
+    }
+    warnings
+}

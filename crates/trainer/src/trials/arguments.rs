@@ -1,0 +1,55 @@
+//! The arguments of `trainer trials`.
+
+use crate::cli::Output;
+use clap::Args;
+use std::path::PathBuf;
+
+/// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer trials configs/trials-quick.toml          a few cases of every bank
+  trainer trials configs/trials.toml --out DIR      all of them
+  trainer trials configs/trials.toml --out DIR --resume
+                                   after an interruption: only the missing answers are computed
+  trainer trials --score DIR       opens the seals and scores again, from the files alone
+  trainer trials configs/trials.toml --check        exit code 1 where a bar is missed beyond chance
+  trainer report DIR               the report again
+
+DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
+written before the first diagnosis), answers/GROUP/ID/diagnosis.json, truth/ID.json (written after the
+last), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
+is told not to consider one. Each group is diagnosed by a process of its own, which gets that
+group's folder of cases and nothing else.
+
+Exit codes: 0 scored, whatever the scores; 1 with --check, where the whole 95 % interval of some bar's
+measure lies on the wrong side; 2 wrong input or usage, a broken seal among it; 130 interrupted:
+everything so far is kept.")]
+pub(crate) struct TrialsArguments {
+    /// The trials: a TOML file
+    #[arg(required_unless_present = "score", conflicts_with = "score")]
+    pub(crate) config: Option<PathBuf>,
+    /// Values that override the file's, by dotted key: trials.single=100 seed=3
+    #[arg(value_name = "KEY=VALUE")]
+    pub(crate) overrides: Vec<String>,
+    /// Folder for everything: new or empty [default: a new one below reports/runs]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Goes on in the folder of --out: the cases are made again and compared, missing answers are computed
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+    /// Opens the seals of these trials and scores their answers again
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed"])]
+    pub(crate) score: Option<PathBuf>,
+    /// Exit code 1 where the whole 95 % interval of a bar's measure lies on the wrong side
+    #[arg(long)]
+    pub(crate) check: bool,
+    /// Overrides the configuration's seed
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Threads over cases; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}

@@ -1,0 +1,138 @@
+//! `trainer trials`: withheld-effect trials of the diagnosis.
+
+pub(crate) mod arguments;
+mod ask;
+mod error;
+mod make;
+mod open;
+mod summary;
+
+use crate::Outcome;
+use crate::cli::ExperimentArguments;
+use crate::environment::Environment;
+use crate::error::TrainerError;
+use crate::interrupt;
+use crate::rerender::write_report;
+use crate::run::{new_folder, read_config, thread_pool};
+use arguments::TrialsArguments;
+use open::Opened;
+use rayon::ThreadPool;
+use runs::result::{LeftOutBank, TrialsManifest};
+use runs::{RunFolder, to_csv};
+use serde_json::json;
+use std::collections::BTreeMap;
+use std::time::Instant;
+use trials::{TrialPlan, Trials, case_rows, misses_a_bar, most_common};
+
+pub(crate) use error::TrialsError;
+
+/// Makes, diagnoses, opens and scores; or scores again what is there.
+pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerError> {
+    let start = Instant::now();
+    let cancel = interrupt::watch()?;
+    let pool = thread_pool(&as_experiment(arguments))?;
+    if let Some(folder) = &arguments.score {
+        let folder = RunFolder::open(folder);
+        let manifest = make::read_manifest(&folder)?
+            .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
+        return finish(arguments, &folder, &manifest, &pool, &BTreeMap::new(), start);
+    }
+    let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;
+    let folder = begin(arguments, &plan, &pool)?;
+    let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
+        return Ok(interrupted(&folder, "making the cases")?);
+    };
+    let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
+        return Ok(interrupted(&folder, "the diagnosis")?);
+    };
+    // The last answer is in: the truths may be seen.
+    for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
+        folder.write_reproducible(&open::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
+    }
+    folder.record_event("opened", &json!({ "truths": made.sealed.len() }))?;
+    finish(arguments, &folder, &made.manifest, &pool, &failed, start)
+}
+
+/// The arguments as those of an experiment: configuration, overrides, folder, threads.
+fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
+    ExperimentArguments {
+        config: arguments.config.clone(),
+        overrides: arguments.overrides.clone(),
+        out: arguments.out.clone(),
+        seed: arguments.seed,
+        threads: arguments.threads,
+        output: arguments.output,
+    }
+}
+
+/// The folder: a new one, or that of trials begun with the same configuration.
+fn begin(
+    arguments: &TrialsArguments,
+    plan: &TrialPlan,
+    pool: &ThreadPool,
+) -> Result<RunFolder, TrainerError> {
+    let config = plan.resolved.to_toml();
+    if let Some(path) = arguments.out.as_ref().filter(|path| path.join("config.toml").exists()) {
+        let shown = path.display().to_string();
+        if !arguments.resume {
+            return Err(TrialsError::Begun { folder: shown }.into());
+        }
+        let folder = RunFolder::open(path);
+        let file = path.join("config.toml").display().to_string();
+        let begun = open::text(&folder, "config.toml")?;
+        if let Some(difference) = open::first_difference(&begun, &config) {
+            return Err(TrialsError::Edited { file, difference }.into());
+        }
+        folder.record_event("resume", &json!({ "threads": pool.current_num_threads() }))?;
+        return Ok(folder);
+    }
+    let folder = new_folder(&as_experiment(arguments), &plan.name)?;
+    folder.write("config.toml", config.as_bytes())?;
+    let digest = truth::digest(&config);
+    folder.write_json("environment.json", &Environment::new(pool.current_num_threads(), &digest))?;
+    folder.record_event("start", &json!({ "name": plan.name, "seed": plan.seed, "cases": plan.len() }))?;
+    Ok(folder)
+}
+
+fn interrupted(folder: &RunFolder, during: &str) -> Result<Outcome, TrainerError> {
+    folder.record_event("interrupted", &json!({ "during": during }))?;
+    crate::console::remark(&format!(
+        "interrupted during {during}; go on with the same command, --out {} and --resume",
+        folder.path().display()
+    ));
+    Ok(Outcome::Interrupted)
+}
+
+/// Opens the truths, scores, writes and prints.
+fn finish(
+    arguments: &TrialsArguments,
+    folder: &RunFolder,
+    manifest: &TrialsManifest,
+    pool: &ThreadPool,
+    failed: &BTreeMap<String, String>,
+    start: Instant,
+) -> Result<Outcome, TrainerError> {
+    let Opened { cases, weak_form } = open::open(folder, manifest, pool, failed)?;
+    let baselines = [most_common(&cases), weak_form];
+    let trials = Trials {
+        name: manifest.name.clone(),
+        seed: manifest.seed,
+        left_out: manifest.left_out.clone(),
+        seconds: start.elapsed().as_secs_f64(),
+    };
+    let result = trials::score(&trials, &cases, &baselines);
+    folder.write("cases.csv", &to_csv("cases.csv", &case_rows(&cases))?)?;
+    folder.write_json("result.json", &result)?;
+    write_report(folder)?;
+    folder.record_event("end", &json!({ "cases": result.cases, "unanswered": result.unanswered }))?;
+    arguments.output.print(&result, || summary::summary(&result, folder.path()))?;
+    Ok(if arguments.check && misses_a_bar(&result) { Outcome::CheckFailed } else { Outcome::Done })
+}
+
+/// Banks that were asked for and not made, as the manifest has them.
+fn left_out(plan: &TrialPlan) -> Vec<LeftOutBank> {
+    plan.left_out_banks()
+        .iter()
+        .map(|left| LeftOutBank { bank: left.bank.name().to_owned(), reason: left.reason.clone() })
+        .collect()
+}

@@ -1,0 +1,157 @@
+//! Opening the seals: truths, answers and records from the folder, each held to the manifest's digest.
+
+use super::error::TrialsError;
+use super::make::WITHOUT;
+use crate::diagnose;
+use crate::error::TrainerError;
+use rayon::ThreadPool;
+use rayon::prelude::*;
+use runs::RunFolder;
+use runs::result::{DiagnosisResult, TrialsManifest, TrialsManifestLine};
+use std::collections::BTreeMap;
+use trials::{AnsweredCase, Baseline, Hidden, WEAK_FORM, WEAK_FORM_METHOD, true_closure, weak_form};
+use truth::{Sealed, digest};
+
+/// Folder of the truths.
+pub(crate) const TRUTHS: &str = "truth";
+/// The file of an answer.
+pub(crate) const ANSWER: &str = "diagnosis.json";
+
+pub(crate) fn truth_name(id: &str) -> String {
+    format!("{TRUTHS}/{id}.json")
+}
+
+pub(crate) fn case_name(group: &str, id: &str, file: &str) -> String {
+    format!("cases/{group}/{id}/{file}")
+}
+
+pub(crate) fn answer_name(group: &str, id: &str) -> String {
+    format!("answers/{group}/{id}/{ANSWER}")
+}
+
+/// Cases with opened truths, and what the weak-form baseline says of them.
+pub(crate) struct Opened {
+    pub(crate) cases: Vec<AnsweredCase>,
+    pub(crate) weak_form: Baseline,
+}
+
+/// The text of a file of the trials.
+pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError> {
+    let path = folder.path().join(name);
+    std::fs::read_to_string(&path).map_err(|error| TrialsError::Unreadable {
+        file: path.display().to_string(),
+        problem: error.to_string(),
+    })
+}
+
+/// The first line in which two texts differ, in words; `None` where they do not.
+pub(crate) fn first_difference(before: &str, now: &str) -> Option<String> {
+    let (mut before, mut now) = (before.lines(), now.lines());
+    loop {
+        match (before.next(), now.next()) {
+            (None, None) => return None,
+            (one, other) if one == other => (),
+            (one, other) => {
+                let shown =
+                    |line: Option<&str>| line.map_or("nothing".to_owned(), |line| format!("`{line}`"));
+                return Some(format!("{} then, {} now", shown(one), shown(other)));
+            }
+        }
+    }
+}
+
+/// Opens every truth and reads every answer. `failed` says why an answer is missing, where that is known.
+pub(crate) fn open(
+    folder: &RunFolder,
+    manifest: &TrialsManifest,
+    pool: &ThreadPool,
+    failed: &BTreeMap<String, String>,
+) -> Result<Opened, TrainerError> {
+    let opened: Vec<(AnsweredCase, Option<String>)> = pool.install(|| {
+        manifest.cases.par_iter().map(|line| one(folder, line, failed)).collect::<Result<_, _>>()
+    })?;
+    let (cases, answers) = opened.into_iter().unzip();
+    let weak_form = Baseline { id: WEAK_FORM.to_owned(), method: WEAK_FORM_METHOD.to_owned(), answers };
+    Ok(Opened { cases, weak_form })
+}
+
+fn one(
+    folder: &RunFolder,
+    line: &TrialsManifestLine,
+    failed: &BTreeMap<String, String>,
+) -> Result<(AnsweredCase, Option<String>), TrainerError> {
+    let shown = |name: &str| folder.path().join(name).display().to_string();
+    let name = truth_name(&line.id);
+    let sealed = Sealed::<Hidden>::from_stored(text(folder, &name)?, line.truth_digest.clone());
+    let hidden = sealed.open().map_err(|source| TrialsError::Seal { file: shown(&name), source })?;
+    for (file, stated) in &line.files {
+        let name = case_name(&line.group, &line.id, file);
+        let found = digest(&text(folder, &name)?);
+        if found != *stated {
+            return Err(TrialsError::Changed { file: shown(&name), stated: stated.clone(), found }.into());
+        }
+    }
+    let answer = answer(folder, line, failed)?;
+    let nominal = folder.path().join(case_name(&line.group, &line.id, "nominal.toml"));
+    let records: Vec<_> = line
+        .files
+        .keys()
+        .filter(|file| file.starts_with("record-"))
+        .map(|file| folder.path().join(case_name(&line.group, &line.id, file)))
+        .collect();
+    let (true_closure, baseline) = match diagnose::given(&records, &nominal) {
+        Ok(given) => {
+            let closure = match &answer {
+                Ok(answer) => true_closure(&hidden, &given.nominal, answer),
+                Err(message) => Err(message.clone()),
+            };
+            (closure, weak_form(&given.records, &given.nominal).map(str::to_owned))
+        }
+        // What cannot be read has no answer either.
+        Err(error) => (Err(error.to_string()), None),
+    };
+    let without = line.group.strip_prefix(WITHOUT).map_or_else(String::new, |id| format!(" --without {id}"));
+    let paths: Vec<String> = records.iter().map(|path| path.display().to_string()).collect();
+    let command = format!("trainer diagnose {} --nominal {}{without}", paths.join(" "), nominal.display());
+    Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, baseline))
+}
+
+/// The answer to a case, or why there is none.
+fn answer(
+    folder: &RunFolder,
+    line: &TrialsManifestLine,
+    failed: &BTreeMap<String, String>,
+) -> Result<Result<DiagnosisResult, String>, TrialsError> {
+    let name = answer_name(&line.group, &line.id);
+    let path = folder.path().join(&name);
+    if !path.exists() {
+        let unknown = || "none was given".to_owned();
+        return Ok(Err(failed.get(&line.id).cloned().unwrap_or_else(unknown)));
+    }
+    let file = path.display().to_string();
+    let answer: DiagnosisResult = serde_json::from_str(&text(folder, &name)?)
+        .map_err(|error| TrialsError::Unreadable { file: file.clone(), problem: error.to_string() })?;
+    let found: Vec<&str> = answer.records.iter().map(|record| record.digest.as_str()).collect();
+    let stated: Vec<&str> = line
+        .files
+        .iter()
+        .filter(|(file, _)| file.starts_with("record-"))
+        .map(|(_, digest)| digest.as_str())
+        .collect();
+    if found != stated {
+        return Err(TrialsError::OtherRecords { file, stated: stated.join(" "), found: found.join(" ") });
+    }
+    Ok(Ok(answer))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::first_difference;
+
+    #[test]
+    fn differences_are_said_by_line() {
+        assert_eq!(first_difference("a\nb\n", "a\nb"), None);
+        assert_eq!(first_difference("a\nb", "a\nc").unwrap(), "`b` then, `c` now");
+        assert_eq!(first_difference("a", "a\nc").unwrap(), "nothing then, `c` now");
+    }
+}

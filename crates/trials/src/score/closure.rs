@@ -1,0 +1,252 @@
+//! How far the answer's simulator closes the gap to the clean motion: what no noise disturbs.
+
+use super::judgment::Judgment;
+use super::statistics::proportion;
+use crate::hidden::Hidden;
+use dynamics::chain::Observed;
+use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
+use dynamics::{Active, DynamicsError, Effect, Hold, Input, Nominal, SYSTEM_HIDDEN, System};
+use nalgebra::{DMatrix, DVector};
+use runs::result::{CalibratedRow, ClosureStudy, DiagnosisResult};
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+use truth::Truth;
+
+/// Periods in a segment with a start state of its own.
+const PERIODS: f64 = 6.0;
+/// Samples in a period that are compared: a swing holds no more than its harmonics.
+const PER_PERIOD: f64 = 25.0;
+/// Steps of the fit of a start state.
+const STEPS: usize = 40;
+
+const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances of the repaired and of the nominal simulator from the \
+    motion without noise, start states fitted in segments of six periods";
+
+/// Closure of an answer's repaired simulator on the clean motion: 1 − m²/m₀², where m and m₀ are the root mean square
+/// distances of the repaired and of the nominal simulator from the motion that generated the records, start states
+/// (hidden ones too) fitted in segments of six periods.
+///
+/// `nominal` is the simulator that the diagnosis was given. The repaired one has the answer's coefficients, and the
+/// effects that its gap was computed with.
+///
+/// # Errors
+/// In words, why there is no such number: hidden or named effects in the measuring chain, no spring, no gap to close, a
+/// law outside the vocabulary, or a coefficient outside its range.
+pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult) -> Result<f64, String> {
+    if hidden.records.is_empty() {
+        return Err("the system cannot be said in the vocabulary".to_owned());
+    }
+    let in_chain = |id: &str| matches!(Effect::find(id), Ok(Effect::MeasuringChain(_)));
+    if hidden.effects.iter().any(|effect| in_chain(&effect.id)) {
+        return Err("a hidden effect lies in the measuring chain".to_owned());
+    }
+    let repaired = repaired(nominal, answer)?;
+    let given = System::new(*nominal, Vec::new()).map_err(|error| error.to_string())?;
+    let (mut before, mut after) = (0.0, 0.0);
+    for truth in &hidden.records {
+        let clean = Clean::of(truth).map_err(|_| "the clean motion cannot be simulated".to_owned())?;
+        before += clean.misfit(&given)?;
+        after += clean.misfit(&repaired)?;
+    }
+    // Both simulators fit to the integrator's accuracy: nothing to close.
+    if before <= 1e-12 * (1.0 + after) {
+        return Err("there is no gap to close".to_owned());
+    }
+    Ok(1.0 - after / before)
+}
+
+/// The simulator that an answer's gap was computed with.
+fn repaired(nominal: &Nominal, answer: &DiagnosisResult) -> Result<System, String> {
+    let value = |row: &CalibratedRow, own: f64| row.repaired.map_or(own, |found| found.value);
+    let own = nominal.coefficients();
+    let of = &answer.calibration;
+    let coefficients = dynamics::Coefficients {
+        inertia: value(&of.inertia, own.inertia),
+        damping: value(&of.damping, own.damping),
+        stiffness: value(&of.stiffness, own.stiffness),
+        rest_angle: value(&of.rest_angle, own.rest_angle),
+        input_gain: own.input_gain,
+    };
+    let outside = |_: DynamicsError| "a coefficient of the answer is outside its range".to_owned();
+    let nominal = nominal.with_coefficients(coefficients).map_err(outside)?;
+    let mut effects = Vec::new();
+    // An effect with a share of the gap is part of the simulator that the gap was computed with.
+    for row in answer.effects.iter().filter(|row| row.gap_share.is_some()) {
+        if matches!(Effect::find(&row.id), Ok(Effect::MeasuringChain(_))) {
+            return Err("a named effect lies in the measuring chain".to_owned());
+        }
+        let parameters: Vec<(&str, f64)> =
+            row.parameters.iter().map(|(name, parameter)| (name.as_str(), parameter.value)).collect();
+        effects.push(Active::named(&row.id, &parameters).map_err(outside)?);
+    }
+    System::new(nominal, effects).map_err(outside)
+}
+
+/// A clean motion in segments.
+struct Clean {
+    segments: Vec<Segment>,
+    input: Option<Input>,
+    observed: Observed,
+}
+
+struct Segment {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    start: FullState,
+}
+
+fn settings(observed: Observed) -> Settings {
+    Settings {
+        velocity: true,
+        acceleration: observed == Observed::Acceleration,
+        most_steps: 100_000,
+        ..Settings::default()
+    }
+}
+
+/// Values and their derivatives by the free quantities, row by row.
+fn seen(response: &Response, observed: Observed) -> (&[f64], &[f64]) {
+    match observed {
+        Observed::Position => (&response.position, &response.position_sensitivity),
+        Observed::Velocity => (&response.velocity, &response.velocity_sensitivity),
+        Observed::Acceleration => (&response.acceleration, &response.acceleration_sensitivity),
+    }
+}
+
+impl Clean {
+    fn of(truth: &Truth) -> Result<Self, DynamicsError> {
+        let sampling = &truth.sampling;
+        let omega = truth.system.nominal().angular_frequency();
+        if omega <= 0.0 || sampling.samples < 2 {
+            return Err(DynamicsError::BadTimes { index: 0, value: omega });
+        }
+        let period = TAU / omega;
+        let all: Vec<f64> = (0..sampling.samples).map(|index| index as f64 / sampling.rate_hz).collect();
+        let duration = all.last().copied().unwrap_or_default();
+        let input = match truth.excitation {
+            Some(excitation) => {
+                let values = all.iter().map(|&time| excitation.at(time, duration)).collect();
+                Some(Input::new(all.clone(), values, Hold::Zero)?)
+            }
+            None => None,
+        };
+        let stride = ((sampling.rate_hz * period / PER_PERIOD) as usize).max(1);
+        let times: Vec<f64> = all.into_iter().step_by(stride).collect();
+        let observed = truth.chain.observed();
+        let mut model = Model::new(&truth.system, &[], settings(observed))?;
+        let motion = model.run(FullState::from(truth.start), input.as_ref(), &times)?;
+        let (values, _) = seen(&motion, observed);
+        let count = ((duration / (PERIODS * period)).round() as usize).max(2);
+        let per_segment = times.len().div_ceil(count).max(4);
+        let segments = (0..times.len())
+            .step_by(per_segment)
+            .filter_map(|from| {
+                let to = (from + per_segment).min(times.len());
+                let at = |list: &[f64]| list.get(from).copied().unwrap_or_default();
+                let start = FullState {
+                    position: at(&motion.position),
+                    velocity: at(&motion.velocity),
+                    hidden: None,
+                };
+                let times = times.get(from..to).filter(|times| times.len() >= 4)?.to_vec();
+                Some(Segment { times, values: values.get(from..to)?.to_vec(), start })
+            })
+            .collect();
+        Ok(Self { segments, input, observed })
+    }
+
+    /// Sum of squares of what a system misses, start states fitted.
+    fn misfit(&self, system: &System) -> Result<f64, String> {
+        let hidden = system.hidden_states();
+        let free: Vec<Free> = [Free::StartPosition, Free::StartVelocity]
+            .into_iter()
+            .chain((0..hidden).map(Free::StartHidden))
+            .collect();
+        let words = |error: DynamicsError| error.to_string();
+        let mut model = Model::new(system, &free, settings(self.observed)).map_err(words)?;
+        let mut sum = 0.0;
+        for segment in &self.segments {
+            sum += self.fitted(&mut model, segment, hidden).map_err(|_| {
+                "the repaired simulator cannot be run from the clean motion's states".to_owned()
+            })?;
+        }
+        Ok(sum)
+    }
+
+    /// Squares left by the best start state: Levenberg–Marquardt from the clean motion's own.
+    fn fitted(&self, model: &mut Model, segment: &Segment, hidden: usize) -> Result<f64, DynamicsError> {
+        let first = segment.times.get(..1).unwrap_or_default();
+        let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden.unwrap_or_default();
+        let mut at = vec![segment.start.position, segment.start.velocity];
+        at.extend(relaxed.into_iter().take(hidden));
+        let (mut residual, mut jacobian) = self.residual(model, segment, &at)?;
+        let mut squares = residual.norm_squared();
+        let mut damping = 1e-4;
+        for _ in 0..STEPS {
+            let mut matrix = jacobian.tr_mul(&jacobian);
+            let slope = jacobian.tr_mul(&residual);
+            for index in 0..matrix.nrows() {
+                if let Some(entry) = matrix.get_mut((index, index)) {
+                    *entry += damping * *entry + f64::MIN_POSITIVE;
+                }
+            }
+            let Some(factor) = matrix.cholesky() else { break };
+            let step = factor.solve(&slope);
+            let next: Vec<f64> = at.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
+            match self.residual(model, segment, &next) {
+                Ok((trial, derivatives)) if trial.norm_squared() < squares => {
+                    let gained = squares - trial.norm_squared();
+                    let done = gained <= 1e-9 * squares;
+                    (at, residual, jacobian) = (next, trial, derivatives);
+                    squares = residual.norm_squared();
+                    damping = (damping * 0.1_f64).max(1e-12);
+                    if done {
+                        break;
+                    }
+                }
+                _ if damping > 1e6 => break,
+                _ => damping = (damping * 10.0).max(1e-6),
+            }
+        }
+        Ok(squares)
+    }
+
+    fn residual(
+        &self,
+        model: &mut Model,
+        segment: &Segment,
+        at: &[f64],
+    ) -> Result<(DVector<f64>, DMatrix<f64>), DynamicsError> {
+        let value = |index: usize| at.get(index).copied().unwrap_or_default();
+        let mut states = [0.0; SYSTEM_HIDDEN];
+        for (slot, value) in states.iter_mut().zip(at.iter().skip(2)) {
+            *slot = *value;
+        }
+        let hidden = (at.len() > 2).then_some(states);
+        let start = FullState { position: value(0), velocity: value(1), hidden };
+        let response = model.run(start, self.input.as_ref(), &segment.times)?;
+        let (values, derivatives) = seen(&response, self.observed);
+        let rows = segment.values.len();
+        let residual = DVector::from_iterator(rows, segment.values.iter().zip(values).map(|(a, b)| a - b));
+        Ok((residual, DMatrix::from_row_slice(rows, at.len(), derivatives)))
+    }
+}
+
+/// Coverage of the stated intervals.
+pub(crate) fn study(judged: &[Judgment<'_>]) -> ClosureStudy {
+    let mut left_out: BTreeMap<String, u64> = BTreeMap::new();
+    let (mut held, mut below, mut above) = (Vec::new(), 0, 0);
+    for judgment in judged {
+        match (&judgment.case.true_closure, judgment.answer()) {
+            (Ok(closure), Some(answer)) => {
+                let [low, high] = answer.gap.closure.interval_95;
+                held.push(low <= *closure && *closure <= high);
+                below += u64::from(*closure < low);
+                above += u64::from(*closure > high);
+            }
+            (Err(reason), Some(_)) => *left_out.entry(reason.clone()).or_default() += 1,
+            (_, None) => *left_out.entry("no answer".to_owned()).or_default() += 1,
+        }
+    }
+    ClosureStudy { means: MEANS.to_owned(), coverage: proportion(held), below, above, left_out }
+}

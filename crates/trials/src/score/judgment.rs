@@ -1,0 +1,288 @@
+//! One answer beside one truth.
+
+use crate::hidden::{Bank, Hidden};
+use dynamics::{Class, Effect};
+use runs::result::DiagnosisResult;
+
+/// A case with its opened truth and what the diagnosis said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct AnsweredCase {
+    /// The case.
+    pub id: String,
+    /// What it hid.
+    pub hidden: Hidden,
+    /// The answer, or why there is none.
+    pub answer: Result<DiagnosisResult, String>,
+    /// Closure of the answer's repaired simulator on the clean motion, or why there is none; see
+    /// [`true_closure`](crate::true_closure).
+    pub true_closure: Result<f64, String>,
+    /// Diagnoses this case alone again.
+    pub command: String,
+}
+
+/// What an answer says, nuisances struck.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Said {
+    None,
+    Calibration,
+    Effect,
+    Unknown,
+    Nothing,
+}
+
+/// Kinds of verdict.
+pub(crate) const KINDS: [&str; 7] =
+    ["none", "calibration", "structure", "sensor", "clock", "unknown", "no answer"];
+
+impl Said {
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Calibration => "calibration",
+            Self::Effect => "effect",
+            Self::Unknown => "unknown",
+            Self::Nothing => "no answer",
+        }
+    }
+}
+
+/// An answer judged.
+#[derive(Debug, Clone)]
+pub(crate) struct Judgment<'a> {
+    pub(crate) case: &'a AnsweredCase,
+    pub(crate) said: Said,
+    /// What was named beside nuisances, best first.
+    pub(crate) named: Vec<&'a str>,
+    /// Status and set right.
+    pub(crate) right: bool,
+    pub(crate) top_1: bool,
+    pub(crate) class: bool,
+    /// Every hidden effect named.
+    pub(crate) both: bool,
+    /// At least one of them named.
+    pub(crate) either: bool,
+}
+
+/// What a bank asks for.
+pub(crate) fn asks_for_unknown(bank: Bank) -> bool {
+    matches!(bank, Bank::LeftOut | Bank::Foreign)
+}
+
+/// Whether nothing is missing in a bank's cases.
+pub(crate) fn is_without_effect(bank: Bank) -> bool {
+    matches!(bank, Bank::None | Bank::Calibration)
+}
+
+/// Every bank, in the order of tables.
+pub(crate) const BANKS: [Bank; 11] = [
+    Bank::None,
+    Bank::Calibration,
+    Bank::Single,
+    Bank::Pair,
+    Bank::LeftOut,
+    Bank::Foreign,
+    Bank::Releases,
+    Bank::Driven,
+    Bank::Stressed,
+    Bank::Measured,
+    Bank::Engine,
+];
+
+/// The words for what `right` means, for the result.
+pub(crate) const RIGHT_MEANS: &str = "Effects of the measuring chain that come with records of every bank alike are struck \
+    from an answer first. Where nothing is missing, an answer is right that names nothing, be its status none or \
+    calibration. Where effects are hidden, its status has to be `effect` and its set exactly the hidden one. Where the hidden \
+    effect was not to be considered or lies outside the vocabulary, `unknown` is right. A case without an answer is \
+    wrong. Stated confidence is the probability of being right in this sense.";
+
+impl<'a> Judgment<'a> {
+    pub(crate) fn of(case: &'a AnsweredCase) -> Self {
+        let hidden = &case.hidden;
+        let (said, named) = match &case.answer {
+            Ok(answer) => said(answer, &hidden.nuisances),
+            Err(_) => (Said::Nothing, Vec::new()),
+        };
+        let named_here: &[&str] = if said == Said::Effect { &named } else { &[] };
+        let is_hidden = |id: &str| hidden.effects.iter().any(|effect| effect.id == id);
+        let first = named_here.first().copied();
+        let alike = |id: &str| {
+            let classes = case.answer.iter().flat_map(|answer| &answer.verdict.equivalent);
+            let mut of_first = classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == first));
+            of_first.any(|class| class.iter().any(|own| own == id))
+        };
+        let (right, top_1, class) = if asks_for_unknown(hidden.bank) {
+            let right = said == Said::Unknown;
+            (right, right, right)
+        } else if is_without_effect(hidden.bank) {
+            let right = matches!(said, Said::None | Said::Calibration);
+            (right, right, right || named_here.len() == 1 && alike("calibration"))
+        } else {
+            let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
+            let right = said == Said::Effect && every && named_here.len() == hidden.effects.len();
+            let top_1 = first.is_some_and(is_hidden);
+            (right, top_1, top_1 || first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)))
+        };
+        let mut found = hidden.effects.iter().map(|effect| named_here.contains(&effect.id.as_str()));
+        let either = found.clone().any(|found| found);
+        let both = !hidden.effects.is_empty() && found.all(|found| found);
+        Self { case, said, named, right, top_1, class, both, either }
+    }
+
+    pub(crate) fn bank(&self) -> Bank {
+        self.case.hidden.bank
+    }
+
+    pub(crate) fn answer(&self) -> Option<&'a DiagnosisResult> {
+        self.case.answer.as_ref().ok()
+    }
+
+    /// Size of the first hidden effect; of a pair of the smaller one: both have to be seen. Not a number without one.
+    pub(crate) fn size(&self) -> f64 {
+        let sizes = self.case.hidden.effects.iter().map(|effect| effect.detectability);
+        sizes.fold(f64::NAN, f64::min)
+    }
+
+    /// Whether something was named, or `unknown`.
+    pub(crate) fn alarms(&self) -> bool {
+        matches!(self.said, Said::Effect | Said::Unknown)
+    }
+
+    /// Stated probability of an id of the answer's list; 0 where it is not listed.
+    pub(crate) fn probability(&self, id: &str) -> Option<f64> {
+        let answer = self.answer()?;
+        Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
+    }
+
+    /// What was hidden, in a table's words.
+    pub(crate) fn hidden_name(&self) -> String {
+        let ids: Vec<&str> = self.case.hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
+        match (self.bank(), ids.is_empty()) {
+            (Bank::LeftOut, _) => format!("{}, not considered", ids.join("+")),
+            (Bank::Foreign, _) => self.case.hidden.foreign.clone().unwrap_or_else(|| "foreign".to_owned()),
+            (bank, true) => bank.name().to_owned(),
+            (_, false) => ids.join("+"),
+        }
+    }
+
+    /// What was said, in a table's words.
+    pub(crate) fn said_name(&self) -> String {
+        match self.said {
+            Said::Effect => self.named.join("+"),
+            said => said.name().to_owned(),
+        }
+    }
+
+    /// The kind that was hidden: of two effects that of the first.
+    pub(crate) fn hidden_kind(&self) -> &'static str {
+        match self.bank() {
+            Bank::None => "none",
+            Bank::Calibration => "calibration",
+            bank if asks_for_unknown(bank) => "unknown",
+            _ => self.case.hidden.effects.first().map_or("none", |effect| kind(&effect.id)),
+        }
+    }
+
+    /// The kind that was said: that of the first name.
+    pub(crate) fn said_kind(&self) -> &'static str {
+        match self.said {
+            Said::Effect => self.named.first().map_or("none", |id| kind(id)),
+            said => said.name(),
+        }
+    }
+
+    /// Whether the kind is right: of two hidden effects either's.
+    pub(crate) fn kind_is_right(&self) -> bool {
+        let said = self.said_kind();
+        said == self.hidden_kind()
+            || !asks_for_unknown(self.bank())
+                && self.case.hidden.effects.iter().any(|effect| kind(&effect.id) == said)
+    }
+}
+
+/// Status and names of an answer, nuisances struck. Where nothing but nuisances was named, `none` or `calibration`,
+/// whichever the answer holds for more probable.
+fn said<'a>(answer: &'a DiagnosisResult, nuisances: &[String]) -> (Said, Vec<&'a str>) {
+    let named: Vec<&str> =
+        answer.verdict.effects.iter().filter(|id| !nuisances.contains(id)).map(String::as_str).collect();
+    let probability =
+        |id: &str| answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability);
+    let said = match answer.verdict.status.as_str() {
+        "none" => Said::None,
+        "calibration" => Said::Calibration,
+        "unknown" => Said::Unknown,
+        _ if !named.is_empty() => Said::Effect,
+        _ if probability("none") > probability("calibration") => Said::None,
+        _ => Said::Calibration,
+    };
+    (said, named)
+}
+
+/// The kind of verdict that naming an effect is.
+fn kind(id: &str) -> &'static str {
+    match Effect::find(id).map(|effect| effect.description().class) {
+        Ok(Class::Sensor) => "sensor",
+        Ok(Class::Clock) => "clock",
+        _ => "structure",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::score::sample::{answered, case};
+
+    #[test]
+    fn nuisances_count_for_nothing() {
+        let mut nothing = case(Bank::None, &[], answered("effect", &["sensor_quantization"], 0.9));
+        assert!(!Judgment::of(&nothing).right);
+        nothing.hidden.nuisances = vec!["sensor_quantization".to_owned()];
+        let judged = Judgment::of(&nothing);
+        assert!(judged.right && judged.top_1 && judged.named.is_empty() && !judged.alarms());
+        let mut one =
+            case(Bank::Single, &["gravity"], answered("effect", &["sensor_quantization", "gravity"], 0.9));
+        one.hidden.nuisances = vec!["sensor_quantization".to_owned()];
+        assert!(Judgment::of(&one).right);
+    }
+
+    #[test]
+    fn a_class_holds_what_the_answer_cannot_tell_apart() {
+        let mut one = case(Bank::Single, &["gravity"], answered("effect", &["cubic_stiffness"], 0.9));
+        let judged = Judgment::of(&one);
+        assert!(!judged.top_1 && !judged.class && judged.kind_is_right());
+        one.answer.as_mut().unwrap().verdict.equivalent =
+            vec![vec!["cubic_stiffness".to_owned(), "gravity".to_owned()]];
+        let judged = Judgment::of(&one);
+        assert!(!judged.top_1 && judged.class && !judged.right);
+    }
+
+    #[test]
+    fn two_effects_need_both_names_and_no_third() {
+        let hidden = ["gravity", "coulomb_friction"];
+        let of = |named: &[&str]| case(Bank::Pair, &hidden, answered("effect", named, 0.9));
+        let (all, half, more) = (
+            of(&["coulomb_friction", "gravity"]),
+            of(&["coulomb_friction"]),
+            of(&["gravity", "coulomb_friction", "backlash"]),
+        );
+        let judged = Judgment::of(&all);
+        assert!(judged.right && judged.both && judged.either && judged.top_1);
+        let judged = Judgment::of(&half);
+        assert!(!judged.right && !judged.both && judged.either && judged.top_1);
+        let judged = Judgment::of(&more);
+        assert!(!judged.right && judged.both);
+    }
+
+    #[test]
+    fn what_is_outside_asks_for_unknown_and_no_answer_is_wrong() {
+        let left = case(Bank::LeftOut, &["gravity"], answered("unknown", &["cubic_stiffness"], 0.8));
+        assert!(Judgment::of(&left).right && Judgment::of(&left).kind_is_right());
+        let named = case(Bank::LeftOut, &["gravity"], answered("effect", &["cubic_stiffness"], 0.8));
+        assert!(!Judgment::of(&named).right && !Judgment::of(&named).kind_is_right());
+        let none = case(Bank::None, &[], Err("too few samples".to_owned()));
+        let judged = Judgment::of(&none);
+        assert!(!judged.right && !judged.top_1 && !judged.class && !judged.alarms());
+        assert_eq!(judged.said_kind(), "no answer");
+        let unknown = case(Bank::Single, &["gravity"], answered("unknown", &["gravity"], 0.8));
+        assert!(!Judgment::of(&unknown).top_1);
+    }
+}

@@ -1,0 +1,180 @@
+//! Answers laid beside opened truths: pure functions.
+
+pub(crate) mod accuracy;
+mod bars;
+mod closure;
+mod isotonic;
+mod judgment;
+mod reliability;
+#[cfg(test)]
+pub(crate) mod sample;
+mod statistics;
+#[cfg(test)]
+mod tests;
+mod unknown;
+
+pub use closure::true_closure;
+pub use judgment::AnsweredCase;
+
+pub(crate) use judgment::{Judgment, is_without_effect};
+pub(crate) use statistics::proportion;
+
+use crate::baseline::{Baseline, row};
+use crate::hidden::Bank;
+use judgment::{RIGHT_MEANS, Said};
+use reliability::{Statements, is_own, mapped, of_confidence, of_effects, reliability};
+use runs::result::{
+    FailureRow, LeftOutBank, ProbabilityMap, Reliability, TRIALS_SCHEMA, TrialCaseRow, TrialsResult,
+};
+use seed::Seed;
+
+/// What a score stands under.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trials {
+    /// Name of the trials.
+    pub name: String,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// Banks that were not made, and why.
+    pub left_out: Vec<LeftOutBank>,
+    /// Wall time so far in seconds.
+    pub seconds: f64,
+}
+
+/// Scores of all cases, in the order in which they were made.
+#[must_use]
+pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) -> TrialsResult {
+    let judged: Vec<Judgment<'_>> = cases.iter().map(Judgment::of).collect();
+    let seed = Seed::new(trials.seed).child("scoring");
+    let (reliability, map) = probabilities(&judged, &seed);
+    let unknown = unknown::study(&judged);
+    let named_right = judged.iter().filter(|judgment| judgment.right && judgment.said == Said::Effect);
+    let answers = || judged.iter().filter_map(Judgment::answer);
+    let ratio_to_floor = statistics::quantiles(
+        named_right.filter_map(Judgment::answer).map(|answer| answer.gap.ratio_to_floor),
+    );
+    let seconds_per_case = statistics::quantiles(answers().map(|answer| answer.seconds));
+    let closure = closure::study(&judged);
+    let measured = bars::Measured {
+        judged: &judged,
+        reliability: &reliability,
+        unknown: &unknown,
+        ratio_to_floor: &ratio_to_floor,
+        closure: &closure,
+        seconds: &seconds_per_case,
+    };
+    TrialsResult {
+        schema: TRIALS_SCHEMA.to_owned(),
+        task: "trials".to_owned(),
+        name: trials.name.clone(),
+        seed: trials.seed,
+        cases: cases.len() as u64,
+        unanswered: cases.iter().filter(|case| case.answer.is_err()).count() as u64,
+        left_out: trials.left_out.clone(),
+        right_means: RIGHT_MEANS.to_owned(),
+        bars: bars::bars(&measured),
+        banks: accuracy::banks(&judged),
+        effects: accuracy::sizes(&judged, true),
+        sizes: accuracy::sizes(&judged, false),
+        confusion: accuracy::confusion(&judged),
+        kinds: accuracy::kinds(&judged),
+        map,
+        unknown,
+        ratio_to_floor,
+        closure,
+        seconds_per_case,
+        nuisances: accuracy::nuisances(&judged),
+        baselines: baselines.iter().map(|baseline| row(baseline, &judged)).collect(),
+        failures: judged.iter().filter(|judgment| !judgment.right).map(failure).collect(),
+        seconds: trials.seconds,
+        reliability,
+    }
+}
+
+/// Whether some bar is missed with its whole interval.
+#[must_use]
+pub fn misses_a_bar(result: &TrialsResult) -> bool {
+    result.bars.iter().any(|bar| bar.missed_beyond_chance)
+}
+
+/// One row a case.
+#[must_use]
+pub fn case_rows(cases: &[AnsweredCase]) -> Vec<TrialCaseRow> {
+    cases.iter().map(|case| case_row(&Judgment::of(case))).collect()
+}
+
+/// Reliability of own and stressed banks, and the map: fitted to the cases of the own banks with an even place, scored
+/// on the others.
+fn probabilities(judged: &[Judgment<'_>], seed: &Seed) -> (Vec<Reliability>, ProbabilityMap) {
+    let own = |even: Option<bool>| -> Statements {
+        let places = judged.iter().filter(|judgment| is_own(judgment.bank())).enumerate();
+        let chosen = places.filter(|(place, _)| even.is_none_or(|even| place.is_multiple_of(2) == even));
+        of_confidence(chosen.map(|(_, judgment)| judgment))
+    };
+    let stressed = || judged.iter().filter(|judgment| judgment.bank() == Bank::Stressed);
+    let elsewhere =
+        || judged.iter().filter(|judgment| matches!(judgment.bank(), Bank::Measured | Bank::Engine));
+    let all_own = || judged.iter().filter(|judgment| is_own(judgment.bank()));
+    let map = isotonic::fit(&own(Some(true)).concat());
+    let held_out = own(Some(false));
+    let mut studies = vec![
+        ("confidence", "own", own(None)),
+        ("confidence", "stressed", of_confidence(stressed())),
+        ("confidence", "measured and engine", of_confidence(elsewhere())),
+        ("effects", "own", of_effects(all_own())),
+        ("effects", "stressed", of_effects(stressed())),
+    ];
+    if !map.knots.is_empty() {
+        studies.push(("confidence, mapped", "own, not fitted", mapped(&held_out, &map)));
+        studies.push(("confidence, not mapped", "own, not fitted", held_out));
+        studies.push(("confidence, mapped", "stressed", mapped(&of_confidence(stressed()), &map)));
+    }
+    let found = studies.iter().filter_map(|(subject, banks, statements)| {
+        reliability(subject, banks, statements, &seed.child(subject).child(banks))
+    });
+    (found.collect(), map)
+}
+
+fn failure(judgment: &Judgment<'_>) -> FailureRow {
+    FailureRow {
+        id: judgment.case.id.clone(),
+        bank: judgment.bank().name().to_owned(),
+        hidden: judgment.hidden_name(),
+        said: match &judgment.case.answer {
+            Ok(_) => judgment.said_name(),
+            Err(message) => format!("no answer: {message}"),
+        },
+        size: judgment.case.hidden.effects.first().map_or(f64::NAN, |effect| effect.detectability),
+        same_class: judgment.class && !judgment.top_1,
+        command: judgment.case.command.clone(),
+    }
+}
+
+fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
+    let hidden = &judgment.case.hidden;
+    let answer = judgment.answer();
+    let sizes: Vec<String> =
+        hidden.effects.iter().map(|effect| format!("{:.4}", effect.detectability)).collect();
+    let ids: Vec<&str> = hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
+    let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
+    let closure = answer.map(|answer| answer.gap.closure);
+    TrialCaseRow {
+        id: judgment.case.id.clone(),
+        bank: judgment.bank().name().to_owned(),
+        hidden: if ids.is_empty() { hidden.foreign.clone().unwrap_or_default() } else { ids.join("+") },
+        size: sizes.join("+"),
+        status: judgment.said.name().to_owned(),
+        named: judgment.named.join("+"),
+        confidence: finite(answer.map(|answer| answer.verdict.confidence)),
+        unknown: judgment.probability("unknown"),
+        right: judgment.right,
+        top_1: judgment.top_1,
+        class: judgment.class,
+        ratio_to_floor: finite(answer.map(|answer| answer.gap.ratio_to_floor)),
+        closure: finite(closure.map(|closure| closure.value)),
+        closure_low: finite(closure.map(|closure| closure.interval_95[0])),
+        closure_high: finite(closure.map(|closure| closure.interval_95[1])),
+        true_closure: finite(judgment.case.true_closure.as_ref().ok().copied()),
+        seconds: finite(answer.map(|answer| answer.seconds)),
+    }
+}

@@ -1,0 +1,70 @@
+//! Telling what has no name from what has.
+
+use super::accuracy::{SIZES, range, within};
+use super::judgment::{Judgment, asks_for_unknown};
+use super::statistics::area;
+use crate::hidden::Bank;
+use runs::result::{AreaRow, UnknownStudy};
+
+/// Points of the curve that are kept.
+const MOST_POINTS: usize = 200;
+
+/// Areas under the curve of the stated probability of `unknown`: cases whose effect was not to be considered or lies
+/// outside the vocabulary against those with named effects or none.
+pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
+    let score = |judgment: &Judgment<'_>| judgment.probability("unknown");
+    let is_negative = |bank: Bank| matches!(bank, Bank::None | Bank::Calibration | Bank::Single | Bank::Pair);
+    let negatives: Vec<f64> =
+        judged.iter().filter(|judgment| is_negative(judgment.bank())).filter_map(score).collect();
+    let of = |size: Option<f64>, wanted: &dyn Fn(&Judgment<'_>) -> bool| {
+        let positives: Vec<f64> = judged
+            .iter()
+            .filter(|judgment| asks_for_unknown(judgment.bank()) && wanted(judgment))
+            .filter_map(score)
+            .collect();
+        let row = AreaRow {
+            size,
+            positives: positives.len() as u64,
+            negatives: negatives.len() as u64,
+            area: area(&positives, &negatives)?,
+        };
+        Some((row, positives))
+    };
+    let all = of(None, &|_| true);
+    let curve = all.as_ref().map(|(_, positives)| curve(positives, &negatives)).unwrap_or_default();
+    let by_size = SIZES.iter().enumerate().filter_map(|(index, size)| {
+        of(Some(*size), &|judgment| within(judgment.size(), range(index))).map(|found| found.0)
+    });
+    UnknownStudy { areas: all.iter().map(|found| found.0.clone()).chain(by_size).collect(), curve }
+}
+
+/// False alarms and hits over all thresholds, from none to all.
+fn curve(positives: &[f64], negatives: &[f64]) -> Vec<[f64; 2]> {
+    let mut thresholds: Vec<f64> = positives.iter().chain(negatives).copied().collect();
+    thresholds.sort_by(|a, b| b.total_cmp(a));
+    thresholds.dedup();
+    let stride = thresholds.len().div_ceil(MOST_POINTS).max(1);
+    let share = |values: &[f64], threshold: f64| {
+        values.iter().filter(|value| **value >= threshold).count() as f64 / values.len().max(1) as f64
+    };
+    let inside = thresholds
+        .into_iter()
+        .step_by(stride)
+        .map(|threshold| [share(negatives, threshold), share(positives, threshold)]);
+    [[0.0, 0.0]].into_iter().chain(inside).chain([[1.0, 1.0]]).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_curve_bounds_the_area() {
+        let (positives, negatives) = ([0.9, 0.8, 0.4], [0.5, 0.3, 0.2, 0.1]);
+        let points = curve(&positives, &negatives);
+        assert_eq!((points[0], points[points.len() - 1]), ([0.0, 0.0], [1.0, 1.0]));
+        let trapezoids: f64 =
+            points.windows(2).map(|pair| (pair[1][0] - pair[0][0]) * 0.5 * (pair[0][1] + pair[1][1])).sum();
+        assert!((trapezoids - area(&positives, &negatives).unwrap().value).abs() < 1e-12);
+    }
+}

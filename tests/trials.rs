@@ -1,0 +1,158 @@
+//! `trainer trials`: blind answers, seals that hold, and going on after an interruption.
+
+use crate::support::{number, result, trainer};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::SystemTime;
+
+/// A dozen short cases.
+const TINY: &[&str] = &[
+    "configs/trials-quick.toml",
+    "trials.none=2",
+    "trials.calibration=2",
+    "trials.single=4",
+    "trials.pair=2",
+    "trials.left_out=0",
+    "trials.foreign=1",
+    "trials.releases=1",
+    "trials.driven=0",
+    "trials.stressed=0",
+    "trials.measured_cases=0",
+    "trials.engine_cases=0",
+    "record.seconds=8",
+    "record.rate_hz=130",
+];
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+/// Every answer below a folder by case, wall times taken away.
+fn answers(folder: &Path) -> BTreeMap<String, Value> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries
+        .map(|path| {
+            let mut answer = json(&path.join("diagnosis.json"));
+            let fields = answer.as_object_mut().unwrap();
+            fields.remove("seconds");
+            fields.remove("stages");
+            (path.file_name().unwrap().to_string_lossy().into_owned(), answer)
+        })
+        .collect()
+}
+
+fn without_times(mut scores: Value) -> Value {
+    let fields = scores.as_object_mut().unwrap();
+    fields.remove("seconds");
+    fields.remove("seconds_per_case");
+    let bars = fields["bars"].as_array_mut().unwrap();
+    bars.retain(|bar| bar["unit"] != "s");
+    scores
+}
+
+fn written(folder: &Path) -> BTreeMap<String, SystemTime> {
+    answers(folder)
+        .into_keys()
+        .map(|id| {
+            let file = folder.join(&id).join("diagnosis.json");
+            (id, file.metadata().unwrap().modified().unwrap())
+        })
+        .collect()
+}
+
+/// The exit code and what was said on standard error.
+fn said(arguments: &[&str]) -> (i32, String) {
+    let output = trainer(arguments);
+    (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
+}
+
+#[test]
+fn trials_are_blind_sealed_and_resumable() {
+    let (code, scores, folder) = result(&[&["trials"], TINY].concat());
+    assert_eq!(code, 0, "{scores}");
+    assert_eq!(scores["schema"], "ringdown.trials/1");
+    assert_eq!((number(&scores, "/cases"), number(&scores, "/unanswered")), (12.0, 0.0));
+    let root = folder.path();
+    let out = root.to_str().unwrap();
+    let full = root.join("answers/full");
+
+    // What the diagnosis is given does not tell what it hides, and what it hides was sealed before.
+    for case in std::fs::read_dir(root.join("cases/full")).unwrap() {
+        for file in std::fs::read_dir(case.unwrap().path()).unwrap() {
+            let text = std::fs::read_to_string(file.unwrap().path()).unwrap();
+            for word in ["friction", "drag", "gravity", "backlash", "bank", "hidden", "detectability"] {
+                assert!(!text.contains(word), "{word}");
+            }
+        }
+    }
+    let events = std::fs::read_to_string(root.join("events.jsonl")).unwrap();
+    let order: Vec<String> = events
+        .lines()
+        .map(|line| serde_json::from_str::<Value>(line).unwrap()["event"].as_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(order, ["start", "sealed", "opened", "end"]);
+    let manifest = json(&root.join("manifest.json"));
+    for line in manifest["cases"].as_array().unwrap() {
+        let id = line["id"].as_str().unwrap();
+        let text = std::fs::read_to_string(root.join(format!("truth/{id}.json"))).unwrap();
+        assert_eq!(line["truth_digest"], truth::digest(&text));
+    }
+    assert_eq!(std::fs::read_to_string(root.join("cases.csv")).unwrap().lines().count(), 13);
+    assert!(std::fs::read_to_string(root.join("report.html")).unwrap().contains("The bars"));
+
+    // Scored again from the files alone: the same; with a truth that was changed: refused, naming it.
+    let again = trainer(&["trials", "--score", out, "--json"]);
+    assert_eq!(again.status.code(), Some(0));
+    let again: Value = serde_json::from_slice(&again.stdout).unwrap();
+    let first_scores = without_times(scores);
+    assert_eq!(without_times(again), first_scores);
+    let truth = root.join("truth/000003.json");
+    let text = std::fs::read_to_string(&truth).unwrap();
+    std::fs::write(&truth, text.replacen("\"miscalibrated\": ", "\"miscalibrated\":  ", 1)).unwrap();
+    let (code, message) = said(&["trials", "--score", out]);
+    assert_eq!(code, 2, "{message}");
+    assert!(message.contains("truth/000003.json: the seal is broken"), "{message}");
+
+    // Without any truth on the disk the diagnosis says the same, to the bit.
+    std::fs::remove_dir_all(root.join("truth")).unwrap();
+    let blind = root.join("blind");
+    let (cases, blind_out) = (root.join("cases/full"), blind.to_str().unwrap());
+    let (code, message) =
+        said(&["diagnose", "--batch", cases.to_str().unwrap(), "--out", blind_out, "--quiet"]);
+    assert_eq!(code, 0, "{message}");
+    assert_eq!(answers(&blind), answers(&full));
+
+    // Resumed after two answers are gone: these are computed, the others left alone.
+    let before = written(&full);
+    for id in ["000002", "000007"] {
+        std::fs::remove_dir_all(full.join(id)).unwrap();
+    }
+    let resume = [&["trials"], TINY, &["--out", out, "--resume"]].concat();
+    let resumed = trainer(&[&resume[..], &["--json"]].concat());
+    assert_eq!(resumed.status.code(), Some(0), "{}", String::from_utf8_lossy(&resumed.stderr));
+    let resumed: Value = serde_json::from_slice(&resumed.stdout).unwrap();
+    assert_eq!(without_times(resumed), first_scores);
+    for (id, time) in written(&full) {
+        assert_eq!(time == before[&id], !["000002", "000007"].contains(&id.as_str()), "{id}");
+    }
+
+    // Now the truths are open: no further answer would be blind.
+    std::fs::remove_dir_all(full.join("000002")).unwrap();
+    let (code, message) = said(&resume);
+    assert!(code == 2 && message.contains("the truths are open, and 1 answers are missing"), "{message}");
+
+    // Another configuration is another experiment.
+    let (code, message) = said(&[&resume[..], &["trials.single=5"]].concat());
+    assert_eq!(code, 2, "{message}");
+    assert!(message.contains("config.toml") && message.contains("single = 4"), "{message}");
+    let (code, message) = said(&resume[..resume.len() - 1]);
+    assert!(code == 2 && message.contains("--resume"), "{message}");
+}
+
+#[test]
+fn what_is_no_trials_folder_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let (code, message) = said(&["trials", "--score", folder.path().to_str().unwrap()]);
+    assert!(code == 2 && message.contains("manifest.json is missing"), "{message}");
+}
