@@ -183,7 +183,7 @@ impl Candidate {
                     vec![Parameter { strength: true, shape: false, ..between("half_width", 0.0, 0.9 * a) }]
                 }
                 SystemEffect::Hysteresis => {
-                    vec![positive("torque"), between("displacement", 1e-3 * a, 2.0 * a)]
+                    vec![positive("torque"), between("displacement", 1e-3 * a, 0.5 * a)]
                 }
                 SystemEffect::EndStop => vec![
                     between("angle", facts.lowest, facts.highest),

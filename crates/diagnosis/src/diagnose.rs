@@ -2,22 +2,24 @@
 
 use crate::answer::{Budget, Cell, Diagnosis, Finding, MeasuringChain, Series, SetScore, Stage, Where};
 use crate::budget::budget;
-use crate::calibrate::better_hold;
+use crate::calibrate::{Baseline, better_hold};
 use crate::candidate::Candidate;
 use crate::coefficients::calibration;
 use crate::conclusion::{Parts, probabilities, verdict};
 use crate::dictionary::Dictionary;
 use crate::error::DiagnosisError;
-use crate::fit::{Effort, Fit, Moving, fit};
+use crate::fit::{Effort, Fit, Moving, Point, fit};
 use crate::gap::{Stages, gap, paired};
 use crate::held_out::HeldOut;
+use crate::horizon::Horizon;
 use crate::observations::Observations;
 use crate::refine::refine;
-use crate::search::{Breadth, search};
+use crate::search::{Breadth, Pool, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::tangent::Path;
+use crate::unexplained::unexplained;
 use crate::verdict::{significant, unknown, weigh};
-use crate::work::{OFF_BY_CHANCE, Thin, Work};
+use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null};
 use dynamics::Nominal;
 use record::{ClockKind, Quantity};
@@ -54,6 +56,10 @@ const MOST_EFFECTS: usize = 5;
 
 /// Sets that are fitted again on every sample.
 const REFINED: usize = 10;
+
+/// Searches on longer horizons at most.
+const MOST_HORIZONS: usize = 3;
+
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
 /// `seconds` is a stopwatch: it gives seconds since any moment. Costs are linear in the number of samples up to
@@ -107,21 +113,28 @@ pub fn diagnose(
         additions: 4,
     };
     // On fewer samples a gain is so many times smaller; the search must not stop on that account.
-    let found = search(&coarse, &coarse_base, &candidates, &breadth, 0.5 * threshold / finer);
+    let enough = 0.5 * threshold / finer;
+    let is_whole = samples_used == 1.0;
+    let (horizon, found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
     lap("search");
-    let pool = refine(&data, &base.calibrated, &found, REFINED, finer);
+    let segments = Unjoined { data: &data, base: &base };
+    let data = &data.joined(horizon.by);
+    let base = &followed(data, &segments, &horizon)?;
+    let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
+    let pool = refine(data, &base.calibrated, &found, REFINED, finer);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
 
-    let thin = Thin { data: &coarse, calibrated: &coarse_base, pool: &found };
-    let work = Work { data: &data, base: &base, pool: &pool, thin, time, settings };
+    let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
+    let work = Work { data, base, segments, pool: &pool, thin, time, settings };
     let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
     lap("held out");
-    let floor = noise::floor(&data, &repaired.residuals);
-    let ceiling = latent::ceiling(&data, repaired)?;
+    let fitted = &held.fitted;
+    let floor = noise::floor(segments.data, &fitted.residuals);
+    let ceiling = latent::ceiling(segments.data, fitted)?;
     lap("latent torque");
     let unit = records.first().map_or("", |record| record.unit);
     let figures = gap(
@@ -138,12 +151,13 @@ pub fn diagnose(
     );
     lap("gap");
 
-    // The free latent torque against the repaired simulator, in the excess variance of the recalibrated one.
     let noise_square = floor.value * floor.value;
     let excess = figures.recalibrated.powi(2) - noise_square;
-    let explained = figures.repaired.powi(2) - figures.ceiling.powi(2);
-    let share = if excess > 0.0 { explained / excess } else { 0.0 };
-    let unnamed = unknown(share, paired(&held.after.residuals, &ceiling));
+    let left = unexplained(data, repaired)?;
+    let gained = (base.calibrated.squares - repaired.squares).max(0.0);
+    let nameless = left.squares / (left.squares + gained).max(f64::MIN_POSITIVE);
+    let unnamed = unknown(left.evidence, nameless);
+    lap("unexplained");
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
     let shares = work.shares(repaired);
@@ -160,26 +174,32 @@ pub fn diagnose(
     let noise_coarse = floor.value * time.sqrt();
     let next_experiment = closest
         .filter(|rival| !rival.hypothesis.candidates.is_empty())
-        .and_then(|rival| experiment::next(&coarse, repaired, rival, noise_coarse / finer.sqrt()));
+        .and_then(|rival| experiment::next(coarse, repaired, rival, noise_coarse / finer.sqrt()));
     lap("identifiability");
 
-    let left = (held.after.mean_square() - noise_square).max(0.0) * data.samples() as f64;
-    let at_repaired = Dictionary::at(&coarse, &refit(&coarse, repaired)?, &candidates).ok();
+    let beyond = (held.after.mean_square() - noise_square).max(0.0) * data.samples() as f64;
+    let at_repaired = Dictionary::at(coarse, &refit(coarse, repaired)?, &candidates).ok();
     let total = named.iter().copied().map(Candidate::class).zip(shares.iter().map(|share| share.0));
     let worthwhile =
         excess > 0.0 && paired(&held.recalibrated.residuals, &held.after.residuals) > 0.0 || unnamed > 0.5;
     let budget = if worthwhile {
-        budget(&total.collect::<Vec<_>>(), left, at_repaired.as_ref())
+        budget(&total.collect::<Vec<_>>(), beyond, at_repaired.as_ref())
     } else {
         Budget::default()
     };
-    let paths = Path::of(&data, repaired)?;
+    let paths = Path::of(segments.data, fitted)?;
     let rest = data.facts.rest(&repaired.point.globals, &repaired.hypothesis);
-    let [over_time, amplitude, phase, frequency]: [Vec<Cell>; 4] =
-        maps::maps(&data, &paths, rest, &held.recalibrated.residuals, &held.after.residuals, floor.value);
+    let [over_time, amplitude, phase, frequency]: [Vec<Cell>; 4] = maps::maps(
+        segments.data,
+        &paths,
+        rest,
+        &held.recalibrated.residuals,
+        &held.after.residuals,
+        floor.value,
+    );
     lap("maps");
 
-    let mut measuring_chain = chain(records, &kept, nominal, &data, repaired, floor.value);
+    let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
     for finding in &mut measuring_chain.findings {
         finding.effect = finding.effect.filter(|id| settings.considers(id));
     }
@@ -199,7 +219,7 @@ pub fn diagnose(
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
     let calibration = calibration(&work, repaired)?;
-    let series = series(&data, [&held.nominal, &held.recalibrated, &held.after], &paths);
+    let series = series(segments.data, [&held.nominal, &held.recalibrated, &held.after], &paths);
     let sets = weighed
         .iter()
         .map(|w| SetScore {
@@ -229,6 +249,54 @@ pub fn diagnose(
         samples_used,
         stages,
     })
+}
+
+/// Searches on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to longer ones
+/// for as long as what was found follows the motion there.
+fn explore(
+    segments: &Data,
+    calibrated: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+    is_whole: bool,
+) -> (Horizon, Pool) {
+    let begin = |horizon: &Horizon| {
+        search(&horizon.data, &horizon.calibrated, Vec::new(), candidates, breadth, threshold)
+    };
+    let shortest = Horizon::shortest(segments, calibrated);
+    // Parts that were left out of long records have nothing to go on through.
+    if !is_whole {
+        let pool = begin(&shortest);
+        return (shortest, pool);
+    }
+    let mut horizon = Horizon::longest(segments, calibrated);
+    let mut pool = begin(&horizon);
+    if horizon.by > 1 && !horizon.is_followed(segments, &pool) {
+        pool = begin(&shortest);
+        horizon = shortest;
+    }
+    for _ in 0..MOST_HORIZONS {
+        let Some((longer, sets)) = horizon.beyond(segments, &pool) else { break };
+        pool = search(&longer.data, &longer.calibrated, sets, candidates, breadth, threshold);
+        horizon = longer;
+    }
+    (horizon, pool)
+}
+
+/// The given and the recalibrated simulator on every sample of a horizon.
+fn followed(data: &Data, segments: &Unjoined<'_>, horizon: &Horizon) -> Result<Baseline, DiagnosisError> {
+    if horizon.by == 1 {
+        return Ok(segments.base.clone());
+    }
+    let hypothesis = &segments.base.nominal.hypothesis;
+    let firsts = data.firsts();
+    let starts = firsts.iter().filter_map(|&first| segments.base.nominal.point.starts.get(first).cloned());
+    let point = Point { globals: hypothesis.nominal_point(), starts: starts.collect() };
+    let nominal = fit(data, hypothesis, point, Moving::Starts, Effort::FINAL)?;
+    let point = horizon.calibrated.point.clone();
+    let calibrated = fit(data, hypothesis, point, Moving::All, Effort::FINAL)?;
+    Ok(Baseline { nominal, calibrated })
 }
 
 fn refit(data: &Data, found: &Fit) -> Result<Fit, DiagnosisError> {

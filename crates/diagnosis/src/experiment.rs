@@ -105,6 +105,7 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
                 first: index == 0 && offset == 0.0,
                 values: vec![0.0; times.len()],
                 times,
+                parts: segment.parts.clone(),
                 guess: [0.0; 2],
             };
             let predicted = then.predict(&fresh, &state)?.residual;

@@ -90,11 +90,6 @@ impl Fit {
         self.residuals.iter().map(DVector::len).sum()
     }
 
-    /// Residual squares by segment.
-    pub(crate) fn segment_squares(&self) -> Vec<f64> {
-        self.residuals.iter().map(DVector::norm_squared).collect()
-    }
-
     /// Number of parameters that are fitted to all segments.
     pub(crate) fn globals(&self) -> usize {
         self.point.globals.len()

@@ -25,7 +25,7 @@ fn chebyshev(degree: i32, x: f64) -> f64 {
     (f64::from(degree) * x.acos()).cos()
 }
 
-fn basis(data: &Data, rest: f64) -> Vec<Torque> {
+pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Torque> {
     let (a, v, t) = (1.05 * data.facts.amplitude, 1.05 * data.facts.speed, data.facts.duration);
     let mut basis: Vec<Torque> = Vec::new();
     for i in 0..=DEGREE {

@@ -32,6 +32,7 @@ mod facts;
 mod fit;
 mod gap;
 mod held_out;
+mod horizon;
 mod hypothesis;
 mod latent;
 mod maps;
@@ -54,6 +55,7 @@ mod tangent;
 #[cfg(test)]
 #[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod trials;
+mod unexplained;
 mod verdict;
 mod work;
 

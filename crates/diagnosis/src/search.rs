@@ -311,20 +311,17 @@ fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, propos
     }
 }
 
-/// Searches sets of candidates, beginning at the calibrated nominal simulator.
-///
-/// `threshold` is the increase of the score that a further effect has to bring for the search to go on.
-pub(crate) fn search(
+/// The first round: single candidates and pairs at the calibrated simulator.
+fn begin(
     data: &Data,
     calibrated: &Fit,
     candidates: &[Candidate],
     breadth: &Breadth,
     threshold: f64,
-) -> Pool {
-    let mut pool = Pool { fits: vec![calibrated.clone()], rejected: Vec::new() };
-    let mut tried = BTreeSet::new();
-    tried.insert(Vec::new());
-    let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return pool };
+    pool: &mut Pool,
+    tried: &mut BTreeSet<Vec<usize>>,
+) {
+    let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
     let time = calibrated.autocorrelation_time();
@@ -338,7 +335,32 @@ pub(crate) fn search(
     for gain in pairs(&dictionary).iter().take(breadth.pairs).filter(|gain| worth(gain.squares)) {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    settle(data, &mut pool, &mut tried, proposals);
+    settle(data, pool, tried, proposals);
+}
+
+/// Searches sets of candidates, beginning at the calibrated nominal simulator.
+///
+/// `threshold` is the increase of the score that a further effect has to bring for the search to go on. Where there are
+/// `known` sets already, the search goes on from these.
+pub(crate) fn search(
+    data: &Data,
+    calibrated: &Fit,
+    known: Vec<Fit>,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Pool {
+    let mut pool = Pool { fits: vec![calibrated.clone()], rejected: Vec::new() };
+    let mut tried = BTreeSet::new();
+    tried.insert(Vec::new());
+    let begun = !known.is_empty();
+    for fit in known {
+        tried.insert(fit.hypothesis.ranks());
+        pool.admit(data, fit);
+    }
+    if !begun {
+        begin(data, calibrated, candidates, breadth, threshold, &mut pool, &mut tried);
+    }
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
     for _ in 0..2 * breadth.most_effects {
         let time = pool.autocorrelation_time();

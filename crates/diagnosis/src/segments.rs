@@ -50,6 +50,8 @@ pub(crate) struct Segment {
     pub(crate) first: bool,
     pub(crate) times: Vec<f64>,
     pub(crate) values: Vec<f64>,
+    /// Where in it each of the segments begins that it was joined from; `[0]` for one as it was cut.
+    pub(crate) parts: Vec<usize>,
     /// A start state to begin a fit from: position and velocity.
     pub(crate) guess: [f64; 2],
 }
@@ -165,7 +167,7 @@ pub(crate) fn cut(
                 continue;
             }
             let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
-            segments.push(Segment { record: number, first: at == 0, times, values, guess });
+            segments.push(Segment { record: number, first: at == 0, times, values, parts: vec![0], guess });
         }
     }
     let resolution = first.resolution;

@@ -12,12 +12,15 @@ pub(crate) const TEMPERATURE: f64 = 1.0;
 /// Prior odds of a set of so many effects, each size as a whole, against none.
 const PRIOR_ODDS: [f64; 6] = [1.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 
-/// Share of the excess variance left by the best named effects, and explained by a free latent torque, at which
-/// `unknown` is as likely as not.
+/// Share of what recalibration leaves that is without a name, at which `unknown` is as likely a verdict as the named effects
+/// that explain the rest.
 pub(crate) const UNKNOWN_SHARE: f64 = 0.25;
 
 /// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
 const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
+
+/// Prior odds that something acts that has no name.
+const UNKNOWN_ODDS: f64 = 0.05;
 
 /// A set with its evidence.
 #[derive(Debug, Clone)]
@@ -77,17 +80,12 @@ pub(crate) fn marginal(weighed: &[Weighed<'_>], candidate: Candidate) -> f64 {
     with.map(|w| w.probability).sum()
 }
 
-/// Probability that something without a name acts, from the share of the excess variance that a free latent torque explains
-/// beyond the named effects, and its standard errors on held-out segments.
-///
-/// With fewer than 2.33 standard errors (1 % by chance) there is nothing to name and the probability is 0.01; otherwise the
-/// odds are (share/¼)^2.885.
-pub(crate) fn unknown(share: f64, standard_errors: f64) -> f64 {
-    if !(standard_errors > 2.33 && share > 0.0) {
-        return 0.01;
-    }
-    let odds = (share / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
-    (odds / (1.0 + odds)).clamp(0.01, 0.99)
+/// Probability that the answer is something without a name: that anything without a name acts, from the evidence for it, times
+/// how much of the gap it would be. The odds that it is the answer are (share/¼)^2.885.
+pub(crate) fn unknown(evidence: f64, share: f64) -> f64 {
+    let acts = 1.0 / (1.0 + (-evidence).exp() / UNKNOWN_ODDS);
+    let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
+    acts * odds / (1.0 + odds)
 }
 
 /// Whether fitting `parameters` coefficients improves a fit more than chance does with a given probability.
@@ -101,9 +99,9 @@ mod tests {
 
     #[test]
     fn unknown_follows_its_rule() {
-        assert!((unknown(0.25, 9.0) - 0.5).abs() < 1e-12);
-        let odds = |share: f64| unknown(share, 9.0) / (1.0 - unknown(share, 9.0));
+        assert!((unknown(200.0, 0.25) - 0.5).abs() < 1e-12);
+        let odds = |share: f64| unknown(200.0, share) / (1.0 - unknown(200.0, share));
         assert!((odds(0.5) / odds(0.125) / 4.0_f64.exp() - 1.0).abs() < 1e-9);
-        assert_eq!(unknown(0.9, 1.0), 0.01);
+        assert!((unknown(0.0, 0.25) - 0.5 * 0.05 / 1.05).abs() < 1e-12);
     }
 }

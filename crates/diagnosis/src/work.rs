@@ -7,7 +7,8 @@ use crate::candidate::Candidate;
 use crate::diagnose::Settings;
 use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit, Moving, Point, fit};
-use crate::held_out::{HeldOut, interleaved, last_third};
+use crate::held_out::{Both, HeldOut};
+use crate::horizon::shortened;
 use crate::hypothesis::{Calibrated as Coefficient, Hypothesis};
 use crate::matrices::entry;
 use crate::refine::without;
@@ -20,14 +21,25 @@ use crate::verdict::{Weighed, ratio, significant};
 /// name and adds to the false alarms.
 pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
 const SHIFTED_BY_CHANCE: f64 = 0.001;
+
 /// What the later stages share.
 pub(crate) struct Work<'a> {
+    /// On the longest horizon that the best sets follow.
     pub(crate) data: &'a Data,
     pub(crate) base: &'a Baseline,
+    /// The segments as they were cut.
+    pub(crate) segments: Unjoined<'a>,
     pub(crate) pool: &'a Pool,
     pub(crate) thin: Thin<'a>,
     pub(crate) time: f64,
     pub(crate) settings: &'a Settings,
+}
+
+/// The segments as they were cut, each with a start state of its own.
+#[derive(Clone, Copy)]
+pub(crate) struct Unjoined<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) base: &'a Baseline,
 }
 
 /// The same on fewer samples: enough for shares, and many times as fast.
@@ -44,7 +56,10 @@ pub(crate) struct Held<'a> {
     pub(crate) after: HeldOut,
     /// Mean squares on the last third, recalibrated and repaired.
     pub(crate) last_third: [f64; 2],
+    /// The set on the horizon that it was judged on.
     pub(crate) repaired: &'a Fit,
+    /// The same on the segments as they were cut.
+    pub(crate) fitted: Fit,
 }
 
 /// A shift of the rest angle and nothing else.
@@ -81,29 +96,42 @@ impl<'a> Work<'a> {
         }))
     }
 
-    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out segments better
+    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts better
     /// than the calibrated simulator.
     pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
-        let nominal = interleaved(self.data, &self.base.nominal, Moving::Starts)?;
-        let recalibrated = interleaved(self.data, &self.base.calibrated, Moving::All)?;
-        let third = last_third(self.data, &self.base.calibrated, Moving::All)?;
+        let own = |followed: &'a Fit, fitted: &'a Fit| Both {
+            longer: self.data,
+            followed,
+            segments: self.segments.data,
+            fitted,
+        };
+        let short = self.segments.base;
+        let unjoined = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
+        let nominal = unjoined.interleaved(Moving::Starts)?;
+        let recalibrated_both = own(&self.base.calibrated, &short.calibrated);
+        let recalibrated = recalibrated_both.interleaved(Moving::All)?;
+        let third = recalibrated_both.last_third(Moving::All)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
         for w in weighed.iter().take(4) {
             if w.fit.hypothesis.candidates.is_empty() {
                 break;
             }
             // A set whose motion cannot be followed from parts of the data predicts nothing.
-            let Ok(after) = interleaved(self.data, w.fit, Moving::All) else { continue };
-            let Ok(later) = last_third(self.data, w.fit, Moving::All) else { continue };
-            if after.mean_square() < recalibrated.mean_square() {
+            let Ok(fitted) = shortened(self.segments.data, self.data, w.fit) else { continue };
+            let both =
+                Both { longer: self.data, followed: w.fit, segments: self.segments.data, fitted: &fitted };
+            let Ok(after) = both.interleaved(Moving::All) else { continue };
+            let Ok(later) = both.last_third(Moving::All) else { continue };
+            if after.continued < recalibrated.continued {
                 let last_third = [third, later];
-                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit });
+                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted });
             }
         }
         let repaired = calibrated
             .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
         let after = recalibrated.clone();
-        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired })
+        let fitted = short.calibrated.clone();
+        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
     }
 
     /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its interval from a
@@ -124,8 +152,12 @@ impl<'a> Work<'a> {
                 let fitted =
                     known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
                 let calibrated = self.thin.calibrated;
-                let squares = fitted.unwrap_or_else(|| calibrated.clone()).segment_squares();
-                let before = calibrated.segment_squares();
+                let by_part = |fit: &Fit| -> Vec<f64> {
+                    let parts = self.thin.data.by_part(&fit.residuals);
+                    parts.iter().map(|part| part.norm_squared()).collect()
+                };
+                let squares = by_part(fitted.as_ref().unwrap_or(calibrated));
+                let before = by_part(calibrated);
                 before.iter().zip(squares).map(|(before, after)| before - after).collect()
             })
             .collect();
@@ -147,7 +179,7 @@ impl<'a> Work<'a> {
                 pick.iter().filter_map(|index| own.and_then(|own| own.get(*index))).sum()
             })
         };
-        let segments = self.data.segments.len();
+        let segments = self.segments.data.segments.len();
         let all: Vec<usize> = (0..segments).collect();
         let values = by_segment(&all);
         let relative = |values: &[f64]| -> Vec<f64> {
@@ -180,6 +212,7 @@ impl<'a> Work<'a> {
     pub(crate) fn rivals(&self, repaired: &Fit) -> (Vec<Rivalry>, Option<&'a Fit>) {
         let own = &repaired.hypothesis.candidates;
         let mut found: Vec<(Rivalry, &'a Fit)> = Vec::new();
+        let mut nested = Vec::new();
         for fit in &self.pool.fits {
             let others = &fit.hypothesis.candidates;
             let gone: Vec<&Candidate> = own.iter().filter(|c| !others.contains(c)).collect();
@@ -189,9 +222,22 @@ impl<'a> Work<'a> {
                 found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
             }
         }
+        // A generalization that was given up because it came out as the member itself is no distance away.
+        for member in own {
+            for &general in Candidate::ALL.iter().filter(|general| general.generalizes() == Some(*member)) {
+                let swapped = repaired
+                    .hypothesis
+                    .with(&own.iter().map(|c| if c == member { general } else { *c }).collect::<Vec<_>>());
+                if self.pool.rejected.contains(&swapped.candidates) {
+                    let rivalry = Rivalry { effect: member.id(), rival: general.id(), distance: 0.0 };
+                    nested.push(rivalry);
+                }
+            }
+        }
         found.sort_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
         let closest = found.first().map(|(_, fit)| *fit);
-        (found.into_iter().map(|(rivalry, _)| rivalry).collect(), closest)
+        nested.extend(found.into_iter().map(|(rivalry, _)| rivalry));
+        (nested, closest)
     }
 
     pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {

@@ -1,0 +1,232 @@
+//! How far a fit follows the motion from one start state.
+//!
+//! A segment of a few periods forgets what went before it: fits cannot lose count of the swings, and a disturbance spoils
+//! one segment only. But forgetting costs sight. An effect that shows in how swings add up over the whole record
+//! (a frequency or a decay that changes little by little) all but vanishes where every segment has a start state of its
+//! own. So segments are joined, two by two, for as long as a model follows: at the end a record has one start state.
+
+use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::response::Simulator;
+use crate::search::Pool;
+use crate::segments::{Data, Segment};
+use dynamics::DynamicsError;
+use nalgebra::DVector;
+
+/// Factor by which the recalibrated simulator's error may grow on a longer horizon: it is not the whole truth.
+const RECALIBRATED: f64 = 2.0;
+
+/// Factor by which the error of a set that is to be judged there may grow.
+const JUDGED: f64 = 1.1;
+
+/// Error relative to the motion up to which linearizations hold: a phase error in radians.
+const LINEAR: f64 = 0.05;
+
+/// Sets that are tried on a longer horizon.
+const TRIED: usize = 6;
+
+impl Data {
+    /// Neighboring segments of each record joined by so many.
+    pub(crate) fn joined(&self, by: usize) -> Self {
+        let mut segments: Vec<Segment> = Vec::new();
+        let mut members = 0;
+        for segment in &self.segments {
+            match segments.last_mut() {
+                Some(last) if last.record == segment.record && members < by => {
+                    last.parts.extend(segment.parts.iter().map(|part| part + last.times.len()));
+                    last.times.extend(&segment.times);
+                    last.values.extend(&segment.values);
+                    members += 1;
+                }
+                _ => {
+                    segments.push(segment.clone());
+                    members = 1;
+                }
+            }
+        }
+        Self { segments, ..self.clone() }
+    }
+
+    /// For each segment of this horizon, which of the unjoined data's it begins with.
+    pub(crate) fn firsts(&self) -> Vec<usize> {
+        let counts = self.segments.iter().map(|segment| segment.parts.len());
+        counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
+    }
+
+    /// The joined parts that `keep` names, numbered as the unjoined segments are, and of every segment its very first sample,
+    /// where its start state stands. Segments of one part are kept or left out as a whole. Gives the kept segments'
+    /// numbers too.
+    pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<usize>) {
+        let mut segments = Vec::new();
+        let mut numbers = Vec::new();
+        for (number, (segment, first)) in self.segments.iter().zip(self.firsts()).enumerate() {
+            let wanted = |sample: usize| keep(first + segment.part_of(sample));
+            if (0..segment.parts.len()).all(|part| !keep(first + part)) {
+                continue;
+            }
+            let kept: Vec<usize> =
+                (0..segment.times.len()).filter(|&sample| sample == 0 || wanted(sample)).collect();
+            let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
+            segments.push(Segment {
+                times: pick(&segment.times),
+                values: pick(&segment.values),
+                parts: vec![0],
+                ..segment.clone()
+            });
+            numbers.push(number);
+        }
+        (Self { segments, ..self.clone() }, numbers)
+    }
+
+    /// Residuals on this horizon by unjoined segment.
+    pub(crate) fn by_part(&self, residuals: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        let mut all = Vec::new();
+        for (segment, residual) in self.segments.iter().zip(residuals) {
+            for (part, &from) in segment.parts.iter().enumerate() {
+                let to = segment.parts.get(part + 1).copied().unwrap_or(residual.len());
+                all.push(residual.rows(from, to.saturating_sub(from)).clone_owned());
+            }
+        }
+        all
+    }
+
+    /// Whether any segment is a joined one.
+    pub(crate) fn is_joined(&self) -> bool {
+        self.segments.iter().any(|segment| segment.parts.len() > 1)
+    }
+}
+
+impl Segment {
+    fn part_of(&self, sample: usize) -> usize {
+        self.parts.partition_point(|&from| from <= sample).saturating_sub(1)
+    }
+}
+
+fn mean_square(fit: &Fit) -> f64 {
+    fit.squares / fit.samples().max(1) as f64
+}
+
+/// Mean square of the observed values about their mean.
+fn motion(data: &Data) -> f64 {
+    let values: Vec<f64> = data.segments.iter().flat_map(|segment| segment.values.iter().copied()).collect();
+    let center = crate::statistics::mean(&values);
+    values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / values.len().max(1) as f64
+}
+
+/// A fit on a horizon twice as long, begun where each joined segment begins.
+fn lengthened(longer: &Data, shorter: &Data, found: &Fit) -> Option<Fit> {
+    let places = shorter.firsts();
+    let starts = longer
+        .firsts()
+        .iter()
+        .map(|first| {
+            let place = places.iter().position(|own| own == first)?;
+            found.point.starts.get(place).cloned()
+        })
+        .collect::<Option<_>>()?;
+    let point = Point { globals: found.point.globals.clone(), starts };
+    fit(longer, &found.hypothesis, point, Moving::All, Effort::FINAL).ok()
+}
+
+/// A fit on the unjoined segments that passes through the states of a fit on a longer horizon; only start states are
+/// fitted.
+pub(crate) fn shortened(segments: &Data, longer: &Data, found: &Fit) -> Result<Fit, DynamicsError> {
+    if !longer.is_joined() {
+        return Ok(found.clone());
+    }
+    let mut simulator = Simulator::new(longer, &found.hypothesis, &found.point.globals, false)?;
+    let mut starts = Vec::with_capacity(segments.segments.len());
+    for (segment, start) in longer.segments.iter().zip(&found.point.starts) {
+        let motion = simulator.motion(segment, start)?;
+        for &at in &segment.parts {
+            let state = motion.position.get(at).zip(motion.velocity.get(at));
+            let state = state.map_or([0.0; 2], |(position, velocity)| [*position, *velocity]);
+            starts.push(extended(&state, &found.hypothesis));
+        }
+    }
+    let point = Point { globals: found.point.globals.clone(), starts };
+    fit(segments, &found.hypothesis, point, Moving::Starts, Effort::HELD_OUT)
+}
+
+/// Data joined by some number, and the recalibrated simulator on them.
+#[derive(Debug, Clone)]
+pub(crate) struct Horizon {
+    pub(crate) by: usize,
+    pub(crate) data: Data,
+    pub(crate) calibrated: Fit,
+}
+
+impl Horizon {
+    /// The shortest: the segments as they were cut.
+    pub(crate) fn shortest(data: &Data, calibrated: &Fit) -> Self {
+        Self { by: 1, data: data.clone(), calibrated: calibrated.clone() }
+    }
+
+    /// Twice as long; `None` where there is nothing left to join or the fits fail.
+    fn doubled(&self, segments: &Data) -> Option<Self> {
+        let by = 2 * self.by;
+        let data = segments.joined(by);
+        if data.segments.len() == self.data.segments.len() {
+            return None;
+        }
+        let calibrated = lengthened(&data, &self.data, &self.calibrated)?;
+        Some(Self { by, data, calibrated })
+    }
+
+    /// The longest on which the recalibrated simulator is still a model to linearize at.
+    pub(crate) fn longest(segments: &Data, calibrated: &Fit) -> Self {
+        let mut horizon = Self::shortest(segments, calibrated);
+        let (shortest, motion) = (mean_square(calibrated), motion(segments));
+        while let Some(longer) = horizon.doubled(segments) {
+            let square = mean_square(&longer.calibrated);
+            if square > RECALIBRATED * RECALIBRATED * shortest || square > LINEAR * LINEAR * motion {
+                break;
+            }
+            horizon = longer;
+        }
+        horizon
+    }
+
+    /// Whether the best set of a pool on this horizon follows the motion as well as it does segment by segment.
+    pub(crate) fn is_followed(&self, segments: &Data, pool: &Pool) -> bool {
+        let time = pool.autocorrelation_time();
+        pool.ranked(time).first().is_some_and(|best| {
+            let short = shortened(segments, &self.data, best);
+            let short = short.and_then(|short| {
+                fit(segments, &short.hypothesis, short.point, Moving::All, Effort::HELD_OUT)
+            });
+            // Every start state takes its two degrees of freedom out of the squares.
+            short.is_ok_and(|short| {
+                best.squares / best.freedom() <= JUDGED * JUDGED * short.squares / short.freedom()
+            })
+        })
+    }
+
+    /// The longest horizon on which the best of a pool's sets still follow, with these sets on it; `None` where that is
+    /// this one.
+    pub(crate) fn beyond(&self, segments: &Data, pool: &Pool) -> Option<(Self, Vec<Fit>)> {
+        let time = pool.autocorrelation_time();
+        let best: Vec<Fit> = pool
+            .ranked(time)
+            .into_iter()
+            .filter(|fit| !fit.hypothesis.candidates.is_empty())
+            .take(TRIED)
+            .cloned()
+            .collect();
+        let first = best.first().map(|fit| fit.squares / fit.freedom())?;
+        let mut reached: Option<(Self, Vec<Fit>)> = None;
+        let mut sets = best;
+        let mut horizon = self.clone();
+        while let Some(longer) = horizon.doubled(segments) {
+            let kept: Vec<Fit> =
+                sets.iter().filter_map(|set| lengthened(&longer.data, &horizon.data, set)).collect();
+            let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
+            if smallest > JUDGED * JUDGED * first {
+                break;
+            }
+            sets.clone_from(&kept);
+            horizon = longer.clone();
+            reached = Some((longer, kept));
+        }
+        reached
+    }
+}
