@@ -35,6 +35,10 @@ const ROUNDS: usize = 10;
 /// How well a round's prediction of the next residual's norm has to come true for the fit to end.
 const SETTLED: f64 = 1e-3;
 
+/// A norm in units of the sensor's noise that counts as nothing left: a fit that gets there need not go on, and rounding may
+/// keep it from doing so.
+const NOTHING: f64 = 1e-3;
+
 /// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit goes over ever longer
 /// parts of the record, so that it does not end in a minimum with the wrong number of turns.
 const TRUSTED_PHASE: f64 = 0.5;
@@ -133,6 +137,9 @@ impl<'a> Recalibration<'a> {
     fn fit(&mut self, part: f64) -> Result<f64, TrialError> {
         let mut round = self.round(part)?;
         for _ in 0..ROUNDS {
+            if round.norm <= NOTHING * self.situation.noise {
+                return Ok(round.norm);
+            }
             let from = self.unknowns.clone();
             let mut share = 1.0;
             let next = loop {
