@@ -34,6 +34,8 @@ mod stressed;
 #[cfg(test)]
 mod integrator_tests;
 #[cfg(test)]
+mod random_tests;
+#[cfg(test)]
 mod recalibration_tests;
 #[cfg(test)]
 mod tests;
