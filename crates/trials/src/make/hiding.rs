@@ -55,10 +55,10 @@ pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
     ("periodic_forcing", "sensor_drift", "a strain gauge beside a machine"),
 ];
 
-/// Effects for which nothing else in the vocabulary is nearly the same thing: with one of these left out `unknown` is the
-/// right answer. Left out of this list are those with a stand-in: gravity and cubic stiffness for one another, the dry frictions and
-/// hysteresis, stiffness drift and clock drift, a preload and a calibrated rest angle, and what scatters values or stamps and
-/// is noise to whoever knows no better.
+/// Effects for which nothing else in the vocabulary is nearly the same thing: with one of these left out
+/// `unknown` is the right answer. Left out of this list are those with a stand-in: gravity and cubic
+/// stiffness for one another, the dry frictions and hysteresis, stiffness drift and clock drift, a preload
+/// and a calibrated rest angle, and what scatters values or stamps and is noise to whoever knows no better.
 pub(crate) const LEFT_OUT: &[&str] = &[
     "quadratic_drag",
     "backlash",
@@ -90,8 +90,26 @@ pub(crate) const RELEASES: &[&str] = &[
     "clock_drift",
 ];
 
-/// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of action is a
-/// release.
+/// Effects laid under residuals of measured records: those of a release, but for a drifting clock, as the
+/// stamps are the measured record's own.
+pub(crate) const MEASURED: &[&str] = &[
+    "coulomb_friction",
+    "stribeck_friction",
+    "quadratic_drag",
+    "cubic_stiffness",
+    "asymmetric_stiffness",
+    "gravity",
+    "backlash",
+    "hysteresis",
+    "end_stop",
+    "stiffness_drift",
+    "damping_drift",
+    "flexible_coupling",
+    "sensor_nonlinearity",
+];
+
+/// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of
+/// action is a release.
 pub(crate) const DRIVEN: &[&str] = &[
     "input_delay",
     "input_saturation",
@@ -115,7 +133,7 @@ pub(crate) const DRIVEN: &[&str] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::{DRIVEN, LEFT_OUT, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
+    use super::{DRIVEN, LEFT_OUT, MEASURED, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
     use dynamics::{Effect, REGISTRY};
 
     #[test]
@@ -125,7 +143,7 @@ mod tests {
 
     #[test]
     fn lists_name_effects_once() {
-        for list in [LEFT_OUT, RELEASES, DRIVEN, NEEDS_INPUT] {
+        for list in [LEFT_OUT, RELEASES, MEASURED, DRIVEN, NEEDS_INPUT] {
             for (number, id) in list.iter().enumerate() {
                 Effect::find(id).unwrap();
                 assert!(!list[..number].contains(id), "{id}");

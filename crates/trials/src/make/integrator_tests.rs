@@ -8,7 +8,7 @@ use truth::{Excitation, Sampling, Waveform};
 /// As configured by default, in rad.
 const SMALLEST_NOISE: f64 = 2e-4;
 
-fn situation(driven: bool) -> Situation {
+pub(super) fn situation(driven: bool) -> Situation {
     let omega = 7.0 * std::f64::consts::PI;
     let excitation =
         Excitation { waveform: Waveform::Chirp, amplitude: 12.0, frequency_hz: 1.0, end_frequency_hz: 7.0 };
@@ -64,8 +64,8 @@ fn a_sine_spring_of_no_steepness_is_the_references_cubic_spring() {
     }
 }
 
-/// Bristles take the time √(2·bend/(ω²·A)) to turn over after a reversal: the difference falls with the root of the bend, and is
-/// extrapolated to none.
+/// Bristles take the time √(2·bend/(ω²·A)) to turn over after a reversal: the difference falls with the root
+/// of the bend, and is extrapolated to none.
 #[test]
 fn bristles_that_hardly_bend_are_coulombs_friction() {
     let situation = situation(false);

@@ -144,8 +144,8 @@ fn nuisances_are_alike_in_every_bank() {
     }
 }
 
-/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and a projection by
-/// singular values.
+/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and
+/// a projection by singular values.
 #[test]
 fn sizes_are_as_detectable_as_wanted() {
     let plan = plan(&[("single", 26), ("releases", 14)], &["trials.detectabilities=[6]"]);
@@ -256,6 +256,52 @@ fn banks_without_their_folders_are_left_out_and_said_to_be() {
     assert!(measured.reason.contains("no/such/folder"), "{}", measured.reason);
     assert_eq!((engine.bank, engine.cases), (Bank::Engine, 7));
     assert!(engine.reason.contains("trials.engine"), "{}", engine.reason);
+}
+
+fn fixture(name: &str) -> String {
+    format!("{}/src/make/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn an_effect_is_laid_under_a_residual() {
+    let folder = format!("trials.measured={}", fixture("residuals"));
+    let plan = plan(&[("measured_cases", 13)], &[&folder, "trials.detectabilities=[12]"]);
+    assert_eq!((plan.len(), plan.left_out_banks()), (13, &[][..]));
+    for index in 0..plan.len() {
+        let case = plan.case(index).unwrap();
+        let effect = &case.hidden.effects[0];
+        assert!((effect.detectability / 12.0 - 1.0).abs() < 0.02, "{effect:?}");
+        assert!((case.hidden.noise / 3e-4 - 1.0).abs() < 0.1, "{}", case.hidden.noise);
+        assert_eq!(case.hidden.nuisances, ["timestamp_batching"]);
+        let (record, _) = read_text("record", case.records[0].as_bytes(), &ReadOptions::default()).unwrap();
+        assert_eq!(record.len(), 900);
+        // Without the motion the residual is left, up to its rounding.
+        let truth = &case.hidden.records[0];
+        if truth.chain.effects().count() == 0 {
+            let times: Vec<f64> = (0..900).map(|index| f64::from(index) / truth.sampling.rate_hz).collect();
+            let clean =
+                simulate(&truth.system, truth.start, None, &times, &Tolerance::default()).unwrap().position;
+            let rest: Vec<f64> = record.values().iter().zip(&clean).map(|(one, other)| one - other).collect();
+            let rms = (rest.iter().map(|value| value * value).sum::<f64>() / 900.0).sqrt();
+            assert!((2.9e-4..3.6e-4).contains(&rms), "{rms:e}");
+        }
+    }
+}
+
+#[test]
+fn cases_of_a_physics_engine_are_written_like_every_other() {
+    let folder = format!("trials.engine={}", fixture("engine"));
+    let plan = plan(&[("engine_cases", 5), ("none", 1)], &[&folder]);
+    // As many as there are.
+    assert_eq!((plan.len(), plan.left_out_banks()), (2, &[][..]));
+    let cases: Vec<_> = (0..2).map(|index| plan.case(index).unwrap()).collect();
+    let [engine] = cases.iter().filter(|case| case.hidden.bank == Bank::Engine).collect::<Vec<_>>()[..]
+    else {
+        panic!("one case of the engine");
+    };
+    assert_eq!(engine.hidden.effects[0].id, "coulomb_friction");
+    let head = |index: usize| cases[index].records[0].lines().take(3).collect::<Vec<_>>();
+    assert_eq!(head(0), head(1));
 }
 
 #[test]
