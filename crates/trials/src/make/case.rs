@@ -105,7 +105,7 @@ impl Setup {
 }
 
 impl Job {
-    fn seed(&self, root: u64) -> (Seed, Vec<String>) {
+    pub(crate) fn seed(&self, root: u64) -> (Seed, Vec<String>) {
         let branch = vec!["trials".to_owned(), format!("{:?}", self.bank), format!("case {}", self.number)];
         (branch.iter().fold(Seed::new(root), |node, name| node.child(name)), branch)
     }

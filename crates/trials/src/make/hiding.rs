@@ -90,6 +90,24 @@ pub(crate) const RELEASES: &[&str] = &[
     "clock_drift",
 ];
 
+/// Effects laid under residuals of measured records: those of a release, but for a drifting clock, as the stamps are the measured
+/// record's own.
+pub(crate) const MEASURED: &[&str] = &[
+    "coulomb_friction",
+    "stribeck_friction",
+    "quadratic_drag",
+    "cubic_stiffness",
+    "asymmetric_stiffness",
+    "gravity",
+    "backlash",
+    "hysteresis",
+    "end_stop",
+    "stiffness_drift",
+    "damping_drift",
+    "flexible_coupling",
+    "sensor_nonlinearity",
+];
+
 /// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of action is a
 /// release.
 pub(crate) const DRIVEN: &[&str] = &[
@@ -115,7 +133,7 @@ pub(crate) const DRIVEN: &[&str] = &[
 
 #[cfg(test)]
 mod tests {
-    use super::{DRIVEN, LEFT_OUT, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
+    use super::{DRIVEN, LEFT_OUT, MEASURED, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
     use dynamics::{Effect, REGISTRY};
 
     #[test]
@@ -125,7 +143,7 @@ mod tests {
 
     #[test]
     fn lists_name_effects_once() {
-        for list in [LEFT_OUT, RELEASES, DRIVEN, NEEDS_INPUT] {
+        for list in [LEFT_OUT, RELEASES, MEASURED, DRIVEN, NEEDS_INPUT] {
             for (number, id) in list.iter().enumerate() {
                 Effect::find(id).unwrap();
                 assert!(!list[..number].contains(id), "{id}");

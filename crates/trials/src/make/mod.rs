@@ -29,6 +29,8 @@ mod size;
 mod stressed;
 
 #[cfg(test)]
+mod integrator_tests;
+#[cfg(test)]
 mod tests;
 
 pub use case::Case;

@@ -2,7 +2,7 @@
 
 use super::case::{ATTEMPTS, Case, Job, Setup, described, hide};
 use super::error::TrialError;
-use super::hiding::RELEASES;
+use super::hiding::MEASURED;
 use super::plan::TrialPlan;
 use super::situation::{Motions, Nuisances, Situation};
 use crate::{Bank, HIDDEN_SCHEMA, Hidden};
@@ -118,8 +118,8 @@ impl Residual {
 /// Noise, rounding and stamps are the residual's: nothing is drawn of them. Its size is in units of the residual's white part, from
 /// second differences. The samples are taken at a uniform rate, by their index.
 pub(crate) fn measured_case(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
-    let (at, wanted) = plan.turn(job.number, RELEASES.len());
-    let effect = RELEASES.get(at).copied().unwrap_or_default();
+    let (at, wanted) = plan.turn(job.number, MEASURED.len());
+    let effect = MEASURED.get(at).copied().unwrap_or_default();
     let path = plan.residuals.get(job.number % plan.residuals.len().max(1));
     let Some(path) = path else {
         return Err(TrialError::NoSuchCase { index: job.number, cases: 0 });
@@ -159,10 +159,7 @@ fn with_residual(
         let unused = |id: &'static str| setup.seed.child(id).generator();
         let samples = silent.observe(&motion.sampled(), Coordinate::Angle, unused)?;
         let values = samples.values.iter().zip(&residual.values).map(|(value, rest)| value + rest).collect();
-        // What a drifting clock does to a stamp it does to the residual's stamp too.
-        let shifts = samples.stamps_s.iter().zip(&samples.times_s).map(|(stamp, time)| stamp - time);
-        let stamps = residual.stamps.iter().zip(shifts).map(|(stamp, shift)| stamp + shift).collect();
-        let record = Record::new(stamps, values, None, Quantity::Position, "rad")?;
+        let record = Record::new(residual.stamps.clone(), values, None, Quantity::Position, "rad")?;
         records.push(csv_text(&record, sampling.stamp_decimals, sampling.value_decimals));
         truths.push(Truth {
             schema: TRUTH_SCHEMA.to_owned(),

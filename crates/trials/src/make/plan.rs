@@ -3,7 +3,7 @@
 use super::case::{Case, Job};
 use super::draws::Draws;
 use super::error::TrialError;
-use super::hiding::{DRIVEN, LEFT_OUT, PAIRS, RELEASES, SINGLE};
+use super::hiding::{DRIVEN, LEFT_OUT, MEASURED, PAIRS, RELEASES, SINGLE};
 use super::outside::{self, EngineCase, ResidualFile};
 use super::schema::SECTIONS;
 use super::{foreign, stressed};
@@ -232,6 +232,7 @@ impl TrialPlan {
         job.make(self, id(index))
     }
 
+    #[cfg(test)]
     pub(crate) fn job(&self, index: usize) -> Option<Job> {
         self.jobs.get(index).copied()
     }
@@ -252,7 +253,8 @@ impl TrialPlan {
             Bank::Pair => PAIRS.len(),
             Bank::LeftOut => LEFT_OUT.len(),
             Bank::Foreign => foreign::KINDS.len(),
-            Bank::Releases | Bank::Measured => RELEASES.len(),
+            Bank::Releases => RELEASES.len(),
+            Bank::Measured => MEASURED.len(),
             Bank::Driven => DRIVEN.len(),
             Bank::Stressed => stressed::EFFECTS.len(),
         }

@@ -20,10 +20,17 @@ pub(crate) struct Absorbed {
 }
 
 /// Most rounds of the fit. From the truth it is nearly linear, and two are enough for most.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 10;
 
 /// How well a round's prediction of the next residual's norm has to come true for the fit to end.
 const SETTLED: f64 = 1e-3;
+
+/// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit goes over ever longer
+/// parts of the record, so that it does not end in a minimum with the wrong number of turns.
+const TRUSTED_PHASE: f64 = 0.5;
+
+/// The parts.
+const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
 
 /// Root of the sum of squares that the best recalibrated oscillator leaves of noise-free records, in rad.
 pub(crate) fn left_over(
@@ -50,6 +57,8 @@ struct Recalibration<'a> {
     /// Free coefficients, shared by the records; then position and velocity at the start of each.
     unknowns: Vec<f64>,
     shared: usize,
+    /// Place of the inertia among the unknowns, where it is one.
+    inertia: Option<usize>,
 }
 
 impl<'a> Recalibration<'a> {
@@ -66,6 +75,7 @@ impl<'a> Recalibration<'a> {
         if situation.excitation.is_some() {
             free.push((Free::Inertia, is.inertia));
         }
+        let inertia = free.iter().position(|(name, _)| *name == Free::Inertia);
         let shared = free.len();
         let mut unknowns: Vec<f64> = free.iter().map(|(_, value)| *value).collect();
         unknowns.extend(situation.starts.iter().flat_map(|start| [start.position, start.velocity]));
@@ -73,27 +83,63 @@ impl<'a> Recalibration<'a> {
         names.extend([Free::StartPosition, Free::StartVelocity]);
         let system = System::new(situation.nominal, Vec::new())?;
         let model = Model::new(&system, &names, Settings::default())?;
-        Ok(Self { situation, seen, model, unknowns, shared })
+        Ok(Self { situation, seen, model, unknowns, shared, inertia })
     }
 
     fn run(mut self) -> Result<f64, TrialError> {
-        let mut expected = f64::INFINITY;
-        let mut least = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            let round = self.round()?;
-            if (round.norm - expected).abs() <= SETTLED * round.norm {
-                return Ok(round.expected);
-            }
-            least = least.min(round.norm);
-            expected = round.expected;
-            for (unknown, step) in self.unknowns.iter_mut().zip(round.step.iter()) {
-                *unknown += step;
-            }
+        let first = self.round(1.0)?;
+        let parts = if self.phase_moved(&first) > TRUSTED_PHASE { &PARTS[..] } else { &[1.0][..] };
+        let mut left = f64::INFINITY;
+        for &part in parts {
+            left = self.fit(part)?;
         }
-        Ok(least)
+        Ok(left)
     }
 
-    fn round(&mut self) -> Result<Round, TrialError> {
+    /// By how much a step moves the phase at the end of a record, from what it does to stiffness and inertia.
+    fn phase_moved(&self, round: &Round) -> f64 {
+        let nominal = &self.situation.nominal;
+        let stiffness = round.step.get(1).copied().unwrap_or_default();
+        let inertia = match self.inertia {
+            Some(at) => round.step.get(at).copied().unwrap_or_default(),
+            None => 0.0,
+        };
+        let relative = stiffness / nominal.stiffness() - inertia / nominal.inertia();
+        0.5 * relative.abs() * self.situation.omega() * self.situation.duration()
+    }
+
+    /// The norm that the best unknowns leave over a part of each record; infinite where the fit does not settle.
+    fn fit(&mut self, part: f64) -> Result<f64, TrialError> {
+        let mut round = self.round(part)?;
+        for _ in 0..ROUNDS {
+            let from = self.unknowns.clone();
+            let mut share = 1.0;
+            let next = loop {
+                for ((unknown, from), step) in self.unknowns.iter_mut().zip(&from).zip(round.step.iter()) {
+                    *unknown = from + share * step;
+                }
+                match self.round(part) {
+                    Ok(next) if next.norm <= round.norm => break Some(next),
+                    _ if share < 0.01 => break None,
+                    // Worse, or a motion that runs away: the step was too long.
+                    _ => share *= 0.25,
+                }
+            };
+            let Some(next) = next else {
+                self.unknowns = from;
+                let is_least = round.expected >= (1.0 - SETTLED) * round.norm;
+                return Ok(if is_least { round.expected } else { f64::INFINITY });
+            };
+            if share == 1.0 && (next.norm - round.expected).abs() <= SETTLED * next.norm {
+                return Ok(next.expected);
+            }
+            round = next;
+        }
+        Ok(f64::INFINITY)
+    }
+
+    /// Residual and step at the present unknowns, over a part of each record from its beginning.
+    fn round(&mut self, part: f64) -> Result<Round, TrialError> {
         let count = self.unknowns.len();
         let mut normal = DMatrix::<f64>::zeros(count, count);
         let mut gradient = DVector::<f64>::zeros(count);
@@ -107,12 +153,14 @@ impl<'a> Recalibration<'a> {
             let &[position, velocity] = start else { continue };
             // The first sample may bear a later stamp than its time: the motion starts at the first sample's time.
             let start_time = seen.times_s.first().copied().unwrap_or_default().min(0.0);
-            let times: Vec<f64> = std::iter::once(start_time).chain(seen.stamps_s.iter().copied()).collect();
+            let used = (part * seen.values.len() as f64).ceil() as usize;
+            let stamps = seen.stamps_s.iter().take(used).copied();
+            let times: Vec<f64> = std::iter::once(start_time).chain(stamps).collect();
             let state = FullState { position, velocity, hidden: None };
             let input = self.input(seen)?;
             self.model.run_into(state, input.as_ref(), &times, &mut response)?;
             let column = |own: usize| if own < self.shared { own } else { own + 2 * record };
-            for (index, value) in seen.values.iter().enumerate() {
+            for (index, value) in seen.values.iter().enumerate().take(used) {
                 let predicted = response.position.get(index + 1).copied().unwrap_or_default();
                 let residual = value - predicted;
                 squares += residual * residual;
@@ -128,7 +176,7 @@ impl<'a> Recalibration<'a> {
                     }
                 }
             }
-            samples += seen.values.len();
+            samples += used;
         }
         let singular = TrialError::Singular { samples, unknowns: count };
         let step = solve(normal, gradient.clone()).ok_or(singular)?;

@@ -135,8 +135,10 @@ impl Situation {
             }
         };
         // From rest the response of a linear oscillator is proportional to the input.
-        let trial = Self { excitation: Some(unscaled), ..self.clone() };
         let rest = self.nominal.rest_angle();
+        // A little off the rest angle, as below: an integrator that measures its error by the motion so far needs some.
+        let starts = vec![Start::release(rest + 1e-3 * self.amplitude)];
+        let trial = Self { excitation: Some(unscaled), starts, ..self.clone() };
         let largest = trial
             .motions(&[])?
             .iter()

@@ -1,9 +1,15 @@
-use super::case::Job;
+#![allow(clippy::print_stdout)]
+
+use super::case::{Job, Setup};
 use super::plan::TrialPlan;
-use crate::Bank;
-use dynamics::Nominal;
+use super::situation::{Motions, Nuisances, Scatter};
+use crate::{Bank, Hidden};
+use dynamics::reference::{Tolerance, simulate};
+use dynamics::{Nominal, Start, System};
+use nalgebra::{DMatrix, DVector};
 use record::{ReadOptions, read_text};
 use settings::Document;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 const BANKS: &[&str] =
@@ -14,76 +20,334 @@ fn plan(counts: &[(&str, usize)], overrides: &[&str]) -> TrialPlan {
     let mut document = Document::parse("test.toml", "").unwrap();
     let short = ["record.seconds=6", "record.rate_hz=120", "system.lowest_frequency_hz=2"];
     let counts: Vec<String> = counts.iter().map(|(bank, count)| format!("trials.{bank}={count}")).collect();
-    for argument in
-        short.iter().copied().chain(counts.iter().map(String::as_str)).chain(overrides.iter().copied())
-    {
+    let all = short.iter().copied().chain(counts.iter().map(String::as_str));
+    for argument in all.chain(overrides.iter().copied()) {
         document.apply_override(argument).unwrap();
     }
     TrialPlan::resolve(&document).unwrap()
 }
 
+fn all_banks(count: usize, overrides: &[&str]) -> TrialPlan {
+    plan(&BANKS.iter().map(|bank| (*bank, count)).collect::<Vec<_>>(), overrides)
+}
+
+fn shipped(name: &str) -> Document {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs").join(name);
+    Document::parse(name, &std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
 #[test]
 fn every_bank_makes_cases_that_read_back() {
     for seed in ["seed=1", "seed=2"] {
-        let counts: Vec<(&str, usize)> = BANKS.iter().map(|bank| (*bank, 4)).collect();
-        let plan = plan(&counts, &[seed]);
+        let plan = all_banks(4, &[seed]);
         assert_eq!(plan.len(), 4 * BANKS.len());
         for index in 0..plan.len() {
             let case = plan.case(index).unwrap();
-            assert_eq!(case.id, format!("{index:06}"));
+            assert_eq!(case.hidden.bank, plan.job(index).unwrap().bank);
             let nominal: Nominal = toml::from_str(&case.nominal).unwrap();
-            assert!(nominal.stiffness() > 0.0);
+            let rounds = case.hidden.nuisances.iter().any(|id| id == "sensor_quantization");
+            assert_eq!(nominal.sensor_resolution().is_some(), rounds);
             for text in &case.records {
                 let (record, source) = read_text("record", text.as_bytes(), &ReadOptions::default()).unwrap();
                 assert!(record.len() > 300, "{}", record.len());
                 assert_eq!(source.findings, Vec::<String>::new());
             }
             let text = serde_json::to_string(&case.hidden).unwrap();
-            assert_eq!(serde_json::from_str::<crate::Hidden>(&text).unwrap(), case.hidden);
+            assert_eq!(serde_json::from_str::<Hidden>(&text).unwrap(), case.hidden);
         }
     }
+}
+
+#[test]
+fn a_case_depends_on_seed_bank_and_number_alone() {
+    let few = all_banks(2, &[]);
+    let more = all_banks(5, &[]);
+    for index in 0..few.len() {
+        let job = few.job(index).unwrap();
+        let other = (0..more.len()).find(|&other| more.job(other) == Some(job)).unwrap();
+        let (one, two) = (few.case(index).unwrap(), more.case(other).unwrap());
+        assert_eq!(few.case(index).unwrap(), one);
+        assert_eq!((&one.records, &one.nominal, &one.hidden), (&two.records, &two.nominal, &two.hidden));
+    }
+    let other_seed = all_banks(2, &["seed=1"]);
+    let any = few.case(0).unwrap();
+    assert!((0..few.len()).all(|index| other_seed.case(index).unwrap().records != any.records));
+}
+
+#[test]
+fn nothing_outside_the_truth_tells_the_bank() {
+    let plan = all_banks(200, &[]);
+    // Numbers: the mean of a bank's share of the shuffled numbers is normal with a known deviation.
+    let cases = plan.len() as f64;
+    for job in [Bank::None, Bank::Calibration, Bank::Single, Bank::Pair, Bank::LeftOut, Bank::Foreign] {
+        let own: Vec<f64> = (0..plan.len())
+            .filter(|&index| plan.job(index).unwrap().bank == job)
+            .map(|index| index as f64)
+            .collect();
+        let mean = own.iter().sum::<f64>() / own.len() as f64;
+        let deviation = cases / 12.0_f64.sqrt() / (own.len() as f64).sqrt();
+        assert!((mean - 0.5 * (cases - 1.0)).abs() < 4.0 * deviation, "{job:?} {mean}");
+    }
+    // Texts: but for numbers and an input's column every case's files have the same lines.
+    let plan = all_banks(2, &[]);
+    let mut headers = std::collections::BTreeSet::new();
+    let mut keys = std::collections::BTreeSet::new();
+    for index in 0..plan.len() {
+        let case = plan.case(index).unwrap();
+        assert_eq!(case.id, format!("{index:06}"));
+        for text in case.records {
+            headers.insert(text.lines().take(3).collect::<Vec<_>>().join("\n").replace(",torque_nm", ""));
+        }
+        for line in case.nominal.lines() {
+            keys.insert(line.split('=').next().unwrap().trim().to_owned());
+        }
+    }
+    assert_eq!(headers.len(), 1, "{headers:?}");
+    let known = ["damping", "inertia", "rest_angle", "sensor_resolution", "stiffness"];
+    assert_eq!(keys.iter().filter(|key| !key.starts_with('#')).collect::<Vec<_>>(), known);
+}
+
+/// Pearson's test of homogeneity over banks, and that what is drawn is what the records get.
+#[test]
+fn nuisances_are_alike_in_every_bank() {
+    let banks = [Bank::None, Bank::Calibration, Bank::Single, Bank::Pair, Bank::Foreign, Bank::Stressed];
+    let draws = 1000;
+    let mut counts = [[0.0; 6]; 6];
+    for (row, bank) in counts.iter_mut().zip(banks) {
+        for number in 0..draws {
+            let drawn = Nuisances::draw(&Job { bank, number }.seed(0).0);
+            let clock = match drawn.clock {
+                None => 0,
+                Some(Scatter::Batching { .. }) => 1,
+                Some(Scatter::Jitter(_)) => 2,
+            };
+            row[2 * clock + usize::from(drawn.encoder_step.is_some())] += 1.0;
+        }
+    }
+    let mut statistic = 0.0;
+    for column in 0..6 {
+        let expected = counts.iter().map(|row| row[column]).sum::<f64>() / 6.0;
+        statistic += counts.iter().map(|row| (row[column] - expected).powi(2) / expected).sum::<f64>();
+    }
+    // 25 degrees of freedom: 99.9 % of such tables stay below.
+    assert!(statistic < 52.62, "{statistic}");
+
+    let plan = all_banks(3, &[]);
+    for index in 0..plan.len() {
+        let hidden = plan.case(index).unwrap().hidden;
+        let ids: Vec<&str> = hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
+        let drawn = Nuisances::draw(&plan.job(index).unwrap().seed(0).0).beside(&ids);
+        let has = |id: &str| hidden.nuisances.iter().any(|known| known == id);
+        assert_eq!(has("sensor_quantization"), drawn.encoder_step.is_some());
+        assert_eq!(has("timestamp_batching"), matches!(drawn.clock, Some(Scatter::Batching { .. })));
+        assert_eq!(has("timestamp_jitter"), matches!(drawn.clock, Some(Scatter::Jitter(_))));
+    }
+}
+
+/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and a projection by
+/// singular values.
+#[test]
+fn sizes_are_as_detectable_as_wanted() {
+    let plan = plan(&[("single", 26), ("releases", 14)], &["trials.detectabilities=[6]"]);
+    let mut checked = 0;
+    for index in 0..plan.len() {
+        let job = plan.job(index).unwrap();
+        let hidden = plan.case(index).unwrap().hidden;
+        let effect = &hidden.effects[0];
+        let random =
+            ["sensor_quantization", "timestamp_jitter", "outliers", "dropouts", "timestamp_batching"];
+        if !random.contains(&effect.id.as_str()) {
+            assert!((effect.detectability / 6.0 - 1.0).abs() < 0.02, "{effect:?}");
+        }
+        if hidden.records[0].system.effects().is_empty() || hidden.records[0].excitation.is_some() {
+            continue;
+        }
+        let white = (0..40)
+            .map(|attempt| {
+                let motions = if job.bank == Bank::Releases { Motions::Releases } else { Motions::Release };
+                Setup::draw(&plan, job, attempt, motions, &[effect.id.as_str()]).unwrap()
+            })
+            .find(|setup| setup.situation.nominal == *hidden.records[0].system.nominal())
+            .unwrap()
+            .white;
+        let found = projected(&hidden, effect.id != "constant_torque") / white;
+        assert!((found / 6.0 - 1.0).abs() < 0.02, "{} {found}", effect.id);
+        checked += 1;
+    }
+    assert!(checked > 20, "{checked}");
+}
+
+/// ‖P·Δ‖ of a case with effects in the system.
+fn projected(hidden: &Hidden, rest_angle: bool) -> f64 {
+    let truth = &hidden.records[0];
+    let times: Vec<f64> =
+        (0..truth.sampling.samples).map(|index| index as f64 / truth.sampling.rate_hz).collect();
+    let starts: Vec<Start> = hidden.records.iter().map(|record| record.start).collect();
+    let of = |system: &System, starts: &[Start]| -> DVector<f64> {
+        let all = starts.iter().flat_map(|start| {
+            simulate(system, *start, None, &times, &Tolerance::default()).unwrap().position
+        });
+        DVector::from_iterator(times.len() * starts.len(), all)
+    };
+    let nominal = *truth.system.nominal();
+    let plain = |nominal: Nominal| System::new(nominal, Vec::new()).unwrap();
+    let mut added = of(&truth.system, &starts) - of(&plain(nominal), &starts);
+    // Iterated, as a size that moves the frequency is not small in the phase.
+    let mut at = nominal.coefficients();
+    let mut begin = starts;
+    for _ in 0..4 {
+        let mut columns = Vec::new();
+        let mut moves: Vec<(usize, f64)> = vec![(0, 1e-4 * at.damping), (1, 1e-6 * at.stiffness)];
+        if rest_angle {
+            moves.push((2, 1e-5));
+        }
+        let system = |change: Option<(usize, f64)>| {
+            let mut changed = at;
+            match change {
+                Some((0, by)) => changed.damping += by,
+                Some((1, by)) => changed.stiffness += by,
+                Some((_, by)) => changed.rest_angle += by,
+                None => {}
+            }
+            plain(nominal.with_coefficients(changed).unwrap())
+        };
+        for &(which, by) in &moves {
+            let difference = of(&system(Some((which, by))), &begin) - of(&system(Some((which, -by))), &begin);
+            columns.push(difference / (2.0 * by));
+        }
+        for record in 0..begin.len() {
+            for velocity in [false, true] {
+                let moved = |by: f64| {
+                    let mut begin = begin.clone();
+                    if velocity {
+                        begin[record].velocity += by;
+                    } else {
+                        begin[record].position += by;
+                    }
+                    of(&system(None), &begin)
+                };
+                columns.push((moved(1e-4) - moved(-1e-4)) / 2e-4);
+            }
+        }
+        let scaled: Vec<DVector<f64>> = columns.iter().map(|column| column / column.norm()).collect();
+        let solution = DMatrix::from_columns(&scaled).svd(true, true).solve(&added, 1e-12).unwrap();
+        let step: Vec<f64> =
+            solution.iter().zip(&columns).map(|(part, column)| part / column.norm()).collect();
+        at.damping += step[0];
+        at.stiffness += step[1];
+        at.rest_angle += if rest_angle { step[2] } else { 0.0 };
+        for (record, start) in begin.iter_mut().enumerate() {
+            start.position += step[moves.len() + 2 * record];
+            start.velocity += step[moves.len() + 2 * record + 1];
+        }
+        let target = of(&truth.system, &hidden.records.iter().map(|record| record.start).collect::<Vec<_>>());
+        added = target - of(&plain(nominal.with_coefficients(at).unwrap()), &begin);
+    }
+    added.norm()
+}
+
+#[test]
+fn banks_without_their_folders_are_left_out_and_said_to_be() {
+    let plan =
+        plan(&[("none", 3), ("measured_cases", 5), ("engine_cases", 7)], &["trials.measured=no/such/folder"]);
+    assert_eq!(plan.len(), 3);
+    let [measured, engine] = plan.left_out_banks() else { panic!("{:?}", plan.left_out_banks()) };
+    assert_eq!((measured.bank, measured.cases), (Bank::Measured, 5));
+    assert!(measured.reason.contains("no/such/folder"), "{}", measured.reason);
+    assert_eq!((engine.bank, engine.cases), (Bank::Engine, 7));
+    assert!(engine.reason.contains("trials.engine"), "{}", engine.reason);
+}
+
+fn fixture(name: &str) -> String {
+    format!("{}/src/make/fixtures/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+#[test]
+fn an_effect_is_laid_under_a_residual() {
+    let folder = format!("trials.measured={}", fixture("residuals"));
+    let plan = plan(&[("measured_cases", 13)], &[&folder, "trials.detectabilities=[12]"]);
+    assert_eq!((plan.len(), plan.left_out_banks()), (13, &[][..]));
+    for index in 0..plan.len() {
+        let case = plan.case(index).unwrap();
+        let effect = &case.hidden.effects[0];
+        assert!((effect.detectability / 12.0 - 1.0).abs() < 0.02, "{effect:?}");
+        assert!((case.hidden.noise / 3e-4 - 1.0).abs() < 0.1, "{}", case.hidden.noise);
+        assert_eq!(case.hidden.nuisances, ["timestamp_batching"]);
+        let (record, _) = read_text("record", case.records[0].as_bytes(), &ReadOptions::default()).unwrap();
+        assert_eq!(record.len(), 900);
+        // Without the motion the residual is left, up to its rounding.
+        let truth = &case.hidden.records[0];
+        if truth.chain.effects().count() == 0 {
+            let times: Vec<f64> = (0..900).map(|index| f64::from(index) / truth.sampling.rate_hz).collect();
+            let clean =
+                simulate(&truth.system, truth.start, None, &times, &Tolerance::default()).unwrap().position;
+            let rest: Vec<f64> = record.values().iter().zip(&clean).map(|(one, other)| one - other).collect();
+            let rms = (rest.iter().map(|value| value * value).sum::<f64>() / 900.0).sqrt();
+            assert!((2.9e-4..3.6e-4).contains(&rms), "{rms:e}");
+        }
+    }
+}
+
+#[test]
+fn cases_of_a_physics_engine_are_written_like_every_other() {
+    let folder = format!("trials.engine={}", fixture("engine"));
+    let plan = plan(&[("engine_cases", 5), ("none", 1)], &[&folder]);
+    // As many as there are.
+    assert_eq!((plan.len(), plan.left_out_banks()), (2, &[][..]));
+    let cases: Vec<_> = (0..2).map(|index| plan.case(index).unwrap()).collect();
+    let [engine] = cases.iter().filter(|case| case.hidden.bank == Bank::Engine).collect::<Vec<_>>()[..]
+    else {
+        panic!("one case of the engine");
+    };
+    assert_eq!(engine.hidden.effects[0].id, "coulomb_friction");
+    let head = |index: usize| cases[index].records[0].lines().take(3).collect::<Vec<_>>();
+    assert_eq!(head(0), head(1));
+}
+
+#[test]
+fn configurations_as_shipped_hide_everything_at_every_size() {
+    let plan = TrialPlan::resolve(&shipped("trials.toml")).unwrap();
+    assert!(plan.len() >= 5000, "{}", plan.len());
+    assert_eq!(plan.detectabilities, [3.0, 6.0, 12.0, 25.0, 50.0, 100.0]);
+    let mut counts = BTreeMap::<Bank, usize>::new();
+    for index in 0..plan.len() {
+        *counts.entry(plan.job(index).unwrap().bank).or_default() += 1;
+    }
+    for (bank, count) in counts {
+        let whole = TrialPlan::variety(bank) * plan.detectabilities.len();
+        let plain = [Bank::None, Bank::Calibration, Bank::Engine].contains(&bank);
+        assert!(plain || count % whole == 0, "{bank:?}: {count} of {whole}");
+    }
+    let quick = TrialPlan::resolve(&shipped("trials-quick.toml")).unwrap();
+    assert!((90..=120).contains(&quick.len()), "{}", quick.len());
 }
 
 /// `cargo test --release -p trials how_long -- --ignored --nocapture`
 #[test]
 #[ignore = "minutes without optimization"]
 fn how_long_a_hundred_cases_take() {
-    let text = std::fs::read_to_string(
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../../configs/trials-quick.toml"),
-    )
-    .unwrap();
-    let mut document = Document::parse("trials-quick.toml", &text).unwrap();
+    let mut document = shipped("trials-quick.toml");
     for argument in option_env!("TRIALS").unwrap_or_default().split_whitespace() {
         document.apply_override(argument).unwrap();
     }
     let plan = TrialPlan::resolve(&document).unwrap();
-    let mut by_bank = std::collections::BTreeMap::<Bank, (usize, f64, f64)>::new();
+    let mut by_bank = BTreeMap::<Bank, (usize, f64, f64)>::new();
     for index in 0..plan.len() {
         let clock = std::time::Instant::now();
-        let case = plan.case(index);
+        let case = plan.case(index).unwrap();
         let seconds = clock.elapsed().as_secs_f64();
-        let Job { bank, number } = plan.job(index).unwrap();
+        let bank = plan.job(index).unwrap().bank;
         let entry = by_bank.entry(bank).or_default();
         *entry = (entry.0 + 1, entry.1 + seconds, entry.2.max(seconds));
-        match case {
-            Ok(case) => {
-                let told: Vec<String> = case
-                    .hidden
-                    .effects
-                    .iter()
-                    .map(|e| format!("{} {:?} d {:.3}", e.id, e.parameters, e.detectability))
-                    .collect();
-                println!(
-                    "{bank:?} {number} {seconds:.3} s {} {:?} {:?}",
-                    told.join(" + "),
-                    case.hidden.foreign,
-                    case.hidden.nuisances
-                );
-            }
-            Err(error) => println!("{bank:?} {number} {seconds:.3} s FAILED {error}"),
-        }
+        let told: Vec<String> = case
+            .hidden
+            .effects
+            .iter()
+            .map(|effect| format!("{} {:?} d {:.3}", effect.id, effect.parameters, effect.detectability))
+            .collect();
+        println!("{bank:?} {seconds:.3} s {} {:?}", told.join(" + "), case.hidden.foreign);
     }
     for (bank, (count, seconds, worst)) in by_bank {
-        println!("{bank:?}: {count} cases, {:.3} s each, worst {worst:.3}", seconds / count as f64);
+        println!("{bank:?}: {count} cases, {:.3} s each, worst {worst:.3} s", seconds / count as f64);
     }
 }
