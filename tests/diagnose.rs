@@ -395,3 +395,22 @@ fn help_shows_examples_and_how_columns_are_found() {
     }
     assert!(root().join("crates/diagnosis").exists());
 }
+
+#[test]
+fn an_effect_that_is_not_considered_is_not_named() {
+    let (_scratch, record, nominal) = simulated(&[]);
+    let arguments = ["diagnose", &record, "--nominal", &nominal, "--json", "--quiet"];
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("answer");
+    let without = ["--without", "coulomb_friction,stribeck_friction", "--out", out.to_str().unwrap()];
+    let output = trainer(&[&arguments[..], &without[..]].concat());
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+    for effect in found["effects"].as_array().unwrap() {
+        let id = effect["id"].as_str().unwrap();
+        assert!(!["coulomb_friction", "stribeck_friction"].contains(&id), "{id}");
+    }
+    let refused = trainer(&[&arguments[..], &["--without", "friction"]].concat());
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("trainer list effects"));
+}

@@ -149,12 +149,15 @@ fn flat_top(values: &[f64]) -> Option<String> {
     })
 }
 
-/// Whether the sensor's steps are what the noise consists of, and the nominal simulator does not know of them.
+/// Part of the noise variance from which on the rounding of the values is named.
+const QUANTIZED: f64 = 0.05;
+
+/// Whether the rounding to the sensor's steps is a part of the noise, and the nominal simulator does not know of it.
 pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option<Finding> {
     let step = data.resolution?;
     let share = step * step / 12.0 / (noise * noise);
     let stated = nominal.sensor_resolution().is_some_and(|stated| (0.5..2.0).contains(&(step / stated)));
-    (share > 0.5 && !stated).then(|| Finding {
+    (share > QUANTIZED && !stated).then(|| Finding {
         effect: Some("sensor_quantization"),
         text: format!(
             "the values lie on steps of {step:e}, whose rounding makes up {:.0} % of the noise variance",

@@ -30,13 +30,22 @@ pub struct Settings {
     pub false_alarm: f64,
     /// Most effects named together, 1 to 5.
     pub most_effects: usize,
+    /// Ids of effects that are not considered: a vocabulary with holes, for whoever knows that an effect is absent, and for
+    /// trials of what is said where the cause has no name.
+    pub without: Vec<String>,
     /// Randomness of the bootstraps.
     pub seed: Seed,
 }
 
+impl Settings {
+    pub(crate) fn considers(&self, id: &str) -> bool {
+        !self.without.iter().any(|other| other == id)
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: 3, seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: 3, without: Vec::new(), seed: Seed::new(0) }
     }
 }
 
@@ -78,6 +87,7 @@ pub fn diagnose(
     let candidates: Vec<Candidate> = Candidate::ALL
         .iter()
         .copied()
+        .filter(|candidate| settings.considers(candidate.id()))
         .filter(|candidate| {
             candidate.applies(&data.facts, data.quantity == Quantity::Position, nominal.stiffness() > 0.0)
         })
@@ -106,7 +116,7 @@ pub fn diagnose(
 
     let thin = Thin { data: &coarse, calibrated: &coarse_base, pool: &found };
     let work = Work { data: &data, base: &base, pool: &pool, thin, time, settings };
-    let shift = work.shift()?;
+    let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
     lap("held out");
@@ -169,7 +179,10 @@ pub fn diagnose(
         maps::maps(&data, &paths, rest, &held.recalibrated.residuals, &held.after.residuals, floor.value);
     lap("maps");
 
-    let measuring_chain = chain(records, &kept, nominal, &data, repaired, floor.value);
+    let mut measuring_chain = chain(records, &kept, nominal, &data, repaired, floor.value);
+    for finding in &mut measuring_chain.findings {
+        finding.effect = finding.effect.filter(|id| settings.considers(id));
+    }
     let parts = Parts {
         work: &work,
         candidates: &candidates,

@@ -7,7 +7,7 @@
 //!
 //! # Reference
 //! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
-//! diagonal); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
+//! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (how the damping follows the gain); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
 
 use crate::hypothesis::Hypothesis;
 use crate::matrices::{element, entry, raised};
@@ -146,6 +146,12 @@ fn evaluate(
     Ok(Evaluation { predictions, squares })
 }
 
+/// The damping falls by this at most after a step that gained what was promised; it stays where a step gained less than half.
+const LOWEST_CUT: f64 = 1.0 / 3.0;
+
+/// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones.
+const RAISE: f64 = 2.0;
+
 /// Damping at which steps are so short that nothing comes of them.
 const MOST_DAMPING: f64 = 1e6;
 
@@ -261,6 +267,7 @@ pub(crate) fn fit(
     let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
     let mut at = evaluate(&mut simulator, &data.segments, &point)?;
     let mut damping = 1e-4;
+    let mut raise = RAISE;
     let mut converged = false;
     let mut small = 0;
     let mut steps = 0;
@@ -323,14 +330,19 @@ pub(crate) fn fit(
                 if wary {
                     weights = trust(&at.predictions);
                 }
-                damping = (damping * 0.1).max(1e-12);
+                let quality = decrease / promised;
+                damping = (damping * (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(LOWEST_CUT, 1.0)).max(1e-12);
+                raise = RAISE;
                 if small == 0 {
                     settled = false;
                 }
                 system = equations(&at.predictions, &weights, starts, globals);
             }
             _ if done => small += 1,
-            _ => damping = (damping * 10.0).max(1e-6),
+            _ => {
+                damping = (damping * raise).max(1e-6);
+                raise *= RAISE;
+            }
         }
         // Where no step of any length decreases the squares it is a minimum, if an uneven one.
         let ended = !sizes && (small >= 1 || damping > MOST_DAMPING);

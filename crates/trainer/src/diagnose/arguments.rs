@@ -47,9 +47,12 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) reading: Reading,
-    /// Most effects named together, 1 to 4 [default: 4]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=4))]
+    /// Most effects named together, 1 to 5 [default: 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
     pub(crate) most_effects: Option<u8>,
+    /// Effects that are not considered, by id, with commas between (`trainer list effects`)
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = effect)]
+    pub(crate) without: Vec<String>,
     /// Probability with which an effect is named where there is none
     #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
     pub(crate) false_alarm: f64,
@@ -163,4 +166,13 @@ fn rate(text: &str) -> Result<f64, String> {
 fn false_alarm(text: &str) -> Result<f64, String> {
     let level: f64 = text.parse().map_err(|_| "expected a probability".to_owned())?;
     if (0.001..=0.2).contains(&level) { Ok(level) } else { Err("expected 0.001 to 0.2".to_owned()) }
+}
+
+fn effect(text: &str) -> Result<String, String> {
+    let known = dynamics::REGISTRY.iter().any(|effect| effect.id() == text);
+    if known {
+        Ok(text.to_owned())
+    } else {
+        Err("no effect of the vocabulary: see `trainer list effects`".to_owned())
+    }
 }

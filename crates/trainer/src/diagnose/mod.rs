@@ -99,6 +99,7 @@ fn settings(arguments: &DiagnoseArguments) -> Settings {
     Settings {
         false_alarm: arguments.false_alarm,
         most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
+        without: arguments.without.clone(),
         seed: Seed::new(arguments.seed),
     }
 }
