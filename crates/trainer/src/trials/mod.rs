@@ -40,10 +40,10 @@ pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerErr
     let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;
     let folder = begin(arguments, &plan, &pool)?;
     let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
-        return Ok(interrupted(&folder, "making the cases")?);
+        return interrupted(&folder, "making the cases");
     };
     let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
-        return Ok(interrupted(&folder, "the diagnosis")?);
+        return interrupted(&folder, "the diagnosis");
     };
     // The last answer is in: the truths may be seen.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {

@@ -157,8 +157,8 @@ mod tests {
 
     #[test]
     fn ranges_touch_and_hold_what_they_are_named_for() {
-        for index in 0..SIZES.len() {
-            assert!(within(SIZES[index], range(index)));
+        for (index, size) in SIZES.iter().enumerate() {
+            assert!(within(*size, range(index)));
             if index > 0 {
                 assert_eq!(range(index - 1)[1], range(index)[0]);
             }
