@@ -2,6 +2,7 @@
 
 pub(crate) mod arguments;
 mod ask;
+mod baselines;
 mod error;
 mod make;
 mod open;
@@ -112,8 +113,8 @@ fn finish(
     failed: &BTreeMap<String, String>,
     start: Instant,
 ) -> Result<Outcome, TrainerError> {
-    let Opened { cases, weak_form } = open::open(folder, manifest, pool, failed)?;
-    let baselines = [most_common(&cases), weak_form];
+    let Opened { cases, mut baselines } = open::open(folder, manifest, pool, failed)?;
+    baselines.insert(0, most_common(&cases));
     let trials = Trials {
         name: manifest.name.clone(),
         seed: manifest.seed,

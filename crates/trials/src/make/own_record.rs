@@ -6,7 +6,7 @@ use super::integrator::{TorqueLaw, motions};
 use super::plan::TrialPlan;
 use super::situation::Motion;
 use super::size::solve;
-use crate::{HIDDEN_SCHEMA, Hidden, HiddenEffect};
+use crate::{Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 use dynamics::Coordinate;
 use dynamics::chain::{Chain, Observed};
 use record::{Quantity, Record};
@@ -50,7 +50,7 @@ impl OpenLaw {
 /// What a case of such a motion says it hides.
 pub(crate) struct Told {
     pub(crate) effects: Vec<HiddenEffect>,
-    pub(crate) foreign: Option<String>,
+    pub(crate) foreign: Option<Foreign>,
     pub(crate) made: String,
 }
 

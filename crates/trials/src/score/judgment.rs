@@ -136,10 +136,11 @@ impl<'a> Judgment<'a> {
         self.case.answer.as_ref().ok()
     }
 
-    /// Size of the first hidden effect; of a pair of the smaller one: both have to be seen. Not a number without one.
+    /// Size of what is hidden; of a pair of the smaller one: both have to be seen. Not a number without one.
     pub(crate) fn size(&self) -> f64 {
-        let sizes = self.case.hidden.effects.iter().map(|effect| effect.detectability);
-        sizes.fold(f64::NAN, f64::min)
+        let hidden = &self.case.hidden;
+        let foreign = hidden.foreign.iter().map(|foreign| foreign.detectability);
+        hidden.effects.iter().map(|effect| effect.detectability).chain(foreign).fold(f64::NAN, f64::min)
     }
 
     /// Whether something was named, or `unknown`.
@@ -153,12 +154,17 @@ impl<'a> Judgment<'a> {
         Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
     }
 
+    /// What acts from outside the vocabulary, in words.
+    pub(crate) fn foreign_law(&self) -> Option<String> {
+        self.case.hidden.foreign.as_ref().map(|foreign| foreign.law.clone())
+    }
+
     /// What was hidden, in a table's words.
     pub(crate) fn hidden_name(&self) -> String {
         let ids: Vec<&str> = self.case.hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
         match (self.bank(), ids.is_empty()) {
             (Bank::LeftOut, _) => format!("{}, not considered", ids.join("+")),
-            (Bank::Foreign, _) => self.case.hidden.foreign.clone().unwrap_or_else(|| "foreign".to_owned()),
+            (Bank::Foreign, _) => self.foreign_law().unwrap_or_else(|| "foreign".to_owned()),
             (bank, true) => bank.name().to_owned(),
             (_, false) => ids.join("+"),
         }
