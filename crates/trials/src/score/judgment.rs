@@ -105,9 +105,12 @@ impl<'a> Judgment<'a> {
         let named_here: &[&str] = if said == Said::Effect { &named } else { &[] };
         let is_hidden = |id: &str| hidden.effects.iter().any(|effect| effect.id == id);
         let first = named_here.first().copied();
+        // A preload and a rest position that is off are one class on one record.
+        let said_first = first.or((said == Said::Calibration).then_some("calibration"));
         let alike = |id: &str| {
             let classes = case.answer.iter().flat_map(|answer| &answer.verdict.equivalent);
-            let mut of_first = classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == first));
+            let mut of_first =
+                classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == said_first));
             of_first.any(|class| class.iter().any(|own| own == id))
         };
         let (right, top_1, class) = if asks_for_unknown(hidden.bank) {
@@ -120,7 +123,11 @@ impl<'a> Judgment<'a> {
             let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
             let right = said == Said::Effect && every && named_here.len() == hidden.effects.len();
             let top_1 = first.is_some_and(is_hidden);
-            (right, top_1, top_1 || first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)))
+            (
+                right,
+                top_1,
+                top_1 || said_first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)),
+            )
         };
         let mut found = hidden.effects.iter().map(|effect| named_here.contains(&effect.id.as_str()));
         let either = found.clone().any(|found| found);
