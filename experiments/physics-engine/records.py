@@ -55,7 +55,8 @@ class Shape:
         self.effect, self.system = effect, system
         self.sign = 1 if draws.random() < 0.5 else -1
         self.angle = draws.uniform(0, math.pi / 2)
-        self.contact = math.exp(draws.uniform(math.log(0.3), math.log(30))) * system.omega**2
+        stiff = math.exp(draws.uniform(math.log(100), math.log(1000))) * system.omega**2
+        self.contact = min(stiff, 0.05 * (RATE * SUBSTEPS) ** 2)
         self.second = draws.uniform(1.8, 5.0) * system.omega
         self.second_ratio = math.exp(draws.uniform(math.log(0.002), math.log(0.03)))
         self.guess = {"end_stop": 1e-2, "gravity": 1e-2, "flexible_coupling": 1e-2}.get(effect, 1e-3)
@@ -98,8 +99,8 @@ class Shape:
                           '<joint joint="hinge" coef="1"/></fixed></tendon>')
                 stiffness, law, values = "0", "tendon dead band", [half]
             case "end_stop":
-                # MuJoCo's contact takes off nine tenths of the acceleration at once, however soft it is: what is solved for is how
-                # deep the first swing would go. Direct stiffness and damping, per unit of inertia; a constant impedance.
+                # MuJoCo's contact prescribes an acceleration, and is felt where that exceeds the spring's own: what is solved for is
+                # how deep the first swing would go. Direct stiffness and damping, per unit of inertia; a constant impedance.
                 reach = math.exp(-math.pi * s.ratio) - size
                 place = s.rest - s.side * reach * s.swing
                 loss = 0.1 * math.sqrt(self.contact)
@@ -197,21 +198,30 @@ def solve(shape, wanted, white):
             return math.inf
         return left_over(system, angle, shape.effect == "constant_torque") / white
 
-    size, before = shape.guess, None
-    for _ in range(10):
-        found = detectability(size)
+    top, place, before = math.log(shape.most), math.log(shape.guess), None
+    below, above = None, None
+    for _ in range(24):
+        found = detectability(math.exp(place))
         if abs(found / wanted - 1) <= 0.01:
-            return size, found
+            return math.exp(place), found
         if not math.isfinite(found):
             return None
         miss = math.log(max(found, 1e-9) / wanted)
-        slope = 1.0
-        if before is not None and before[0] != math.log(size):
-            slope = min(max((miss - before[1]) / (math.log(size) - before[0]), 0.4), 4.0)
-        if size >= shape.most and miss < 0:
+        if miss < 0:
+            below = place if below is None else max(below, place)
+        else:
+            above = place if above is None else min(above, place)
+        if miss < 0 and place >= top:
             return None
-        before = (math.log(size), miss)
-        size = min(size * math.exp(-min(max(miss / slope, -5), 5)), shape.most)
+        slope = 1.0
+        if before is not None and before[0] != place:
+            slope = min(max((miss - before[1]) / (place - before[0]), 0.4), 4.0)
+        before = (place, miss)
+        place = min(place - min(max(miss / slope, -5), 5), top)
+        if below is not None and above is not None:
+            margin = 0.02 * abs(above - below)
+            if not min(below, above) + margin <= place <= max(below, above) - margin:
+                place = 0.5 * (below + above)
     return None
 
 

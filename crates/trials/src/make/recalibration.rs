@@ -193,12 +193,18 @@ impl<'a> Recalibration<'a> {
     }
 }
 
+/// Added to the unit diagonal: a short part of a record may leave a combination of unknowns open, which then stays.
+const RIDGE: f64 = 1e-11;
+
 /// Solves normal equations of which the lower triangle is given, each unknown scaled to a unit diagonal.
 fn solve(mut normal: DMatrix<f64>, mut gradient: DVector<f64>) -> Option<DVector<f64>> {
     let scale = normal.diagonal().map(|square| if square > 0.0 { square.sqrt().recip() } else { 0.0 });
     for (index, entry) in normal.iter_mut().enumerate() {
         let (row, column) = (index % scale.len(), index / scale.len());
         *entry *= scale.get(row)? * scale.get(column)?;
+    }
+    for at in 0..scale.len() {
+        *normal.get_mut((at, at))? += RIDGE;
     }
     gradient.component_mul_assign(&scale);
     let solution = normal.cholesky()?.solve(&gradient);
