@@ -1,6 +1,6 @@
 //! The arguments of `trainer trials`.
 
-use crate::cli::Output;
+use crate::cli::{ExperimentArguments, Output};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -52,4 +52,21 @@ pub(crate) struct TrialsArguments {
     pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
+}
+
+impl From<&ExperimentArguments> for TrialsArguments {
+    /// Trials whose configuration was named without the command.
+    fn from(arguments: &ExperimentArguments) -> Self {
+        Self {
+            config: arguments.config.clone(),
+            overrides: arguments.overrides.clone(),
+            out: arguments.out.clone(),
+            resume: false,
+            score: None,
+            check: false,
+            seed: arguments.seed,
+            threads: arguments.threads,
+            output: arguments.output,
+        }
+    }
 }

@@ -16,11 +16,13 @@ use crate::interrupt;
 use crate::rerender::write_report;
 use crate::run::{new_folder, read_config, thread_pool};
 use arguments::TrialsArguments;
+use estimator::Cancel;
 use open::Opened;
 use rayon::ThreadPool;
 use runs::result::{LeftOutBank, TrialsManifest};
 use runs::{RunFolder, to_csv};
 use serde_json::json;
+use settings::Document;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use trials::{TrialPlan, Trials, case_rows, misses_a_bar, most_common};
@@ -29,8 +31,17 @@ pub(crate) use error::TrialsError;
 
 /// Makes, diagnoses, opens and scores; or scores again what is there.
 pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerError> {
+    run(arguments, interrupt::watch()?)
+}
+
+/// Whether a configuration asks for trials.
+pub(crate) fn is_trials(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("trials"))
+}
+
+/// As [`command`], where who stops it is known already.
+pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcome, TrainerError> {
     let start = Instant::now();
-    let cancel = interrupt::watch()?;
     let pool = thread_pool(&as_experiment(arguments))?;
     if let Some(folder) = &arguments.score {
         let folder = RunFolder::open(folder);
