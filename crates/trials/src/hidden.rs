@@ -89,7 +89,7 @@ pub struct Hidden {
 pub struct Foreign {
     /// What it is, in words.
     pub law: String,
-    /// Its size in noise units, as [`HiddenEffect::detectability`].
+    /// Its size in noise units: what neither a recalibration nor the vocabulary nearest to it can absorb.
     pub detectability: f64,
 }
 

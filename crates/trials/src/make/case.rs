@@ -98,9 +98,9 @@ impl Setup {
     }
 
     /// How detectable noise-free motions are, seen by an ideal sensor.
-    pub(crate) fn detectability(&self, motions: Vec<Motion>, rest_angle: bool) -> Result<f64, TrialError> {
+    pub(crate) fn detectability(&self, motions: Vec<Motion>, absorbed: Absorbed) -> Result<f64, TrialError> {
         let seen: Vec<_> = motions.into_iter().map(Motion::seen).collect();
-        Ok(left_over(&self.situation, &seen, Absorbed { rest_angle })? / self.white)
+        Ok(left_over(&self.situation, &seen, absorbed)? / self.white)
     }
 }
 
@@ -304,7 +304,7 @@ pub(crate) fn hide(setup: &Setup, id: &str, wanted: f64) -> Result<Option<(Activ
         Effect::System(_) => None,
     };
     // A preload is a rest angle that the simulator does not have.
-    let absorbed = Absorbed { rest_angle: id != "constant_torque" };
+    let absorbed = Absorbed { rest_angle: id != "constant_torque", ..Absorbed::BY_RECALIBRATION };
     let detectability = |size: f64| {
         let active = shape.at(size)?;
         let motions = match &clean {

@@ -1,5 +1,8 @@
 //! Effects that the vocabulary does not have.
 //!
+//! Their sizes are those of what is left when not only a recalibration but also the effects nearest to them have taken away
+//! what they can: else `unknown` would be no better an answer than the stand-in.
+//!
 //! A stiffness that depends on the velocity is not among them: on a single oscillation it is a cubic stiffness but for its
 //! small third harmonic, so that the vocabulary's answer would not be wrong.
 
@@ -10,25 +13,43 @@ use super::integrator::motions;
 use super::laws::{Cogging, Maxwell, Parametric, PositionDamping};
 use super::own_record::{OpenLaw, Told, written};
 use super::plan::TrialPlan;
+use super::recalibration::Absorbed;
 use super::situation::Situation;
 use crate::Foreign;
 use std::f64::consts::PI;
 
-/// What is hidden in turn.
-pub(crate) const KINDS: &[&str] = &["cogging", "maxwell", "parametric", "position_damping"];
+/// What is hidden in turn, and what the vocabulary nearest to it absorbs beside a recalibration.
+pub(crate) const KINDS: &[(&str, Absorbed)] = &[
+    (
+        "cogging",
+        Absorbed { stand_ins: &["cubic_stiffness", "asymmetric_stiffness"], ..Absorbed::BY_RECALIBRATION },
+    ),
+    (
+        "maxwell",
+        Absorbed { sensor_drift: true, stand_ins: &["asymmetric_stiffness"], ..Absorbed::BY_RECALIBRATION },
+    ),
+    (
+        "parametric",
+        Absorbed { stand_ins: &["stiffness_drift", "cubic_stiffness"], ..Absorbed::BY_RECALIBRATION },
+    ),
+    (
+        "position_damping",
+        Absorbed { stand_ins: &["quadratic_drag", "damping_drift"], ..Absorbed::BY_RECALIBRATION },
+    ),
+];
 
 /// A case of the bank.
 pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let (at, wanted) = plan.turn(job.number, KINDS.len());
-    let kind = KINDS.get(at).copied().unwrap_or_default();
+    let (kind, absorbed) = KINDS.get(at).copied().unwrap_or(("", Absorbed::BY_RECALIBRATION));
     let kind_of_motion = job.free_motions(plan);
     for attempt in 0..ATTEMPTS {
         let setup = Setup::draw(plan, job, attempt, kind_of_motion, &[])?;
         let (law, words) = draw(kind, &setup.situation, &mut Draws::new(&setup.seed.child(kind)));
-        let Some(sized) = law.sized(&setup, wanted)? else { continue };
+        let Some(sized) = law.sized(&setup, wanted, absorbed)? else { continue };
         let motions = motions(&setup.situation, sized.law.as_ref(), &|_| Vec::new())?;
         let foreign = Foreign {
-            law: format!("{kind}: {words}, size {:.3e}", sized.size),
+            law: format!("{kind}: {words}, size {:.3e} (detectability beyond its stand-ins)", sized.size),
             detectability: sized.detectability,
         };
         let told = Told { effects: Vec::new(), foreign: Some(foreign), made: format!("{kind} by splitting") };

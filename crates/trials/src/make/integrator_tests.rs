@@ -8,7 +8,7 @@ use truth::{Excitation, Sampling, Waveform};
 /// As configured by default, in rad.
 const SMALLEST_NOISE: f64 = 2e-4;
 
-fn situation(driven: bool) -> Situation {
+pub(super) fn situation(driven: bool) -> Situation {
     let omega = 7.0 * std::f64::consts::PI;
     let excitation =
         Excitation { waveform: Waveform::Chirp, amplitude: 12.0, frequency_hz: 1.0, end_frequency_hz: 7.0 };

@@ -4,6 +4,7 @@ use super::case::{Case, Job, Setup, nominal_toml};
 use super::error::TrialError;
 use super::integrator::{TorqueLaw, motions};
 use super::plan::TrialPlan;
+use super::recalibration::Absorbed;
 use super::situation::Motion;
 use super::size::solve;
 use crate::{Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
@@ -32,11 +33,16 @@ pub(crate) struct SizedLaw {
 }
 
 impl OpenLaw {
-    /// The law as detectable as wanted; `None` where no size is.
-    pub(crate) fn sized(&self, setup: &Setup, wanted: f64) -> Result<Option<SizedLaw>, TrialError> {
+    /// The law as detectable as wanted beyond what is absorbed; `None` where no size is.
+    pub(crate) fn sized(
+        &self,
+        setup: &Setup,
+        wanted: f64,
+        absorbed: Absorbed,
+    ) -> Result<Option<SizedLaw>, TrialError> {
         let detectability = |size: f64| {
             let motions = motions(&setup.situation, (self.law)(size).as_ref(), &|_| Vec::new())?;
-            setup.detectability(motions, true)
+            setup.detectability(motions, absorbed)
         };
         let found = solve(wanted, self.guess, self.most, detectability)?;
         Ok(found.map(|found| SizedLaw {

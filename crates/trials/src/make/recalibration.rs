@@ -9,14 +9,24 @@ use super::error::TrialError;
 use super::situation::Situation;
 use dynamics::chain::Samples;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
-use dynamics::{Hold, Input, System};
+use dynamics::{Active, Effect, Hold, Input, System};
 use nalgebra::{DMatrix, DVector};
 
-/// What a recalibration may move beside damping, stiffness and the starts.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// What is taken away of a record beside damping, stiffness and the starts.
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Absorbed {
     /// The rest angle; not where the hidden effect is a preload, which is a rest angle that the simulator does not have.
     pub(crate) rest_angle: bool,
+    /// Effects of the vocabulary in the system that have one parameter, at any size of either sign: those that could stand in
+    /// for something outside the vocabulary.
+    pub(crate) stand_ins: &'static [&'static str],
+    /// A linear drift of the sensor.
+    pub(crate) sensor_drift: bool,
+}
+
+impl Absorbed {
+    /// What a recalibration moves.
+    pub(crate) const BY_RECALIBRATION: Self = Self { rest_angle: true, stand_ins: &[], sensor_drift: false };
 }
 
 /// Most rounds of the fit. From the truth it is nearly linear, and two are enough for most.
@@ -24,6 +34,10 @@ const ROUNDS: usize = 10;
 
 /// How well a round's prediction of the next residual's norm has to come true for the fit to end.
 const SETTLED: f64 = 1e-3;
+
+/// A norm in units of the sensor's noise that counts as nothing left: a fit that gets there need not go on, and rounding may
+/// keep it from doing so.
+const NOTHING: f64 = 1e-3;
 
 /// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit goes over ever longer
 /// parts of the record, so that it does not end in a minimum with the wrong number of turns.
@@ -54,9 +68,11 @@ struct Recalibration<'a> {
     situation: &'a Situation,
     seen: &'a [Samples<f64>],
     model: Model,
-    /// Free coefficients, shared by the records; then position and velocity at the start of each.
+    /// The model's coefficients, shared by the records; the sensor's drift, where it is one; then position and velocity at the
+    /// start of each record.
     unknowns: Vec<f64>,
-    shared: usize,
+    coefficients: usize,
+    drift: bool,
     /// Place of the inertia among the unknowns, where it is one.
     inertia: Option<usize>,
 }
@@ -76,14 +92,23 @@ impl<'a> Recalibration<'a> {
             free.push((Free::Inertia, is.inertia));
         }
         let inertia = free.iter().position(|(name, _)| *name == Free::Inertia);
-        let shared = free.len();
+        let mut effects = Vec::new();
+        for id in absorbed.stand_ins {
+            let effect = Effect::find(id)?;
+            if let [parameter] = effect.description().parameters {
+                effects.push(Active::of(effect, &[0.0])?);
+                free.push((Free::Effect { id: effect.id(), parameter: parameter.name }, 0.0));
+            }
+        }
+        let (coefficients, drift) = (free.len(), absorbed.sensor_drift);
         let mut unknowns: Vec<f64> = free.iter().map(|(_, value)| *value).collect();
+        unknowns.extend(drift.then_some(0.0));
         unknowns.extend(situation.starts.iter().flat_map(|start| [start.position, start.velocity]));
         let mut names: Vec<Free> = free.into_iter().map(|(name, _)| name).collect();
         names.extend([Free::StartPosition, Free::StartVelocity]);
-        let system = System::new(situation.nominal, Vec::new())?;
+        let system = System::new(situation.nominal, effects)?;
         let model = Model::new(&system, &names, Settings::default())?;
-        Ok(Self { situation, seen, model, unknowns, shared, inertia })
+        Ok(Self { situation, seen, model, unknowns, coefficients, drift, inertia })
     }
 
     fn run(mut self) -> Result<f64, TrialError> {
@@ -112,6 +137,9 @@ impl<'a> Recalibration<'a> {
     fn fit(&mut self, part: f64) -> Result<f64, TrialError> {
         let mut round = self.round(part)?;
         for _ in 0..ROUNDS {
+            if round.norm <= NOTHING * self.situation.noise {
+                return Ok(round.norm);
+            }
             let from = self.unknowns.clone();
             let mut share = 1.0;
             let next = loop {
@@ -144,8 +172,11 @@ impl<'a> Recalibration<'a> {
         let mut normal = DMatrix::<f64>::zeros(count, count);
         let mut gradient = DVector::<f64>::zeros(count);
         let unknowns = self.unknowns.clone();
-        let (coefficients, starts) = unknowns.split_at(self.shared);
+        let (coefficients, rest) = unknowns.split_at(self.coefficients);
+        let (drift, starts) = rest.split_at(usize::from(self.drift));
+        let slope = drift.first().copied().unwrap_or_default();
         self.model.set(coefficients)?;
+        let mut row: Vec<(usize, f64)> = Vec::with_capacity(count);
         let mut squares = 0.0;
         let mut samples = 0;
         let mut response = Response::default();
@@ -159,18 +190,22 @@ impl<'a> Recalibration<'a> {
             let state = FullState { position, velocity, hidden: None };
             let input = self.input(seen)?;
             self.model.run_into(state, input.as_ref(), &times, &mut response)?;
-            let column = |own: usize| if own < self.shared { own } else { own + 2 * record };
-            for (index, value) in seen.values.iter().enumerate().take(used) {
+            let before = drift.len() + 2 * record;
+            let place = |own: usize| if own < self.coefficients { own } else { own + before };
+            for (index, (value, stamp)) in seen.values.iter().zip(&seen.stamps_s).enumerate().take(used) {
                 let predicted = response.position.get(index + 1).copied().unwrap_or_default();
-                let residual = value - predicted;
+                let residual = value - predicted - slope * stamp;
                 squares += residual * residual;
-                let row = response.position_row(index + 1);
-                for (own, sensitivity) in row.iter().enumerate() {
-                    if let Some(slot) = gradient.get_mut(column(own)) {
+                row.clear();
+                let own = response.position_row(index + 1).iter().enumerate();
+                row.extend(own.map(|(own, sensitivity)| (place(own), *sensitivity)));
+                row.extend(self.drift.then_some((self.coefficients, *stamp)));
+                for &(column, sensitivity) in &row {
+                    if let Some(slot) = gradient.get_mut(column) {
                         *slot += sensitivity * residual;
                     }
-                    for (other, second) in row.iter().enumerate().take(own + 1) {
-                        if let Some(slot) = normal.get_mut((column(own), column(other))) {
+                    for &(other, second) in row.iter().filter(|(other, _)| *other <= column) {
+                        if let Some(slot) = normal.get_mut((column, other)) {
                             *slot += sensitivity * second;
                         }
                     }

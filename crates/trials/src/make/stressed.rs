@@ -10,6 +10,7 @@ use super::laws::{
 };
 use super::own_record::{OpenLaw, Told, written};
 use super::plan::TrialPlan;
+use super::recalibration::Absorbed;
 use super::situation::{Motion, Situation};
 use crate::HiddenEffect;
 use dynamics::Start;
@@ -45,7 +46,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
     for attempt in 0..ATTEMPTS {
         let setup = Setup::draw(plan, job, attempt, kind_of_motion, &[])?;
         let drawn = draw(effect, &setup.situation, &mut Draws::new(&setup.seed.child(effect)));
-        let Some(sized) = drawn.open.sized(&setup, wanted)? else { continue };
+        let Some(sized) = drawn.open.sized(&setup, wanted, Absorbed::BY_RECALIBRATION)? else { continue };
         let mut draws = Draws::new(&setup.seed.child("disturbance"));
         let disturbance = disturbance(&setup.situation, &setup.seed, &mut draws)?;
         let mut motions = motions(&setup.situation, sized.law.as_ref(), &disturbance)?;
@@ -93,7 +94,8 @@ fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
         "coulomb_friction" | "stribeck_friction" => {
             let ratio = if effect == "coulomb_friction" { 1.0 } else { draws.uniform(1.5, 3.0) };
             let velocity = draws.uniform(0.03, 0.3) * speed;
-            let bend = draws.log_uniform(3e-4, 5e-3) * swing;
+            // Bristles that bend more are hysteresis, and rightly called so.
+            let bend = draws.log_uniform(1e-5, 1e-4) * swing;
             let law = move |size: f64| LuGre {
                 torque: size * torque,
                 static_torque: ratio * size * torque,
@@ -120,7 +122,8 @@ fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
             drawn(1e-3, 0.4, law, move |size| vec![coefficient(size)], words)
         }
         "asymmetric_stiffness" => {
-            let (sign, steepness) = (draws.sign(), draws.sign() * draws.uniform(0.3, 1.0) / swing);
+            // A steeper one has as much of a cubic spring in it, which together is gravity.
+            let (sign, steepness) = (draws.sign(), draws.sign() * draws.uniform(0.05, 0.2) / swing);
             let coefficient = move |size: f64| sign * size * stiffness / swing;
             let law = move |size: f64| ExponentialSpring { coefficient: coefficient(size), steepness };
             drawn(1e-3, 0.3, law, move |size| vec![coefficient(size)], format!("steepness {steepness:.3}"))
@@ -158,7 +161,8 @@ fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
             )
         }
         "stiffness_drift" | "damping_drift" => {
-            let settling = draws.uniform(0.3, 1.5) * duration;
+            // One that settles as fast as the amplitude decays is what a cubic spring or another friction does.
+            let settling = draws.uniform(1.5, 5.0) * duration;
             let damping = nominal.damping();
             let of_stiffness = effect == "stiffness_drift";
             let sign = if of_stiffness { draws.sign() } else { 1.0 };
