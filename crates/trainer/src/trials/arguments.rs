@@ -18,7 +18,7 @@ Examples:
 
 DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
 written before the first diagnosis), answers/GROUP/ID/diagnosis.json, truth/ID.json (written after the
-last), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
+last), failed.json (why cases have no answer), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
 is told not to consider one. Each group is diagnosed by a process of its own, which gets that
 group's folder of cases and nothing else.
 

@@ -47,7 +47,7 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
         let folder = RunFolder::open(folder);
         let manifest = make::read_manifest(&folder)?
             .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
-        return finish(arguments, &folder, &manifest, &pool, &BTreeMap::new(), start);
+        return finish(arguments, &folder, &manifest, &pool, &open::failed(&folder)?, start);
     }
     let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;
     let folder = begin(arguments, &plan, &pool)?;
@@ -57,6 +57,7 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
         return interrupted(&folder, "the diagnosis");
     };
+    folder.write_json(open::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
         folder.write_reproducible(&open::truth_name(&line.id), sealed.text_to_store().as_bytes())?;

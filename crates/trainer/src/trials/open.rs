@@ -30,6 +30,21 @@ pub(crate) fn answer_name(group: &str, id: &str) -> String {
     format!("answers/{group}/{id}/{ANSWER}")
 }
 
+/// The file of what was said of cases without an answer.
+pub(crate) const FAILED: &str = "failed.json";
+
+/// Why cases have no answer, by case, as the diagnosis said when it was asked; empty where that is not there.
+pub(crate) fn failed(folder: &RunFolder) -> Result<BTreeMap<String, String>, TrialsError> {
+    let path = folder.path().join(FAILED);
+    if !path.exists() {
+        return Ok(BTreeMap::new());
+    }
+    serde_json::from_str(&text(folder, FAILED)?).map_err(|error| TrialsError::Unreadable {
+        file: path.display().to_string(),
+        problem: error.to_string(),
+    })
+}
+
 /// Cases with opened truths, and what simpler diagnosers say of them.
 pub(crate) struct Opened {
     pub(crate) cases: Vec<AnsweredCase>,
