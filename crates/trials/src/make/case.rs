@@ -193,7 +193,6 @@ impl Job {
         Err(TrialError::OutOfReach {
             effect: subject.ids.join(" and "),
             wanted: subject.wanted,
-            most: f64::NAN,
             attempts: ATTEMPTS,
         })
     }

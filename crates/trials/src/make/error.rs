@@ -30,18 +30,21 @@ pub enum TrialError {
     Record(#[from] RecordError),
     /// No size of an effect is as detectable as wanted.
     #[error(
-        "{effect}: no size up to {most} reaches a detectability of {wanted} in {attempts} draws of its shape; \
-         lengthen the record (record.seconds) or leave that detectability out (trials.detectabilities)"
+        "{effect}: no size reaches a detectability of {wanted} in {attempts} draws of system and shape; lengthen the record (record.seconds) or leave that detectability out (trials.detectabilities)"
     )]
     OutOfReach {
         /// The effect's id, or the name of the law.
         effect: String,
         /// The detectability wanted.
         wanted: f64,
-        /// The largest size tried last.
-        most: f64,
-        /// How many shapes were drawn.
+        /// How many were drawn.
         attempts: usize,
+    },
+    /// An effect without a size that could be solved for.
+    #[error("{effect} has no size to be solved for: it is random, or not of the vocabulary's list of shapes")]
+    NoShape {
+        /// The effect's id.
+        effect: String,
     },
     /// A recalibration without a unique answer: the record is too short for its period.
     #[error("the recalibration is singular: {samples} samples do not determine {unknowns} unknowns")]

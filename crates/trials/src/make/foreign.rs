@@ -1,10 +1,10 @@
 //! Effects that the vocabulary does not have.
 //!
-//! Their sizes are those of what is left when not only a recalibration but also the effects nearest to them have taken away
-//! what they can: else `unknown` would be no better an answer than the stand-in.
+//! Their sizes are those of what is left when not only a recalibration but also the effects nearest to them
+//! have taken away what they can: else `unknown` would be no better an answer than the stand-in.
 //!
-//! A stiffness that depends on the velocity is not among them: on a single oscillation it is a cubic stiffness but for its
-//! small third harmonic, so that the vocabulary's answer would not be wrong.
+//! A stiffness that depends on the velocity is not among them: on a single oscillation it is a cubic
+//! stiffness but for its small third harmonic, so that the vocabulary's answer would not be wrong.
 
 use super::case::{ATTEMPTS, Case, Job, Setup};
 use super::draws::Draws;
@@ -55,7 +55,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
         let told = Told { effects: Vec::new(), foreign: Some(foreign), made: format!("{kind} by splitting") };
         return written(plan, job, id, &setup, &motions, told);
     }
-    Err(TrialError::OutOfReach { effect: kind.to_owned(), wanted, most: f64::NAN, attempts: ATTEMPTS })
+    Err(TrialError::OutOfReach { effect: kind.to_owned(), wanted, attempts: ATTEMPTS })
 }
 
 /// A law with its shape drawn, and the shape in words.

@@ -55,10 +55,10 @@ pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
     ("periodic_forcing", "sensor_drift", "a strain gauge beside a machine"),
 ];
 
-/// Effects for which nothing else in the vocabulary is nearly the same thing: with one of these left out `unknown` is the
-/// right answer. Left out of this list are those with a stand-in: gravity and cubic stiffness for one another, the dry frictions and
-/// hysteresis, stiffness drift and clock drift, a preload and a calibrated rest angle, and what scatters values or stamps and
-/// is noise to whoever knows no better.
+/// Effects for which nothing else in the vocabulary is nearly the same thing: with one of these left out
+/// `unknown` is the right answer. Left out of this list are those with a stand-in: gravity and cubic
+/// stiffness for one another, the dry frictions and hysteresis, stiffness drift and clock drift, a preload
+/// and a calibrated rest angle, and what scatters values or stamps and is noise to whoever knows no better.
 pub(crate) const LEFT_OUT: &[&str] = &[
     "quadratic_drag",
     "backlash",
@@ -90,8 +90,8 @@ pub(crate) const RELEASES: &[&str] = &[
     "clock_drift",
 ];
 
-/// Effects laid under residuals of measured records: those of a release, but for a drifting clock, as the stamps are the measured
-/// record's own.
+/// Effects laid under residuals of measured records: those of a release, but for a drifting clock, as the
+/// stamps are the measured record's own.
 pub(crate) const MEASURED: &[&str] = &[
     "coulomb_friction",
     "stribeck_friction",
@@ -108,8 +108,8 @@ pub(crate) const MEASURED: &[&str] = &[
     "sensor_nonlinearity",
 ];
 
-/// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of action is a
-/// release.
+/// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of
+/// action is a release.
 pub(crate) const DRIVEN: &[&str] = &[
     "input_delay",
     "input_saturation",

@@ -1,4 +1,5 @@
-//! Motions by another way than either integrator of [`dynamics`]: exact steps of the linear oscillator between kicks.
+//! Motions by another way than either integrator of [`dynamics`]: exact steps of the linear oscillator
+//! between kicks.
 //!
 //! A step of length h is (Strang's splitting)
 //!
@@ -7,14 +8,14 @@
 //! 3. the linear oscillator with its input, exactly, over h;
 //! 4. 2 and 1 again, in the other order.
 //!
-//! It is of second order and exact where there is no law. A step is at most 0.004/ω and a sixteenth of the
-//! time between samples; with a torque of a part ε of the spring's the frequency is off by about ε·(ωh)²/24, relative: 1e-8 for ε
-//! = 0.01. Dry friction is never a jump here: laws are continuous, with hidden states that are stiff, which is what the
-//! exponentials are for.
+//! It is of second order, and exact where there is no law. A step is at most 0.004/ω and a sixteenth of the
+//! time between samples. The error of first order in the law's part of the spring's torque averages out over
+//! a swing, so that no phase builds up with it. Dry friction is never a jump here: laws are continuous, with
+//! hidden states that are stiff, which is what the exponentials are for.
 //!
 //! # Reference
-//! Strang, SIAM Journal on Numerical Analysis 5 (1968) 506; Hairer, Lubich, Wanner, Geometric Numerical Integration, 2nd ed.,
-//! Springer 2006, sections II.5 and III.3.
+//! Strang, SIAM Journal on Numerical Analysis 5 (1968) 506; Hairer, Lubich, Wanner, Geometric Numerical
+//! Integration, 2nd ed., Springer 2006, sections II.5 and III.3.
 
 use super::error::TrialError;
 use super::situation::{Motion, Situation};
@@ -58,8 +59,8 @@ const LARGEST_PHASE: f64 = 0.004;
 /// Fewest steps between two samples.
 const FEWEST_STEPS: usize = 16;
 
-/// The motion of each record of a situation with a law; `disturbance` gives, for a record, a torque held from sample to
-/// sample.
+/// The motion of each record of a situation with a law; `disturbance` gives, for a record, a torque held
+/// from sample to sample.
 pub(crate) fn motions(
     situation: &Situation,
     law: &dyn TorqueLaw,

@@ -64,8 +64,8 @@ fn a_sine_spring_of_no_steepness_is_the_references_cubic_spring() {
     }
 }
 
-/// Bristles take the time √(2·bend/(ω²·A)) to turn over after a reversal: the difference falls with the root of the bend, and is
-/// extrapolated to none.
+/// Bristles take the time √(2·bend/(ω²·A)) to turn over after a reversal: the difference falls with the root
+/// of the bend, and is extrapolated to none.
 #[test]
 fn bristles_that_hardly_bend_are_coulombs_friction() {
     let situation = situation(false);

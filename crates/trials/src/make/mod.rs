@@ -1,17 +1,18 @@
 //! Drawing cases: records, a nominal simulator, and the truth that is hidden from whoever diagnoses.
 //!
-//! A [`TrialPlan`] is resolved from a configuration; [`TrialPlan::case`] makes any of its cases alone, from the seed and its
-//! number. Systems, starts, sensors and what the logger does to stamps are drawn alike in every bank, so that none of it tells
-//! what is hidden.
+//! A [`TrialPlan`] is resolved from a configuration; [`TrialPlan::case`] makes any of its cases alone, from
+//! the seed and its number. Systems, starts, sensors and what the logger does to stamps are drawn alike in
+//! every bank, so that none of it tells what is hidden.
 //!
 //! # Sizes
-//! Hidden effects are as large as makes them as *detectable* as configured: d = ‖P·Δ‖/σ, where Δ is what the effect adds
-//! to the samples, P takes away what a recalibration of damping, stiffness, rest angle, starts (and inertia, where there is an
-//! input) makes up for, and σ is the standard deviation of all that is white: the sensor's noise, its rounding, what
-//! scattered stamps do. In a pair each is sized as if alone. A preload is sized with the rest angle held, as it would be nothing
-//! but another rest angle. For something foreign P takes away the nearest effects of the vocabulary too. For
-//! effects that are random the expectation of ‖Δ‖² is taken and nothing projected off; lost samples change no
-//! value and have a detectability of 0, bursts of a logger are as detectable as they are.
+//! Hidden effects are as large as makes them as *detectable* as configured: d = ‖P·Δ‖/σ, where Δ is what the
+//! effect adds to the samples, P takes away what a recalibration of damping, stiffness, rest angle, starts
+//! (and inertia, where there is an input) makes up for, and σ is the standard deviation of all that is
+//! white: the sensor's noise, its rounding, what scattered stamps do. In a pair each is sized as if alone. A
+//! preload is sized with the rest angle held, as it would be nothing but another rest angle. For something
+//! foreign P takes away the nearest effects of the vocabulary too. For effects that are random the
+//! expectation of ‖Δ‖² is taken and nothing projected off; lost samples change no value and have a
+//! detectability of 0, bursts of a logger are as detectable as they are.
 
 mod case;
 mod draws;
@@ -32,6 +33,8 @@ mod stressed;
 
 #[cfg(test)]
 mod integrator_tests;
+#[cfg(test)]
+mod random_tests;
 #[cfg(test)]
 mod recalibration_tests;
 #[cfg(test)]

@@ -115,8 +115,8 @@ impl Residual {
 
 /// An effect's simulated record with a measured record's residual on top.
 ///
-/// Noise, rounding and stamps are the residual's: nothing is drawn of them. Its size is in units of the residual's white part, from
-/// second differences. The samples are taken at a uniform rate, by their index.
+/// Noise, rounding and stamps are the residual's: nothing is drawn of them. Its size is in units of the
+/// residual's white part, from second differences. The samples are taken at a uniform rate, by their index.
 pub(crate) fn measured_case(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
     let (at, wanted) = plan.turn(job.number, MEASURED.len());
     let effect = MEASURED.get(at).copied().unwrap_or_default();
@@ -134,7 +134,7 @@ pub(crate) fn measured_case(plan: &TrialPlan, job: Job, id: String) -> Result<Ca
         let Some(hidden) = hide(&setup, effect, wanted)? else { continue };
         return with_residual(plan, job, id, &setup, hidden, &residual, &file_name(path));
     }
-    Err(TrialError::OutOfReach { effect: effect.to_owned(), wanted, most: f64::NAN, attempts: ATTEMPTS })
+    Err(TrialError::OutOfReach { effect: effect.to_owned(), wanted, attempts: ATTEMPTS })
 }
 
 fn with_residual(

@@ -106,7 +106,8 @@ const VALUE_DECIMALS: u8 = 9;
 impl TrialPlan {
     /// Checks a document, overrides applied, and looks into the folders that it names.
     ///
-    /// A bank from outside whose folder is not there, or holds nothing, is left out: [`TrialPlan::left_out_banks`] says so.
+    /// A bank from outside whose folder is not there, or holds nothing, is left out:
+    /// [`TrialPlan::left_out_banks`] says so.
     ///
     /// # Errors
     /// [`SettingsError`], with file, line and column or the override that caused it.
@@ -215,18 +216,19 @@ impl TrialPlan {
         self.jobs.is_empty()
     }
 
-    /// Banks that were asked for and cannot be made, because what comes from outside is not there. Whoever runs the trials
-    /// says so.
+    /// Banks that were asked for and cannot be made, because what comes from outside is not there. Whoever
+    /// runs the trials says so.
     #[must_use]
     pub fn left_out_banks(&self) -> &[LeftOutBank] {
         &self.left_out_banks
     }
 
-    /// The case with a number from 0. It depends on the seed and on its bank and number there alone, and on no other case.
+    /// The case with a number from 0. It depends on the seed and on its bank and number there alone, and on
+    /// no other case.
     ///
     /// # Errors
-    /// [`TrialError`]: a number beyond [`TrialPlan::len`]; systems, lengths and detectabilities that do not go together; files
-    /// from outside that cannot be read.
+    /// [`TrialError`]: a number beyond [`TrialPlan::len`]; systems, lengths and detectabilities that do not
+    /// go together; files from outside that cannot be read.
     pub fn case(&self, index: usize) -> Result<Case, TrialError> {
         let job = self.jobs.get(index).ok_or(TrialError::NoSuchCase { index, cases: self.len() })?;
         job.make(self, id(index))
@@ -240,7 +242,7 @@ impl TrialPlan {
     /// What a bank's case of a number hides, in turn: so many rounds of everything, with a detectability each.
     pub(crate) fn turn(&self, number: usize, among: usize) -> (usize, f64) {
         let rounds = self.detectabilities.len().max(1);
-        let wanted = self.detectabilities.get(number / among.max(1) % rounds).copied().unwrap_or(12.0);
+        let wanted = self.detectabilities.get(number / among.max(1) % rounds).copied().unwrap_or_default();
         (number % among.max(1), wanted)
     }
 

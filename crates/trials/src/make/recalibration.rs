@@ -1,9 +1,10 @@
 //! What no recalibration absorbs of a record.
 //!
-//! The size of an effect in noise units is d = ‖P·Δ‖/σ: Δ is what it adds to the samples, P takes away whatever damping,
-//! stiffness, rest angle, the start of each record and, where there is an input, inertia can make up for. It is computed by
-//! doing so: the noise-free samples with the effect are fitted by the nominal oscillator from its true coefficients
-//! (Gauss–Newton with exact sensitivities), and the root of the residual's sum of squares is taken over σ.
+//! The size of an effect in noise units is d = ‖P·Δ‖/σ: Δ is what it adds to the samples, P takes away
+//! whatever damping, stiffness, rest angle, the start of each record and, where there is an input, inertia
+//! can make up for. It is computed by doing so: the noise-free samples with the effect are fitted by the
+//! nominal oscillator from its true coefficients (Gauss–Newton with exact sensitivities), and the root of
+//! the residual's sum of squares is taken over σ.
 
 use super::error::TrialError;
 use super::situation::Situation;
@@ -15,10 +16,11 @@ use nalgebra::{DMatrix, DVector};
 /// What is taken away of a record beside damping, stiffness and the starts.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Absorbed {
-    /// The rest angle; not where the hidden effect is a preload, which is a rest angle that the simulator does not have.
+    /// The rest angle; not where the hidden effect is a preload, which is a rest angle that the simulator
+    /// does not have.
     pub(crate) rest_angle: bool,
-    /// Effects of the vocabulary in the system that have one parameter, at any size of either sign: those that could stand in
-    /// for something outside the vocabulary.
+    /// Effects of the vocabulary in the system that have one parameter, at any size of either sign: those
+    /// that could stand in for something outside the vocabulary.
     pub(crate) stand_ins: &'static [&'static str],
     /// A linear drift of the sensor.
     pub(crate) sensor_drift: bool,
@@ -35,12 +37,13 @@ const ROUNDS: usize = 10;
 /// How well a round's prediction of the next residual's norm has to come true for the fit to end.
 const SETTLED: f64 = 1e-3;
 
-/// A norm in units of the sensor's noise that counts as nothing left: a fit that gets there need not go on, and rounding may
-/// keep it from doing so.
+/// A norm in units of the sensor's noise that counts as nothing left: a fit that gets there need not go on,
+/// and rounding may keep it from doing so.
 const NOTHING: f64 = 1e-3;
 
-/// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit goes over ever longer
-/// parts of the record, so that it does not end in a minimum with the wrong number of turns.
+/// Phase in rad that a first step may move by the end of the record and still be trusted. Beyond it the fit
+/// goes over ever longer parts of the record, so that it does not end in a minimum with the wrong number of
+/// turns.
 const TRUSTED_PHASE: f64 = 0.5;
 
 /// The parts.
@@ -68,8 +71,8 @@ struct Recalibration<'a> {
     situation: &'a Situation,
     seen: &'a [Samples<f64>],
     model: Model,
-    /// The model's coefficients, shared by the records; the sensor's drift, where it is one; then position and velocity at the
-    /// start of each record.
+    /// The model's coefficients, shared by the records; the sensor's drift, where it is one; then position
+    /// and velocity at the start of each record.
     unknowns: Vec<f64>,
     coefficients: usize,
     drift: bool,
@@ -228,7 +231,8 @@ impl<'a> Recalibration<'a> {
     }
 }
 
-/// Added to the unit diagonal: a short part of a record may leave a combination of unknowns open, which then stays.
+/// Added to the unit diagonal: a short part of a record may leave a combination of unknowns open, which then
+/// stays.
 const RIDGE: f64 = 1e-11;
 
 /// Solves normal equations of which the lower triangle is given, each unknown scaled to a unit diagonal.

@@ -25,8 +25,8 @@ impl Shape {
 
     /// Draws the shape of an effect whose size follows from its detectability by solving.
     ///
-    /// Torques are drawn in units of the spring's at the largest swing, velocities in those of the largest velocity, times in
-    /// those of the record's length: a shape then means the same for every system.
+    /// Torques are drawn in units of the spring's at the largest swing, velocities in those of the largest
+    /// velocity, times in those of the record's length: a shape then means the same for every system.
     pub(crate) fn draw(id: &str, situation: &Situation, draws: &mut Draws) -> Result<Self, TrialError> {
         let effect = Effect::find(id)?;
         let nominal = &situation.nominal;
@@ -109,21 +109,14 @@ impl Shape {
                 let values = move |size: f64| vec![rate * sign * size, sign * size / duration];
                 make(1e-4, 0.1, Box::new(values))
             }
-            other => {
-                return Err(TrialError::OutOfReach {
-                    effect: other.to_owned(),
-                    wanted: f64::NAN,
-                    most: 0.0,
-                    attempts: 0,
-                });
-            }
+            other => return Err(TrialError::NoShape { effect: other.to_owned() }),
         })
     }
 }
 
-/// Effects of the measuring chain that are random, or do to every sample the same as noise would. Their size follows from
-/// the expected sum of squares of what they do, E‖Δ‖², without projection: what a recalibration absorbs of it is of the
-/// order of the number of its unknowns over that of the samples.
+/// Effects of the measuring chain that are random, or do to every sample the same as noise would. Their size
+/// follows from the expected sum of squares of what they do, E‖Δ‖², without projection: what a recalibration
+/// absorbs of it is of the order of the number of its unknowns over that of the samples.
 pub(crate) const RANDOM: &[&str] =
     &["sensor_quantization", "timestamp_jitter", "outliers", "dropouts", "timestamp_batching"];
 
@@ -132,10 +125,11 @@ pub(crate) const RANDOM: &[&str] =
 /// - `sensor_quantization`: E‖Δ‖² = n·q²/12.
 /// - `timestamp_jitter`: E‖Δ‖² = σ_t²·Σθ̇²; at most 0.45 sample periods.
 /// - `outliers`: E‖Δ‖² = n·p·s², with 4 to 20 wrong samples expected.
-/// - `timestamp_batching`: stamps are late by anything up to an interval, so that E‖PΔ‖² ≈ T_b²/12·Σθ̇². Bursts are drawn as
-///   loggers make them, 10 to 80 ms apart, whatever was wanted: they are as detectable as they are.
-/// - `dropouts` change no value. Their share of lost samples is 0.2 % times the detectability wanted, at most 30 %, and the
-///   detectability given is 0.
+/// - `timestamp_batching`: stamps are late by anything up to an interval, so that E‖PΔ‖² ≈ T_b²/12·Σθ̇².
+///   Bursts are drawn as loggers make them, 10 to 80 ms apart, whatever was wanted: they are as detectable
+///   as they are.
+/// - `dropouts` change no value. Their share of lost samples is 0.2 % times the detectability wanted, at
+///   most 30 %, and the detectability given is 0.
 pub(crate) fn random_effect(
     id: &str,
     situation: &Situation,

@@ -136,7 +136,8 @@ impl Situation {
         };
         // From rest the response of a linear oscillator is proportional to the input.
         let rest = self.nominal.rest_angle();
-        // A little off the rest angle, as below: an integrator that measures its error by the motion so far needs some.
+        // A little off the rest angle, as below: an integrator that measures its error by the motion so far
+        // needs some.
         let starts = vec![Start::release(rest + 1e-3 * self.amplitude)];
         let trial = Self { excitation: Some(unscaled), starts, ..self.clone() };
         let largest = trial
@@ -192,7 +193,8 @@ impl Situation {
     }
 }
 
-/// What is believed of the oscillator, whatever is hidden: exact, or with damping and stiffness off by up to a part.
+/// What is believed of the oscillator, whatever is hidden: exact, or with damping and stiffness off by up to
+/// a part.
 ///
 /// 30 % off in stiffness is 14 to 20 % in frequency: within a factor of 2 by far.
 pub(crate) fn believed(nominal: &Nominal, off: Option<f64>, seed: &Seed) -> Result<Nominal, TrialError> {
@@ -246,8 +248,8 @@ impl Nuisances {
         Self { encoder_step, clock }
     }
 
-    /// Those that remain beside hidden effects: none does what a hidden effect does too, and none scatters stamps where
-    /// their scatter is hidden.
+    /// Those that remain beside hidden effects: none does what a hidden effect does too, and none scatters
+    /// stamps where their scatter is hidden.
     pub(crate) fn beside(mut self, hidden: &[&str]) -> Self {
         if hidden.contains(&"sensor_quantization") {
             self.encoder_step = None;
@@ -291,8 +293,8 @@ impl Nuisances {
         (part * situation.noise / velocity).min(0.3 / situation.sampling.rate_hz)
     }
 
-    /// Standard deviation of all that is white in the values: the sensor's noise, its rounding, and what scattered stamps
-    /// do to them.
+    /// Standard deviation of all that is white in the values: the sensor's noise, its rounding, and what
+    /// scattered stamps do to them.
     pub(crate) fn white(&self, situation: &Situation, square_velocity: f64) -> f64 {
         let rounding = self.encoder_step.map_or(0.0, |step| step * step / 12.0);
         let jitter = self.jitter_deviation(situation, square_velocity).powi(2) * square_velocity;

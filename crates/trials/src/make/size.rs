@@ -15,8 +15,9 @@ pub(crate) struct Sized {
     pub(crate) detectability: f64,
 }
 
-/// The size at which `detectability` is as wanted, by the secant rule on the logarithms of both; a bracket, once there is
-/// one, is kept by bisection. `None` where no size up to `most` is enough, or no size is close.
+/// The size at which `detectability` is as wanted, by the secant rule on the logarithms of both; a bracket,
+/// once there is one, is kept by bisection. `None` where no size up to `most` is enough, or no size is
+/// close.
 pub(crate) fn solve(
     wanted: f64,
     guess: f64,

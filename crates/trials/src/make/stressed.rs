@@ -32,7 +32,8 @@ pub(crate) const EFFECTS: &[(&str, &str)] = &[
     ("periodic_forcing", "wandering phase"),
 ];
 
-/// Root mean square of what the disturbing torque does to the position, in units of the sensor's white noise: from, to.
+/// Root mean square of what the disturbing torque does to the position, in units of the sensor's white
+/// noise: from, to.
 const DISTURBANCE: [f64; 2] = [0.02, 0.08];
 
 /// Standard deviation of the correlated part of the sensor's noise, in the same units.
@@ -63,7 +64,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
         };
         return written(plan, job, id, &setup, &motions, told);
     }
-    Err(TrialError::OutOfReach { effect: effect.to_owned(), wanted, most: f64::NAN, attempts: ATTEMPTS })
+    Err(TrialError::OutOfReach { effect: effect.to_owned(), wanted, attempts: ATTEMPTS })
 }
 
 /// A law with its shape drawn.

@@ -144,8 +144,8 @@ fn nuisances_are_alike_in_every_bank() {
     }
 }
 
-/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and a projection by
-/// singular values.
+/// Detectability by another way: motions of the reference integrator, their derivatives by differences, and
+/// a projection by singular values.
 #[test]
 fn sizes_are_as_detectable_as_wanted() {
     let plan = plan(&[("single", 26), ("releases", 14)], &["trials.detectabilities=[6]"]);

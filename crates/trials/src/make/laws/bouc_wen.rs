@@ -2,8 +2,8 @@
 
 use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 
-/// −τ_h·z with ż = θ̇/δ·(1 − |z|ⁿ·(½ + ½·sign(θ̇·z))): unloading is elastic, loading bends over at |z| = 1; the larger n, the
-/// sharper.
+/// −τ_h·z with ż = θ̇/δ·(1 − |z|ⁿ·(½ + ½·sign(θ̇·z))): unloading is elastic, loading bends over at |z| = 1;
+/// the larger n, the sharper.
 ///
 /// # Reference
 /// Wen, Journal of the Engineering Mechanics Division 102 (1976) 249.

@@ -2,7 +2,7 @@
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// −β·v·(|θ̇|/v)ᵖ·sign(θ̇)·v: the drag β·θ̇² at the velocity v, with the exponent p.
+/// −β·v²·(|θ̇|/v)ᵖ·sign(θ̇): at the velocity v as large as the quadratic drag β·θ̇², with the exponent p.
 pub(crate) struct DragPower {
     /// As the quadratic drag's.
     pub(crate) coefficient: f64,

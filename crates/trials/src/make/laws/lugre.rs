@@ -2,11 +2,12 @@
 
 use crate::make::integrator::{Hidden, Moment, TorqueLaw};
 
-/// −σ₀·z with ż = θ̇ − σ₀·|θ̇|/g(θ̇)·z and g = τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²); σ₀ = τ_c over the bristles' bend. Where that
-/// bend goes to zero it is Coulomb's or Stribeck's friction.
+/// −σ₀·z with ż = θ̇ − σ₀·|θ̇|/g(θ̇)·z and g = τ_c + (τ_s − τ_c)·exp(−(θ̇/v_s)²); σ₀ = τ_c over the
+/// bristles' bend. Where that bend goes to zero it is Coulomb's or Stribeck's friction.
 ///
 /// # Reference
-/// Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Transactions on Automatic Control 40 (1995) 419, without its damping terms.
+/// Canudas de Wit, Olsson, Åström, Lischinsky, IEEE Transactions on Automatic Control 40 (1995) 419, without
+/// its damping terms.
 pub(crate) struct LuGre {
     pub(crate) torque: f64,
     pub(crate) static_torque: f64,

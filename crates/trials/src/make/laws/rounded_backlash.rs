@@ -2,7 +2,7 @@
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// k·b·tanh-like: the spring loses k·b·x/(b² + x²)^½, which is a dead zone of ±b whose edges are round over b.
+/// +k·b·x/√(b² + x²), which the spring loses: a dead zone of ±b whose edges are round over b.
 pub(crate) struct RoundedBacklash {
     pub(crate) stiffness: f64,
     /// b in rad.

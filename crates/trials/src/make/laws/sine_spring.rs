@@ -2,8 +2,8 @@
 
 use crate::make::integrator::{Moment, TorqueLaw};
 
-/// 6·k₃·(sin(s·x) − s·x)/s³: its leading term is −k₃·x³, and it has every odd power beyond. With an imaginary s, for a spring that
-/// stiffens more than its cube, the sine is hyperbolic.
+/// 6·k₃·(sin(s·x) − s·x)/s³: its leading term is −k₃·x³, and it has every odd power beyond. With an
+/// imaginary s, for a spring that stiffens more than its cube, the sine is hyperbolic.
 pub(crate) struct SineSpring {
     /// As the cubic stiffness's.
     pub(crate) coefficient: f64,

@@ -1,0 +1,60 @@
+use super::draws::Draws;
+use super::integrator_tests::situation;
+use super::shape::random_effect;
+use dynamics::Coordinate;
+use dynamics::chain::{Chain, Observed};
+use seed::Seed;
+
+/// ‖Δ‖² of what a chain's only effect does to values and stamps, over the square of the detectability stated,
+/// on average over draws. A stamp that is off by dt is a value that is off by θ̇·dt; what all stamps are off
+/// by is another start.
+fn ratio(id: &str, wanted: f64, draws: u64) -> f64 {
+    let situation = situation(false);
+    let motion = situation.motions(&[]).unwrap().remove(0);
+    let velocities: f64 = motion.velocity.iter().map(|velocity| velocity * velocity).sum();
+    let white = 1.3e-3;
+    let total: f64 = (0..draws)
+        .map(|number| {
+            let seed = Seed::new(number);
+            let (active, detectability) =
+                random_effect(id, &situation, velocities, white, wanted, &mut Draws::new(&seed)).unwrap();
+            let chain = Chain::new(Observed::Position, 0.0, vec![active]).unwrap();
+            let seen =
+                chain.observe(&motion.sampled(), Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
+            let late = seen.stamps_s.iter().zip(&seen.times_s).map(|(stamp, time)| stamp - time);
+            let mean = late.clone().sum::<f64>() / seen.stamps_s.len() as f64;
+            let squares: f64 = late
+                .zip(seen.values.iter().zip(&motion.position))
+                .zip(&motion.velocity)
+                .map(|((late, (value, clean)), velocity)| (value - clean - velocity * (late - mean)).powi(2))
+                .sum();
+            squares / (white * detectability).powi(2)
+        })
+        .sum();
+    total / draws as f64
+}
+
+#[test]
+fn random_effects_are_as_large_as_stated() {
+    for (id, wanted, draws, bar) in [
+        ("sensor_quantization", 25.0, 20, 0.05),
+        ("timestamp_jitter", 25.0, 40, 0.05),
+        // Chi-square with twelve degrees of freedom on average.
+        ("outliers", 25.0, 1000, 0.1),
+        ("timestamp_batching", 25.0, 60, 0.1),
+    ] {
+        let found = ratio(id, wanted, draws);
+        assert!((found - 1.0).abs() < bar, "{id} {found}");
+    }
+}
+
+#[test]
+fn dropouts_lose_the_share_that_stands_for_their_size() {
+    let situation = situation(false);
+    for (wanted, share) in [(3.0, 0.006), (25.0, 0.05), (100.0, 0.2), (1000.0, 0.3)] {
+        let mut draws = Draws::new(&Seed::new(1));
+        let (active, detectability) =
+            random_effect("dropouts", &situation, 1.0, 1e-3, wanted, &mut draws).unwrap();
+        assert!((active.values()[0] - share).abs() < 1e-12 && detectability == 0.0);
+    }
+}
