@@ -13,6 +13,7 @@ use crate::interrupt;
 use crate::method::Method;
 use crate::predict::predict;
 use crate::simulate::{is_simulation, simulate};
+use crate::trials::{self, is_trials};
 use estimator::Cancel;
 use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
@@ -41,6 +42,9 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     let document = read_config(arguments)?;
     if is_simulation(&document) {
         return simulate(arguments, &Plan::resolve(&document)?, cancel);
+    }
+    if is_trials(&document) {
+        return trials::run(&arguments.into(), cancel);
     }
     let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
     if is_prediction(&document) {

@@ -63,9 +63,9 @@ pub struct Hidden {
     pub bank: Bank,
     /// The hidden effects of the vocabulary, the most detectable first; empty where none is.
     pub effects: Vec<HiddenEffect>,
-    /// In words, what acts from outside the vocabulary.
+    /// What acts from outside the vocabulary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub foreign: Option<String>,
+    pub foreign: Option<Foreign>,
     /// Ids of effects of the measuring chain that come with records of every bank alike. They count neither for nor
     /// against an answer.
     pub nuisances: Vec<String>,
@@ -81,6 +81,16 @@ pub struct Hidden {
     pub records: Vec<truth::Truth>,
     /// How the records were made, in words; for whoever repeats one.
     pub made: String,
+}
+
+/// Something outside the vocabulary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Foreign {
+    /// What it is, in words.
+    pub law: String,
+    /// Its size in noise units: what neither a recalibration nor the vocabulary nearest to it can absorb.
+    pub detectability: f64,
 }
 
 /// A hidden effect.

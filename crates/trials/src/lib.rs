@@ -12,6 +12,6 @@ pub mod make;
 mod score;
 
 pub use baseline::{Baseline, BaselineRecord, WEAK_FORM, WEAK_FORM_METHOD, most_common, weak_form};
-pub use hidden::{Bank, HIDDEN_SCHEMA, Hidden, HiddenEffect};
+pub use hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 pub use make::{Case, TrialError, TrialPlan};
 pub use score::{AnsweredCase, Trials, case_rows, misses_a_bar, score, true_closure};

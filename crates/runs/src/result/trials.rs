@@ -327,7 +327,7 @@ pub struct FailureRow {
     pub hidden: String,
     /// What was said, or why nothing was.
     pub said: String,
-    /// Size in noise units of the first hidden effect.
+    /// Size in noise units of what was hidden; of a pair of the smaller one.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub size: f64,
     /// Whether the answer says that it cannot tell what it named from what was hidden.

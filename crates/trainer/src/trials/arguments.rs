@@ -1,6 +1,6 @@
 //! The arguments of `trainer trials`.
 
-use crate::cli::Output;
+use crate::cli::{ExperimentArguments, Output};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -18,7 +18,7 @@ Examples:
 
 DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
 written before the first diagnosis), answers/GROUP/ID/diagnosis.json, truth/ID.json (written after the
-last), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
+last), failed.json (why cases have no answer), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
 is told not to consider one. Each group is diagnosed by a process of its own, which gets that
 group's folder of cases and nothing else.
 
@@ -52,4 +52,21 @@ pub(crate) struct TrialsArguments {
     pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
+}
+
+impl From<&ExperimentArguments> for TrialsArguments {
+    /// Trials whose configuration was named without the command.
+    fn from(arguments: &ExperimentArguments) -> Self {
+        Self {
+            config: arguments.config.clone(),
+            overrides: arguments.overrides.clone(),
+            out: arguments.out.clone(),
+            resume: false,
+            score: None,
+            check: false,
+            seed: arguments.seed,
+            threads: arguments.threads,
+            output: arguments.output,
+        }
+    }
 }

@@ -34,9 +34,15 @@ pub(crate) fn ask(
     for line in missing.clone() {
         *groups.entry(line.group.as_str()).or_default() += 1;
     }
-    let count = missing.count();
+    let missing_ids: Vec<&String> = missing.map(|line| &line.id).collect();
+    let count = missing_ids.len();
     let truths = folder.path().join(open::TRUTHS);
     if count > 0 && truths.exists() {
+        // What got no answer when it was asked gets none now.
+        let known = open::failed(folder)?;
+        if missing_ids.iter().all(|id| known.contains_key(id.as_str())) {
+            return Ok(Some(known));
+        }
         return Err(TrialsError::Open { folder: truths.display().to_string(), missing: count }.into());
     }
     let silent = arguments.output.quiet || arguments.output.json;

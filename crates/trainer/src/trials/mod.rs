@@ -2,6 +2,7 @@
 
 pub(crate) mod arguments;
 mod ask;
+mod baselines;
 mod error;
 mod make;
 mod open;
@@ -15,11 +16,13 @@ use crate::interrupt;
 use crate::rerender::write_report;
 use crate::run::{new_folder, read_config, thread_pool};
 use arguments::TrialsArguments;
+use estimator::Cancel;
 use open::Opened;
 use rayon::ThreadPool;
 use runs::result::{LeftOutBank, TrialsManifest};
 use runs::{RunFolder, to_csv};
 use serde_json::json;
+use settings::Document;
 use std::collections::BTreeMap;
 use std::time::Instant;
 use trials::{TrialPlan, Trials, case_rows, misses_a_bar, most_common};
@@ -28,23 +31,33 @@ pub(crate) use error::TrialsError;
 
 /// Makes, diagnoses, opens and scores; or scores again what is there.
 pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerError> {
+    run(arguments, interrupt::watch()?)
+}
+
+/// Whether a configuration asks for trials.
+pub(crate) fn is_trials(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("trials"))
+}
+
+/// As [`command`], where who stops it is known already.
+pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcome, TrainerError> {
     let start = Instant::now();
-    let cancel = interrupt::watch()?;
     let pool = thread_pool(&as_experiment(arguments))?;
     if let Some(folder) = &arguments.score {
         let folder = RunFolder::open(folder);
         let manifest = make::read_manifest(&folder)?
             .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
-        return finish(arguments, &folder, &manifest, &pool, &BTreeMap::new(), start);
+        return finish(arguments, &folder, &manifest, &pool, &open::failed(&folder)?, start);
     }
     let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;
     let folder = begin(arguments, &plan, &pool)?;
     let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
-        return Ok(interrupted(&folder, "making the cases")?);
+        return interrupted(&folder, "making the cases");
     };
     let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
-        return Ok(interrupted(&folder, "the diagnosis")?);
+        return interrupted(&folder, "the diagnosis");
     };
+    folder.write_json(open::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
         folder.write_reproducible(&open::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
@@ -112,8 +125,8 @@ fn finish(
     failed: &BTreeMap<String, String>,
     start: Instant,
 ) -> Result<Outcome, TrainerError> {
-    let Opened { cases, weak_form } = open::open(folder, manifest, pool, failed)?;
-    let baselines = [most_common(&cases), weak_form];
+    let Opened { cases, mut baselines } = open::open(folder, manifest, pool, failed)?;
+    baselines.insert(0, most_common(&cases));
     let trials = Trials {
         name: manifest.name.clone(),
         seed: manifest.seed,

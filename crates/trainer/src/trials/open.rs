@@ -1,5 +1,6 @@
 //! Opening the seals: truths, answers and records from the folder, each held to the manifest's digest.
 
+use super::baselines::{DIAGNOSERS, Diagnoser};
 use super::error::TrialsError;
 use super::make::WITHOUT;
 use crate::diagnose;
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use runs::RunFolder;
 use runs::result::{DiagnosisResult, TrialsManifest, TrialsManifestLine};
 use std::collections::BTreeMap;
-use trials::{AnsweredCase, Baseline, Hidden, WEAK_FORM, WEAK_FORM_METHOD, true_closure, weak_form};
+use trials::{AnsweredCase, Baseline, Hidden, true_closure};
 use truth::{Sealed, digest};
 
 /// Folder of the truths.
@@ -29,11 +30,29 @@ pub(crate) fn answer_name(group: &str, id: &str) -> String {
     format!("answers/{group}/{id}/{ANSWER}")
 }
 
-/// Cases with opened truths, and what the weak-form baseline says of them.
+/// The file of what was said of cases without an answer.
+pub(crate) const FAILED: &str = "failed.json";
+
+/// Why cases have no answer, by case, as the diagnosis said when it was asked; empty where that is not there.
+pub(crate) fn failed(folder: &RunFolder) -> Result<BTreeMap<String, String>, TrialsError> {
+    let path = folder.path().join(FAILED);
+    if !path.exists() {
+        return Ok(BTreeMap::new());
+    }
+    serde_json::from_str(&text(folder, FAILED)?).map_err(|error| TrialsError::Unreadable {
+        file: path.display().to_string(),
+        problem: error.to_string(),
+    })
+}
+
+/// Cases with opened truths, and what simpler diagnosers say of them.
 pub(crate) struct Opened {
     pub(crate) cases: Vec<AnsweredCase>,
-    pub(crate) weak_form: Baseline,
+    pub(crate) baselines: Vec<Baseline>,
 }
+
+/// What each simpler diagnoser names in a case.
+type Named = Vec<Option<String>>;
 
 /// The text of a file of the trials.
 pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError> {
@@ -67,19 +86,23 @@ pub(crate) fn open(
     pool: &ThreadPool,
     failed: &BTreeMap<String, String>,
 ) -> Result<Opened, TrainerError> {
-    let opened: Vec<(AnsweredCase, Option<String>)> = pool.install(|| {
+    let opened: Vec<(AnsweredCase, Named)> = pool.install(|| {
         manifest.cases.par_iter().map(|line| one(folder, line, failed)).collect::<Result<_, _>>()
     })?;
-    let (cases, answers) = opened.into_iter().unzip();
-    let weak_form = Baseline { id: WEAK_FORM.to_owned(), method: WEAK_FORM_METHOD.to_owned(), answers };
-    Ok(Opened { cases, weak_form })
+    let (cases, named): (Vec<AnsweredCase>, Vec<Named>) = opened.into_iter().unzip();
+    let baseline = |(index, diagnoser): (usize, &Diagnoser)| Baseline {
+        id: diagnoser.id.to_owned(),
+        method: diagnoser.method.to_owned(),
+        answers: named.iter().map(|own| own.get(index).cloned().flatten()).collect(),
+    };
+    Ok(Opened { baselines: DIAGNOSERS.iter().enumerate().map(baseline).collect(), cases })
 }
 
 fn one(
     folder: &RunFolder,
     line: &TrialsManifestLine,
     failed: &BTreeMap<String, String>,
-) -> Result<(AnsweredCase, Option<String>), TrainerError> {
+) -> Result<(AnsweredCase, Named), TrainerError> {
     let shown = |name: &str| folder.path().join(name).display().to_string();
     let name = truth_name(&line.id);
     let sealed = Sealed::<Hidden>::from_stored(text(folder, &name)?, line.truth_digest.clone());
@@ -99,21 +122,22 @@ fn one(
         .filter(|file| file.starts_with("record-"))
         .map(|file| folder.path().join(case_name(&line.group, &line.id, file)))
         .collect();
-    let (true_closure, baseline) = match diagnose::given(&records, &nominal) {
+    let (true_closure, named) = match diagnose::given(&records, &nominal) {
         Ok(given) => {
             let closure = match &answer {
                 Ok(answer) => true_closure(&hidden, &given.nominal, answer),
                 Err(message) => Err(message.clone()),
             };
-            (closure, weak_form(&given.records, &given.nominal).map(str::to_owned))
+            let named = DIAGNOSERS.iter().map(|diagnoser| (diagnoser.names)(&given).map(str::to_owned));
+            (closure, named.collect())
         }
         // What cannot be read has no answer either.
-        Err(error) => (Err(error.to_string()), None),
+        Err(error) => (Err(error.to_string()), Vec::new()),
     };
     let without = line.group.strip_prefix(WITHOUT).map_or_else(String::new, |id| format!(" --without {id}"));
     let paths: Vec<String> = records.iter().map(|path| path.display().to_string()).collect();
     let command = format!("trainer diagnose {} --nominal {}{without}", paths.join(" "), nominal.display());
-    Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, baseline))
+    Ok((AnsweredCase { id: line.id.clone(), hidden, answer, true_closure, command }, named))
 }
 
 /// The answer to a case, or why there is none.

@@ -15,6 +15,7 @@ use super::own_record::{OpenLaw, Told, written};
 use super::plan::TrialPlan;
 use super::recalibration::Absorbed;
 use super::situation::Situation;
+use crate::Foreign;
 use std::f64::consts::PI;
 
 /// What is hidden in turn, and what the vocabulary nearest to it absorbs beside a recalibration.
@@ -47,10 +48,10 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
         let (law, words) = draw(kind, &setup.situation, &mut Draws::new(&setup.seed.child(kind)));
         let Some(sized) = law.sized(&setup, wanted, absorbed)? else { continue };
         let motions = motions(&setup.situation, sized.law.as_ref(), &|_| Vec::new())?;
-        let foreign = format!(
-            "{kind}: {words}, size {:.3e}, detectability {:.2} beyond its stand-ins",
-            sized.size, sized.detectability
-        );
+        let foreign = Foreign {
+            law: format!("{kind}: {words}, size {:.3e} (detectability beyond its stand-ins)", sized.size),
+            detectability: sized.detectability,
+        };
         let told = Told { effects: Vec::new(), foreign: Some(foreign), made: format!("{kind} by splitting") };
         return written(plan, job, id, &setup, &motions, told);
     }

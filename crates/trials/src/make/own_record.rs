@@ -7,7 +7,7 @@ use super::plan::TrialPlan;
 use super::recalibration::Absorbed;
 use super::situation::Motion;
 use super::size::solve;
-use crate::{HIDDEN_SCHEMA, Hidden, HiddenEffect};
+use crate::{Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 use dynamics::Coordinate;
 use dynamics::chain::{Chain, Observed};
 use record::{Quantity, Record};
@@ -56,7 +56,7 @@ impl OpenLaw {
 /// What a case of such a motion says it hides.
 pub(crate) struct Told {
     pub(crate) effects: Vec<HiddenEffect>,
-    pub(crate) foreign: Option<String>,
+    pub(crate) foreign: Option<Foreign>,
     pub(crate) made: String,
 }
 

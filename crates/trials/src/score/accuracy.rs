@@ -51,10 +51,15 @@ pub(crate) fn banks(judged: &[Judgment<'_>]) -> Vec<BankRow> {
 pub(crate) fn sizes(judged: &[Judgment<'_>], by_effect: bool) -> Vec<SizeRow> {
     let mut groups: BTreeMap<(Bank, &str, usize), Vec<&Judgment<'_>>> = BTreeMap::new();
     for judgment in judged {
-        let Some(first) = judgment.case.hidden.effects.first() else { continue };
+        let hidden = &judgment.case.hidden;
+        let foreign = hidden.foreign.as_ref().and_then(|foreign| foreign.law.split(':').next());
         let size = judgment.size();
         let Some(index) = (0..SIZES.len()).find(|index| within(size, range(*index))) else { continue };
-        let effect = if by_effect { first.id.as_str() } else { "" };
+        let effect = match (by_effect, hidden.effects.first()) {
+            (false, _) => "",
+            (true, Some(first)) => first.id.as_str(),
+            (true, None) => foreign.unwrap_or_default(),
+        };
         groups.entry((judgment.bank(), effect, index)).or_default().push(judgment);
     }
     groups
@@ -157,8 +162,8 @@ mod tests {
 
     #[test]
     fn ranges_touch_and_hold_what_they_are_named_for() {
-        for index in 0..SIZES.len() {
-            assert!(within(SIZES[index], range(index)));
+        for (index, size) in SIZES.iter().enumerate() {
+            assert!(within(*size, range(index)));
             if index > 0 {
                 assert_eq!(range(index - 1)[1], range(index)[0]);
             }
@@ -184,7 +189,8 @@ mod tests {
         assert_eq!((banks[0].false_alarms.count, banks[0].false_alarms.of), (1, 2));
         assert_eq!((banks[1].top_1.count, banks[1].top_1.of), (1, 2));
         let sizes = sizes(&judged, true);
-        assert_eq!((sizes.len(), sizes[0].size, sizes[0].top_1.of), (1, 25.0, 2));
+        assert_eq!((sizes.len(), sizes[0].size, sizes[0].top_1.of), (2, 25.0, 2));
+        assert_eq!((sizes[1].effect.as_str(), sizes[1].top_1.count), ("a law of its own", 0));
         assert_eq!(kinds(&judged).hidden, ["none", "structure", "unknown"]);
     }
 }

@@ -250,3 +250,104 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> ClosureStudy {
     }
     ClosureStudy { means: MEANS.to_owned(), coverage: proportion(held), below, above, left_out }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::hidden::Bank;
+    use crate::score::sample::{answered, case};
+    use dynamics::Start;
+    use dynamics::chain::Chain;
+    use runs::result::{EffectRow, ParameterRow, WithInterval};
+    use truth::{Draws, Sampling, TRUTH_SCHEMA};
+
+    fn exactly(value: f64) -> WithInterval {
+        WithInterval { value, interval_95: [value, value] }
+    }
+
+    /// A decay with effects that the nominal simulator lacks; its damping is believed 20 % too large.
+    fn hidden(effects: &[(&str, &[f64])]) -> (Hidden, Nominal) {
+        let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
+        let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+        let truth = Truth {
+            schema: TRUTH_SCHEMA.to_owned(),
+            system: System::new(nominal, active).unwrap(),
+            start: Start::release(0.7),
+            excitation: None,
+            chain: Chain::new(Observed::Position, 1e-3, Vec::new()).unwrap(),
+            sampling: Sampling {
+                rate_hz: 130.0,
+                samples: 1300,
+                first_stamp_s: 0.0,
+                stamp_decimals: 6,
+                value_decimals: 9,
+            },
+            draws: Draws { seed: 0, branch: Vec::new() },
+        };
+        let ids: Vec<&str> = effects.iter().map(|(id, _)| *id).collect();
+        let mut hidden = case(Bank::Single, &ids, answered("none", &[], 0.5)).hidden;
+        hidden.records = vec![truth];
+        (hidden, Nominal::new(1.0, 0.36, 484.0, 0.0).unwrap())
+    }
+
+    fn answer(effects: &[(&str, &[(&str, f64)])], damping: Option<f64>) -> DiagnosisResult {
+        let named: Vec<&str> = effects.iter().map(|(id, _)| *id).collect();
+        let mut answer = answered("effect", &named, 0.9).unwrap();
+        answer.calibration.damping.repaired = damping.map(exactly);
+        let row = |(id, parameters): &(&str, &[(&str, f64)])| EffectRow {
+            id: (*id).to_owned(),
+            title: (*id).to_owned(),
+            probability: 0.9,
+            parameters: parameters
+                .iter()
+                .map(|(name, value)| {
+                    let row = ParameterRow { value: *value, unit: String::new(), interval_95: [0.0, 1.0] };
+                    ((*name).to_owned(), row)
+                })
+                .collect(),
+            gap_share: Some(exactly(1.0)),
+        };
+        answer.effects = effects.iter().map(row).collect();
+        answer
+    }
+
+    #[test]
+    fn the_true_system_closes_all_and_the_nominal_one_nothing() {
+        let (hidden, nominal) = hidden(&[("coulomb_friction", &[1.0])]);
+        let of = |effects: &[(&str, &[(&str, f64)])], damping| {
+            true_closure(&hidden, &nominal, &answer(effects, damping)).unwrap()
+        };
+        let all = of(&[("coulomb_friction", &[("torque", 1.0)])], Some(0.3));
+        assert!((all - 1.0).abs() < 1e-9, "{all}");
+        assert!(of(&[], None).abs() < 1e-12);
+        let half = of(&[("coulomb_friction", &[("torque", 0.8)])], Some(0.32));
+        assert!(0.0 < half && half < 1.0, "{half}");
+        // Far beyond the mark is worse than nothing.
+        assert!(of(&[("coulomb_friction", &[("torque", 4.0)])], Some(0.3)) < 0.0);
+    }
+
+    #[test]
+    fn hidden_states_are_fitted_at_every_start() {
+        let (hidden, nominal) = hidden(&[("hysteresis", &[1.0, 0.05])]);
+        let effects: &[(&str, &[(&str, f64)])] =
+            &[("hysteresis", &[("torque", 1.0), ("displacement", 0.05)])];
+        let all = true_closure(&hidden, &nominal, &answer(effects, Some(0.3))).unwrap();
+        assert!((all - 1.0).abs() < 1e-5, "{all}");
+    }
+
+    #[test]
+    fn what_has_no_closure_says_why() {
+        let (mut own, nominal) = hidden(&[]);
+        let why = |hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult| {
+            true_closure(hidden, nominal, answer).unwrap_err()
+        };
+        let exact = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
+        assert_eq!(why(&own, &exact, &answer(&[], None)), "there is no gap to close");
+        let drift = answer(&[("sensor_drift", &[])], None);
+        assert_eq!(why(&own, &nominal, &drift), "a named effect lies in the measuring chain");
+        let impossible = answer(&[("coulomb_friction", &[("torque", -1.0)])], None);
+        assert_eq!(why(&own, &nominal, &impossible), "a coefficient of the answer is outside its range");
+        own.records.clear();
+        assert_eq!(why(&own, &nominal, &drift), "the system cannot be said in the vocabulary");
+    }
+}

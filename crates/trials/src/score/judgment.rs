@@ -105,9 +105,12 @@ impl<'a> Judgment<'a> {
         let named_here: &[&str] = if said == Said::Effect { &named } else { &[] };
         let is_hidden = |id: &str| hidden.effects.iter().any(|effect| effect.id == id);
         let first = named_here.first().copied();
+        // A preload and a rest position that is off are one class on one record.
+        let said_first = first.or((said == Said::Calibration).then_some("calibration"));
         let alike = |id: &str| {
             let classes = case.answer.iter().flat_map(|answer| &answer.verdict.equivalent);
-            let mut of_first = classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == first));
+            let mut of_first =
+                classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == said_first));
             of_first.any(|class| class.iter().any(|own| own == id))
         };
         let (right, top_1, class) = if asks_for_unknown(hidden.bank) {
@@ -120,7 +123,11 @@ impl<'a> Judgment<'a> {
             let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
             let right = said == Said::Effect && every && named_here.len() == hidden.effects.len();
             let top_1 = first.is_some_and(is_hidden);
-            (right, top_1, top_1 || first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)))
+            (
+                right,
+                top_1,
+                top_1 || said_first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)),
+            )
         };
         let mut found = hidden.effects.iter().map(|effect| named_here.contains(&effect.id.as_str()));
         let either = found.clone().any(|found| found);
@@ -136,10 +143,11 @@ impl<'a> Judgment<'a> {
         self.case.answer.as_ref().ok()
     }
 
-    /// Size of the first hidden effect; of a pair of the smaller one: both have to be seen. Not a number without one.
+    /// Size of what is hidden; of a pair of the smaller one: both have to be seen. Not a number without one.
     pub(crate) fn size(&self) -> f64 {
-        let sizes = self.case.hidden.effects.iter().map(|effect| effect.detectability);
-        sizes.fold(f64::NAN, f64::min)
+        let hidden = &self.case.hidden;
+        let foreign = hidden.foreign.iter().map(|foreign| foreign.detectability);
+        hidden.effects.iter().map(|effect| effect.detectability).chain(foreign).fold(f64::NAN, f64::min)
     }
 
     /// Whether something was named, or `unknown`.
@@ -153,12 +161,17 @@ impl<'a> Judgment<'a> {
         Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
     }
 
+    /// What acts from outside the vocabulary, in words.
+    pub(crate) fn foreign_law(&self) -> Option<String> {
+        self.case.hidden.foreign.as_ref().map(|foreign| foreign.law.clone())
+    }
+
     /// What was hidden, in a table's words.
     pub(crate) fn hidden_name(&self) -> String {
         let ids: Vec<&str> = self.case.hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
         match (self.bank(), ids.is_empty()) {
             (Bank::LeftOut, _) => format!("{}, not considered", ids.join("+")),
-            (Bank::Foreign, _) => self.case.hidden.foreign.clone().unwrap_or_else(|| "foreign".to_owned()),
+            (Bank::Foreign, _) => self.foreign_law().unwrap_or_else(|| "foreign".to_owned()),
             (bank, true) => bank.name().to_owned(),
             (_, false) => ids.join("+"),
         }

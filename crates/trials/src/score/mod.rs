@@ -144,7 +144,7 @@ fn failure(judgment: &Judgment<'_>) -> FailureRow {
             Ok(_) => judgment.said_name(),
             Err(message) => format!("no answer: {message}"),
         },
-        size: judgment.case.hidden.effects.first().map_or(f64::NAN, |effect| effect.detectability),
+        size: judgment.size(),
         same_class: judgment.class && !judgment.top_1,
         command: judgment.case.command.clone(),
     }
@@ -153,15 +153,16 @@ fn failure(judgment: &Judgment<'_>) -> FailureRow {
 fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
     let hidden = &judgment.case.hidden;
     let answer = judgment.answer();
-    let sizes: Vec<String> =
-        hidden.effects.iter().map(|effect| format!("{:.4}", effect.detectability)).collect();
+    let foreign = hidden.foreign.iter().map(|foreign| foreign.detectability);
+    let sizes = hidden.effects.iter().map(|effect| effect.detectability).chain(foreign);
+    let sizes: Vec<String> = sizes.map(|size| format!("{size:.4}")).collect();
     let ids: Vec<&str> = hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
     let finite = |value: Option<f64>| value.filter(|value| value.is_finite());
     let closure = answer.map(|answer| answer.gap.closure);
     TrialCaseRow {
         id: judgment.case.id.clone(),
         bank: judgment.bank().name().to_owned(),
-        hidden: if ids.is_empty() { hidden.foreign.clone().unwrap_or_default() } else { ids.join("+") },
+        hidden: if ids.is_empty() { judgment.foreign_law().unwrap_or_default() } else { ids.join("+") },
         size: sizes.join("+"),
         status: judgment.said.name().to_owned(),
         named: judgment.named.join("+"),

@@ -1,7 +1,7 @@
 //! Cases and answers as tests need them.
 
 use super::AnsweredCase;
-use crate::hidden::{Bank, HIDDEN_SCHEMA, Hidden, HiddenEffect};
+use crate::hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 use runs::result::DiagnosisResult;
 use serde_json::json;
 
@@ -63,7 +63,8 @@ pub(crate) fn case(bank: Bank, hidden: &[&str], answer: Result<DiagnosisResult, 
             schema: HIDDEN_SCHEMA.to_owned(),
             bank,
             effects,
-            foreign: (bank == Bank::Foreign).then(|| "a law of its own".to_owned()),
+            foreign: (bank == Bank::Foreign)
+                .then(|| Foreign { law: "a law of its own".to_owned(), detectability: 25.0 }),
             nuisances: Vec::new(),
             miscalibrated: true,
             without: None,
