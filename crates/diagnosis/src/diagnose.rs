@@ -54,9 +54,6 @@ impl Default for Settings {
 /// Most effects that a set can hold.
 const MOST_EFFECTS: usize = 5;
 
-/// Sets that are fitted again on every sample.
-const REFINED: usize = 10;
-
 /// Searches on longer horizons at most.
 const MOST_HORIZONS: usize = 3;
 
@@ -83,7 +80,9 @@ pub fn diagnose(
     };
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
     let all = cut(records, &kept, nominal)?;
-    let data = all.thinned(MOST_SEARCHED);
+    let sparser = all.sparser(MOST_SEARCHED);
+    let data = sparser.thinned(MOST_SEARCHED);
+    let is_whole = data.samples() == sparser.samples();
     let samples_used = data.samples() as f64 / all.samples().max(1) as f64;
     lap("measuring chain");
     let (data, base) = better_hold(&data, nominal)?;
@@ -114,23 +113,22 @@ pub fn diagnose(
     };
     // On fewer samples a gain is so many times smaller; the search must not stop on that account.
     let enough = 0.5 * threshold / finer;
-    let is_whole = samples_used == 1.0;
     let (horizon, found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
     lap("search");
     let segments = Unjoined { data: &data, base: &base };
     let data = &data.joined(horizon.by);
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
-    let pool = refine(data, &base.calibrated, &found, REFINED, finer);
+    let pool = refine(data, &base.calibrated, &found, &candidates, finer);
     let time = pool.autocorrelation_time();
     let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
     lap("fits");
 
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
     let work = Work { data, base, segments, pool: &pool, thin, time, settings };
-    let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
+    let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     lap("held out");
     let fitted = &held.fitted;
     let floor = noise::floor(segments.data, &fitted.residuals);
@@ -144,7 +142,7 @@ pub fn diagnose(
             repaired: &held.after,
             ceiling: &ceiling,
         },
-        floor,
+        (floor, &noise::squares(segments.data, &fitted.residuals)),
         held.last_third,
         unit,
         &settings.seed,

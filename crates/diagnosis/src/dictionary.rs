@@ -7,7 +7,7 @@ use crate::matrices::{element, entry};
 use crate::projection::Projection;
 use crate::response::bent;
 use crate::segments::Data;
-use crate::spectrum::lines;
+use crate::spectrum::{frequencies, lines};
 use crate::tangent::{Path, matrix, plain_moment, stack};
 use dynamics::{Coefficients, DynamicsError, MOST_PARAMETERS, SystemEffect};
 use nalgebra::{DMatrix, DVector};
@@ -36,6 +36,8 @@ pub(crate) struct Dictionary {
     pub(crate) scores: DVector<f64>,
     /// Candidates that no columns stand for, with parameters to begin at and about what they would take away.
     pub(crate) further: Vec<(Candidate, Vec<f64>, f64)>,
+    /// How many frequencies the lines of the residual were chosen from.
+    pub(crate) frequencies: f64,
 }
 
 /// Part of a column's length that has to be left after the projection: what calibration and start states imitate to so
@@ -269,7 +271,15 @@ impl Dictionary {
             columns,
             entries,
             further,
+            frequencies: frequencies(data),
         }
+    }
+
+    /// How many frequencies a gain is the best of: 1 for entries without one.
+    pub(crate) fn looked(&self, gain: &Gain) -> f64 {
+        let forcing = Candidate::System(SystemEffect::PeriodicForcing);
+        let mut entries = gain.entries.iter().filter_map(|&index| self.entries.get(index));
+        if entries.any(|entry| entry.candidate == forcing) { self.frequencies } else { 1.0 }
     }
 
     /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is left without its

@@ -62,8 +62,9 @@ impl Effort {
     pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2, wary: true };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
-    /// For what is reported: half of 1e-8·N is far below what a probability would feel.
-    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-8, sizes_first: 0, wary: false };
+    /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained so little is the
+    /// last of a quadratic convergence.
+    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-6, sizes_first: 0, wary: false };
 }
 
 /// What is moved.

@@ -35,10 +35,11 @@ fn closure(after: f64, before: f64, noise: f64) -> f64 {
     if excess > 0.0 { 1.0 - (after - noise) / excess } else { 0.0 }
 }
 
-/// The gap. Intervals by a paired bootstrap over segments: the same segments are drawn for all simulators.
+/// The gap. Intervals by a paired bootstrap over segments: the same segments are drawn for all simulators and for the noise
+/// floor, whose squares and count come by segment.
 pub(crate) fn gap(
     stages: &Stages<'_>,
-    floor: NoiseFloor,
+    (floor, floors): (NoiseFloor, &[(f64, f64)]),
     last_third: [f64; 2],
     unit: &'static str,
     seed: &Seed,
@@ -51,6 +52,8 @@ pub(crate) fn gap(
     for _ in 0..DRAWS {
         let drawn: Vec<usize> = all.iter().map(|_| generator.random_range(0..all.len().max(1))).collect();
         let after = mean_square(&repaired, &drawn);
+        // The floor is an estimate too, from the same segments.
+        let noise = mean_square(floors, &drawn);
         closures.push(closure(after, mean_square(&nominal, &drawn), noise));
         further.push(closure(after, mean_square(&recalibrated, &drawn), noise));
         ratios.push((after / noise).sqrt());

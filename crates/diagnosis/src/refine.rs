@@ -1,8 +1,9 @@
 //! The best sets once more, on every sample and to convergence.
 
+use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::score::score;
-use crate::search::{Pool, vanished};
+use crate::search::{Pool, fit_all, generalized, vanished};
 use crate::segments::Data;
 use rayon::prelude::*;
 
@@ -11,11 +12,20 @@ const FEWEST: usize = 3;
 
 /// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil, and nobody
 /// would mistake it for the best.
-const HOPELESS: f64 = 60.0;
+const HOPELESS: f64 = 30.0;
 
-/// Refits the best `most` sets of a pool on other data with the same segments, and as many more that differ from the very
+/// Sets that are fitted again on every sample, and as many of their rivals.
+const MOST: usize = 6;
+
+/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ from the very
 /// best in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
-pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, finer: f64) -> Pool {
+pub(crate) fn refine(
+    data: &Data,
+    calibrated: &Fit,
+    pool: &Pool,
+    candidates: &[Candidate],
+    finer: f64,
+) -> Pool {
     let time = pool.autocorrelation_time();
     let ranked: Vec<&Fit> =
         pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
@@ -37,8 +47,8 @@ pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, fi
             let (own, best) = (&fit.hypothesis.candidates, &best.hypothesis.candidates);
             own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
         };
-        let further = batch.iter().skip(most).filter(|fit| rival(fit)).take(most);
-        let chosen: Vec<&Fit> = batch.iter().take(most).chain(further).copied().collect();
+        let further = batch.iter().skip(MOST).filter(|fit| rival(fit)).take(MOST);
+        let chosen: Vec<&Fit> = batch.iter().take(MOST).chain(further).copied().collect();
         let refined: Vec<Option<Fit>> = chosen
             .par_iter()
             .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
@@ -48,7 +58,14 @@ pub(crate) fn refine(data: &Data, calibrated: &Fit, pool: &Pool, most: usize, fi
         rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
         all.extend(fits);
     }
-    Pool { fits: all, rejected }
+    let mut refined = Pool { fits: all, rejected };
+    // A special case and what it is a case of are judged on the same samples.
+    if let Some(best) = refined.ranked(time).first().map(|fit| (*fit).clone()) {
+        for fit in fit_all(data, &generalized(data, &best, candidates), Effort::FINAL) {
+            refined.admit(data, fit);
+        }
+    }
+    refined
 }
 
 /// The fit of a set with one member left out, and what that costs: begun where the set was.

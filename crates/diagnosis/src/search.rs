@@ -46,7 +46,7 @@ const FIRST_SIZE: f64 = 1e-3;
 
 /// A set to fit and where to begin.
 #[derive(Debug, Clone)]
-struct Proposal {
+pub(crate) struct Proposal {
     hypothesis: Hypothesis,
     point: Point,
 }
@@ -57,7 +57,7 @@ impl Pool {
     }
 
     /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
-    fn admit(&mut self, data: &Data, fit: Fit) {
+    pub(crate) fn admit(&mut self, data: &Data, fit: Fit) {
         if vanished(data, &fit) {
             self.rejected.push(fit.hypothesis.candidates);
             return;
@@ -197,12 +197,10 @@ fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
 }
 
 /// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
-fn fit_all(data: &Data, proposals: &[Proposal]) -> Vec<Fit> {
+pub(crate) fn fit_all(data: &Data, proposals: &[Proposal], effort: Effort) -> Vec<Fit> {
     let fits: Vec<Option<Fit>> = proposals
         .par_iter()
-        .map(|proposal| {
-            fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, Effort::SEARCH).ok()
-        })
+        .map(|proposal| fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, effort).ok())
         .collect();
     fits.into_iter().flatten().collect()
 }
@@ -214,12 +212,16 @@ const WHITE: f64 = 1.5;
 const PROMISE: f64 = 0.5;
 
 /// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
-/// show only once the first is in.
-fn promising(base: &Fit, time: f64, gain: f64, threshold: f64) -> bool {
+/// show only once the first is in. The best of many frequencies promises something where there is nothing: the logarithm
+/// of how many `looked` at there were, for a sine and a cosine in white noise.
+fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     let left = (base.squares - gain).max(f64::MIN_POSITIVE);
     let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
-    time > WHITE || score > PROMISE * threshold
+    time > WHITE || score > PROMISE * threshold + looked.ln()
 }
+
+/// Score behind the best from which on a set is not gone on from.
+const FAR_BEHIND: f64 = 60.0;
 
 /// Proposals at a fit: what to add.
 fn around(
@@ -236,14 +238,16 @@ fn around(
     let ranked = singles(&dictionary);
     if size < breadth.most_effects {
         let time = base.autocorrelation_time();
-        let worth = |gain: f64| promising(base, time, gain, threshold);
-        for gain in ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares)) {
+        let worth = |gain: f64, looked: f64| promising(base, time, gain, threshold, looked);
+        for gain in
+            ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+        {
             proposals.push(proposal(data, base, None, &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
             // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
-            if (best || *gain > weakest) && worth(*gain) {
+            if (best || *gain > weakest) && worth(*gain, dictionary.frequencies) {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -253,7 +257,7 @@ fn around(
 
 /// Puts a member's generalization in its place at each of its shapes, with half the member's size beyond it. The
 /// linearization cannot tell these: at the special case the shape means nothing.
-fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
+pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let mut proposals = Vec::new();
     for (&special, part) in base.hypothesis.candidates.iter().zip(parts) {
@@ -306,7 +310,7 @@ fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, propos
     let fresh: Vec<Proposal> =
         proposals.into_iter().filter(|proposal| !tried.contains(&proposal.hypothesis.ranks())).collect();
     tried.extend(fresh.iter().map(|proposal| proposal.hypothesis.ranks()));
-    for fit in fit_all(data, &fresh) {
+    for fit in fit_all(data, &fresh, Effort::SEARCH) {
         pool.admit(data, fit);
     }
 }
@@ -325,14 +329,22 @@ fn begin(
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
     let time = calibrated.autocorrelation_time();
-    let worth = |gain: f64| promising(calibrated, time, gain, threshold);
-    for gain in ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares)) {
+    let worth = |gain: f64, looked: f64| promising(calibrated, time, gain, threshold, looked);
+    for gain in
+        ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+    {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    for (candidate, parameters, _) in dictionary.further.iter().filter(|further| worth(further.2)) {
+    for (candidate, parameters, _) in
+        dictionary.further.iter().filter(|further| worth(further.2, dictionary.frequencies))
+    {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }
-    for gain in pairs(&dictionary).iter().take(breadth.pairs).filter(|gain| worth(gain.squares)) {
+    for gain in pairs(&dictionary)
+        .iter()
+        .take(breadth.pairs)
+        .filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+    {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
     settle(data, pool, tried, proposals);
@@ -371,6 +383,7 @@ pub(crate) fn search(
             .into_iter()
             .filter(|fit| !fit.hypothesis.candidates.is_empty())
             .take(breadth.beam)
+            .filter(|fit| before - crate::score::score(fit, time) < FAR_BEHIND)
             .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
             .cloned()
             .collect();

@@ -26,8 +26,9 @@ const FEWEST_PER_SEGMENT: usize = 24;
 const FEWEST_SAMPLES: usize = 50;
 const FEWEST_CYCLES: f64 = 3.0;
 
-/// Most samples that are looked at; longer data are thinned by whole segments, so that the time of an answer is bounded.
-pub(crate) const MOST_SEARCHED: usize = 10_000;
+/// Most samples that are looked at; of more, every so many are taken for as long as a swing is still well sampled, and
+/// longer data are thinned by whole segments, so that the time of an answer is bounded.
+pub(crate) const MOST_SEARCHED: usize = 20_000;
 
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
@@ -81,6 +82,28 @@ impl Data {
         Self { segments: segments.map(|(_, segment)| segment.clone()).collect(), ..self.clone() }
     }
 
+    /// Every second sample or fewer, to at most so many, but no fewer in a period than a search looks at.
+    pub(crate) fn sparser(&self, most: usize) -> Self {
+        let wanted = self.samples().div_ceil(most.max(1));
+        self.every(wanted.min(self.spare()))
+    }
+
+    /// How many times more samples there are in a period, and in the shortest segment, than a search looks at.
+    fn spare(&self) -> usize {
+        let per_period = TAU / (self.facts.frequency * self.facts.interval);
+        let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
+        ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
+    }
+
+    fn every(&self, stride: usize) -> Self {
+        let segments = self.segments.iter().map(|segment| Segment {
+            times: segment.times.iter().copied().step_by(stride).collect(),
+            values: segment.values.iter().copied().step_by(stride).collect(),
+            ..segment.clone()
+        });
+        Self { segments: segments.collect(), ..self.clone() }
+    }
+
     /// Thinned by whole segments, evenly spaced in pairs of neighbors (so that even and odd ones stay both), to at
     /// most so many samples.
     pub(crate) fn thinned(&self, most: usize) -> Self {
@@ -97,16 +120,7 @@ impl Data {
     /// Every so many samples only, for a search: a swing sampled 75 times a period says hardly more about which
     /// law it follows than one sampled 20 times.
     pub(crate) fn strided(&self) -> Self {
-        let per_period = TAU / (self.facts.frequency * self.facts.interval);
-        let stride = ((per_period / SEARCHED_PER_PERIOD) as usize).max(1);
-        let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
-        let stride = stride.min(fewest / FEWEST_PER_SEGMENT).max(1);
-        let segments = self.segments.iter().map(|segment| Segment {
-            times: segment.times.iter().copied().step_by(stride).collect(),
-            values: segment.values.iter().copied().step_by(stride).collect(),
-            ..segment.clone()
-        });
-        Self { segments: segments.collect(), ..self.clone() }
+        self.every(self.spare())
     }
 
     /// The same, integrated as accurately as a noise of this size asks for.

@@ -17,6 +17,12 @@ const MOST_FREQUENCIES: usize = 4000;
 /// Up to this multiple of the oscillator's own frequency: above it hardly anything moves the body.
 const HIGHEST: f64 = 12.0;
 
+/// About how many independent frequencies the lines of a whole record are chosen from.
+pub(crate) fn frequencies(data: &Data) -> f64 {
+    let highest = (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval);
+    (highest * data.facts.duration / std::f64::consts::TAU).max(1.0)
+}
+
 /// Adds to each frequency of a grid what a sine and a cosine of it take away from values at even or uneven times.
 ///
 /// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
