@@ -9,40 +9,7 @@ use crate::statistics::{mean_and_error, median, normal_above};
 use dynamics::Nominal;
 use record::ClockKind;
 
-/// Distance in robust standard deviations from which on an isolated sample is wrong: one in 10¹² Gaussian ones.
-const OUTLYING: f64 = 7.0;
-
-/// Which samples are kept: isolated ones that neither neighbor pair supports are left out of every fit.
-///
-/// A sample is compared with the cubic through its four neighbors, in units of the median absolute distance of all such
-/// (times 1.4826, the Gaussian's ratio) plus the sensor's step. Of an outlier's neighborhood only the worst goes.
-pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
-    let values = &observations.values;
-    let distances: Vec<f64> = values
-        .windows(5)
-        .map(|w| match w {
-            &[a, b, c, d, e] => c - (4.0 * (b + d) - (a + e)) / 6.0,
-            _ => 0.0,
-        })
-        .collect();
-    let sizes: Vec<f64> = distances.iter().map(|d| d.abs()).collect();
-    let scale = 1.4826 * median(&sizes) + observations.resolution.unwrap_or(0.0);
-    let limit = OUTLYING * scale.max(f64::MIN_POSITIVE);
-    let mut kept = vec![true; values.len()];
-    for (index, size) in sizes.iter().enumerate() {
-        let around = sizes.get(index.saturating_sub(2)..(index + 3).min(sizes.len())).unwrap_or_default();
-        let largest = around.iter().copied().fold(0.0, f64::max);
-        if *size > limit
-            && *size >= largest
-            && let Some(slot) = kept.get_mut(index + 2)
-        {
-            *slot = false;
-        }
-    }
-    // A smooth motion that is sampled coarsely has no outliers just because a cubic cannot follow it.
-    let dropped = kept.iter().filter(|kept| !**kept).count();
-    if dropped * 50 > values.len() { vec![true; values.len()] } else { kept }
-}
+pub(crate) use crate::outliers::kept;
 
 /// Largest share of samples at one end of the range that a swing without a stop shows.
 const FLAT: usize = 3;
@@ -90,8 +57,7 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         findings.push(Finding {
             effect: Some("outliers"),
             text: format!(
-                "{outliers} isolated samples lie more than {OUTLYING} robust standard deviations off their neighbors \
-                 and were left out"
+                "{outliers} isolated samples lie farther off their neighbors than noise brings them, and were left out"
             ),
         });
     }
