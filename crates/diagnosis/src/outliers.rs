@@ -18,7 +18,7 @@ const WIDE: f64 = 4.0;
 
 /// Distance at double spacing over that at single spacing, at most. A wrong sample is off by as much from near neighbors as from
 /// far ones (1); a bend of the motion twice as much, a curve more.
-const BEND: f64 = 1.5;
+const BEND: f64 = 1.35;
 
 /// Distance of a direct neighbor, in its own noise, over that of the sample itself, at most. A wrong sample moves the neighbors'
 /// distances by 2/3 of its error; on both sides of a step they are as large as each other.
@@ -39,9 +39,14 @@ const ROUNDS: usize = 3;
 /// rounding can add to it at most. Besides, it has to be isolated: bends (end stops, reversals under friction) grow with the
 /// spacing of the neighbors, steps show on both sides.
 ///
+/// Where bursts lost samples, the places of samples within a burst are guesses, and none is called wrong.
+///
 /// Time is linear in the number of samples.
 pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     let everything = vec![true; observations.len()];
+    if observations.stamps.repeated > 0 && observations.stamps.lost > 0 {
+        return everything;
+    }
     let mut kept = everything.clone();
     for _ in 0..ROUNDS {
         let wrong = wrong(observations, &kept);
