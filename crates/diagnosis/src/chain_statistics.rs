@@ -3,46 +3,13 @@
 use crate::answer::Finding;
 use crate::fit::Fit;
 use crate::observations::Observations;
+pub(crate) use crate::outliers::kept;
+use crate::outliers::white_noise;
 use crate::period::swing;
 use crate::segments::Data;
-use crate::statistics::{mean_and_error, median, normal_above};
+use crate::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
-use record::ClockKind;
-
-/// Distance in robust standard deviations from which on an isolated sample is wrong: one in 10¹² Gaussian ones.
-const OUTLYING: f64 = 7.0;
-
-/// Which samples are kept: isolated ones that neither neighbor pair supports are left out of every fit.
-///
-/// A sample is compared with the cubic through its four neighbors, in units of the median absolute distance of all such
-/// (times 1.4826, the Gaussian's ratio) plus the sensor's step. Of an outlier's neighborhood only the worst goes.
-pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
-    let values = &observations.values;
-    let distances: Vec<f64> = values
-        .windows(5)
-        .map(|w| match w {
-            &[a, b, c, d, e] => c - (4.0 * (b + d) - (a + e)) / 6.0,
-            _ => 0.0,
-        })
-        .collect();
-    let sizes: Vec<f64> = distances.iter().map(|d| d.abs()).collect();
-    let scale = 1.4826 * median(&sizes) + observations.resolution.unwrap_or(0.0);
-    let limit = OUTLYING * scale.max(f64::MIN_POSITIVE);
-    let mut kept = vec![true; values.len()];
-    for (index, size) in sizes.iter().enumerate() {
-        let around = sizes.get(index.saturating_sub(2)..(index + 3).min(sizes.len())).unwrap_or_default();
-        let largest = around.iter().copied().fold(0.0, f64::max);
-        if *size > limit
-            && *size >= largest
-            && let Some(slot) = kept.get_mut(index + 2)
-        {
-            *slot = false;
-        }
-    }
-    // A smooth motion that is sampled coarsely has no outliers just because a cubic cannot follow it.
-    let dropped = kept.iter().filter(|kept| !**kept).count();
-    if dropped * 50 > values.len() { vec![true; values.len()] } else { kept }
-}
+use record::{ClockKind, StampStatistics};
 
 /// Largest share of samples at one end of the range that a swing without a stop shows.
 const FLAT: usize = 3;
@@ -63,35 +30,14 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
             ),
         });
     }
-    let interval = 1.0 / observations.sample_rate_hz;
-    let rounding = stamps.rounding_s.unwrap_or(0.0);
-    // Stamps that scatter about an even clock may leave long intervals without a sample being lost.
-    if stamps.gaps > 0 && observations.clock != ClockKind::UniformIndex {
-        findings.push(Finding {
-            effect: Some("dropouts"),
-            text: format!("{} gaps in the stamps are longer than 1.5 sampling intervals", stamps.gaps),
-        });
-    } else if stamps.repeated == 0 && observations.clock == ClockKind::UniformIndex {
-        // Rounding alone scatters stamps by its step over √12.
-        let scatter = (stamps.deviation_s.powi(2) - rounding * rounding / 12.0).max(0.0).sqrt();
-        if scatter > 0.02 * interval && scatter > rounding {
-            findings.push(Finding {
-                effect: Some("timestamp_jitter"),
-                text: format!(
-                    "stamps scatter by {:.3} ms about an even clock, {:.0} % of the sampling interval",
-                    1e3 * scatter,
-                    100.0 * scatter / interval
-                ),
-            });
-        }
-    }
+    findings.extend(dropouts(stamps));
+    findings.extend(errors_of_stamps(observations, kept));
     let outliers = kept.iter().filter(|kept| !**kept).count();
     if outliers > 0 {
         findings.push(Finding {
             effect: Some("outliers"),
             text: format!(
-                "{outliers} isolated samples lie more than {OUTLYING} robust standard deviations off their neighbors \
-                 and were left out"
+                "{outliers} isolated samples lie farther off their neighbors than noise brings them, and were left out"
             ),
         });
     }
@@ -108,6 +54,100 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         }
     }
     findings
+}
+
+/// Whether the stamps tell that samples are missing.
+fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
+    let text = match (stamps.gaps, stamps.lost) {
+        (0, 0) => return None,
+        (0, lost) => format!("bursts come later than their samples account for: {lost} samples are missing"),
+        (gaps, 0) => format!("{gaps} gaps in the stamps are longer than 1.5 sampling intervals"),
+        (gaps, lost) => {
+            format!(
+                "{lost} samples are missing in {gaps} gaps, which are whole sampling intervals longer than others"
+            )
+        }
+    };
+    Some(Finding { effect: Some("dropouts"), text })
+}
+
+/// Standard errors from which on stamps bend: Student's t with the nine degrees of freedom of twelve stretches less the
+/// parabola's three exceeds it in one of 10,000 cases, either way.
+const DRIFTS: f64 = 6.594;
+
+/// Intervals from its mean by which the last sample of a burst waits at most: one half, and half of that for what else scatters.
+const WAITS: f64 = 0.75;
+
+/// Probability with which values that say nothing of the clock are said to prefer one.
+const PREFERS_BY_CHANCE: f64 = 0.01;
+
+/// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more than a part of the
+/// noise variance. Scatter is one where the values do not share it (they run more smoothly on an even clock), drift where
+/// the stamps bend away from an even clock by more than their scatter explains.
+fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> {
+    let stamps = &observations.stamps;
+    let noise = white_noise(observations, kept);
+    let per_time = mean_square_speed(observations, kept, noise) / (noise * noise).max(f64::MIN_POSITIVE);
+    let mut findings = Vec::new();
+    let rounding = stamps.rounding_s.unwrap_or(0.0);
+    // Rounding moves a stamp by half its step, so that second differences over √6 stay below 0.82 steps.
+    let scatter = (stamps.scatter_s.powi(2) - rounding * rounding / 12.0).max(0.0);
+    let share = scatter * per_time;
+    // Second differences of N stamps are worth N/1.94 independent ones; their squares scatter by √(2·1.94/N).
+    let error = (2.0 * 1.94 / observations.len() as f64).sqrt();
+    if stamps.scatter_s > rounding
+        && share * (1.0 - normal_above(PREFERS_BY_CHANCE) * error) > QUANTIZED
+        && stamps.preference_for_even > normal_above(PREFERS_BY_CHANCE)
+    {
+        findings.push(Finding {
+            effect: Some("timestamp_jitter"),
+            text: format!(
+                "stamps scatter by {:.4} ms about an even clock, on which the values run more smoothly ({:.1} standard \
+                 errors): believed, they would add {:.0} % of the noise variance",
+                1e3 * scatter.sqrt(),
+                stamps.preference_for_even,
+                100.0 * share
+            ),
+        });
+    }
+    let share = stamps.bend_s * stamps.bend_s * per_time;
+    // Samples miscounted in bursts, and a host that is late, would bend the stamps too: of a burst, all that is left may be
+    // its last sample's wait for up to one interval.
+    let waits = stamps.left_by_bend_s * observations.sample_rate_hz <= WAITS;
+    if (stamps.repeated == 0 || stamps.lost == 0 && waits)
+        && stamps.bend_standard_errors > DRIFTS
+        && stamps.bend_s > rounding
+        && share > QUANTIZED
+        && observations.clock != ClockKind::Host
+    {
+        findings.push(Finding {
+            effect: Some("clock_drift"),
+            text: format!(
+                "the stamps bend away from an even clock by {:.3} ms ({:.0} standard errors): the logger's clock and the \
+                 sensor's drift apart",
+                1e3 * stamps.bend_s,
+                stamps.bend_standard_errors
+            ),
+        });
+    }
+    findings
+}
+
+/// Mean square speed, from differences over two sampling intervals; what noise adds to it is taken off.
+fn mean_square_speed(observations: &Observations, kept: &[bool], noise: f64) -> f64 {
+    let samples = observations.times_s.iter().zip(&observations.values).zip(kept);
+    let kept: Vec<(f64, f64)> =
+        samples.filter(|(_, kept)| **kept).map(|((time, value), _)| (*time, *value)).collect();
+    let squares: Vec<f64> = kept
+        .windows(3)
+        .filter_map(|w| match w {
+            &[first, _, last] if last.0 > first.0 => {
+                Some(((last.1 - first.1).powi(2) - 2.0 * noise * noise) / (last.0 - first.0).powi(2))
+            }
+            _ => None,
+        })
+        .collect();
+    mean(&squares).max(0.0)
 }
 
 /// Part by which frequencies of records differ that are said to differ.

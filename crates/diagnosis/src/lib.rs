@@ -40,6 +40,7 @@ mod matrices;
 mod noise;
 mod null;
 mod observations;
+mod outliers;
 mod period;
 mod portrait;
 mod projection;

@@ -7,7 +7,9 @@
 
 use crate::error::Fault;
 use crate::line::Line;
+use crate::lost::Numbers;
 use crate::record::Record;
+use crate::stamps::{StampStatistics, stamp_rounding, statistics};
 use serde::{Deserialize, Serialize};
 
 /// What a configuration asks for.
@@ -36,6 +38,8 @@ pub enum ClockKind {
     Host,
     /// Even in the sample index.
     UniformIndex,
+    /// Even in the sample index once lost samples are counted.
+    IndexWithGaps,
 }
 
 impl ClockKind {
@@ -45,31 +49,9 @@ impl ClockKind {
         match self {
             Self::Host => "host",
             Self::UniformIndex => "uniform-index",
+            Self::IndexWithGaps => "index-with-gaps",
         }
     }
-}
-
-/// What the stamps look like.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StampStatistics {
-    /// Stamps equal to the one before.
-    pub repeated: usize,
-    /// Groups of equal stamps, single ones included.
-    pub groups: usize,
-    /// Most samples that share one stamp.
-    pub largest_group: usize,
-    /// Median time between groups, in seconds.
-    pub group_interval_s: f64,
-    /// Where no stamp is repeated: steps longer than 1.5 times the median step by more than the stamps
-    /// are rounded to. Samples are missing there. None where it is jitter that makes steps long: their neighbors
-    /// are then as much too short.
-    pub gaps: usize,
-    /// The decimal step that stamps are rounded to, in seconds, where there is one.
-    pub rounding_s: Option<f64>,
-    /// Root mean square distance of the groups' last stamps from an even clock, in seconds.
-    pub deviation_s: f64,
-    /// Largest such distance, in seconds.
-    pub largest_deviation_s: f64,
 }
 
 /// A clock for a record: a time for every sample, and why these times.
@@ -81,7 +63,8 @@ pub struct Clock {
     pub reason: String,
     /// Time of every sample, in seconds, on the stamps' own origin.
     pub times_s: Vec<f64>,
-    /// Sampling rate by regression of stamps on the sample index, in hertz; stated for every clock.
+    /// Sampling rate by regression of stamps on the sample index, lost samples counted where the stamps tell how many, in
+    /// hertz; stated for every clock.
     pub sample_rate_hz: f64,
     /// Its standard error, widened for the autocorrelation of the stamps' deviations, in hertz.
     pub sample_rate_std_error_hz: f64,
@@ -97,12 +80,15 @@ impl Clock {
     ///
     /// `Auto` decides in this order:
     /// 1. repeated stamps: two samples cannot be taken at once, so the stamps are receive times; even
-    ///    in the index;
-    /// 2. gaps: samples are missing, the index is no clock; host;
+    ///    in the index, with lost samples counted where groups come later than their samples account for;
+    /// 2. gaps: samples are missing, the index is no clock; host, unless the values run more smoothly (as in 5) on the
+    ///    index with the lost samples counted;
     /// 3. an even clock reproduces every stamp to the step the stamps are rounded to: even in the index;
-    /// 4. the values themselves: on the clock they were taken by, five neighbors lie closer to a cubic.
+    /// 4. an even clock and a parabola do: the logger's clock and the sensor's change their rates against one another,
+    ///    and a sensor samples by its own; even in the index;
+    /// 5. the values themselves: on the clock they were taken by, five neighbors lie closer to a cubic.
     ///    Where one clock is better by more than 2.33 standard errors (1 % of chance), that one;
-    /// 5. otherwise host: what is written stands until something speaks against it.
+    /// 6. otherwise host: what is written stands until something speaks against it.
     ///
     /// # Errors
     /// [`Fault::NoTimePasses`] where all stamps are equal.
@@ -113,18 +99,26 @@ impl Clock {
         if ends.len() < 2 {
             return Err(Fault::NoTimePasses { stamp: first });
         }
-        let line = Line::through(&ends);
-        let statistics = statistics(stamps, &ends, &line);
+        let rounding = stamp_rounding(stamps).unwrap_or(0.0);
+        let numbers = Numbers::with_lost(&ends, record.values(), stamps, rounding)
+            .unwrap_or_else(|| Numbers::plain(&ends, stamps.len()));
+        let line = Line::through(&numbers.ends);
+        let statistics = statistics(stamps, record.values(), &ends, &numbers, &line);
         let rate = 1.0 / line.slope;
         let (kind, reason) = match choice {
             ClockChoice::Host => (ClockKind::Host, "set in the configuration".to_owned()),
             ClockChoice::UniformIndex => (ClockKind::UniformIndex, "set in the configuration".to_owned()),
-            ClockChoice::Auto => decide(stamps, record.values(), &statistics, &line),
+            ClockChoice::Auto => decide(stamps, &statistics, &line),
         };
+        let plain = || Line::through(&ends);
         let times_s = match kind {
             ClockKind::Host => stamps.to_vec(),
             ClockKind::UniformIndex => {
+                let line = plain();
                 (0..stamps.len()).map(|i| line.intercept + line.slope * i as f64).collect()
+            }
+            ClockKind::IndexWithGaps => {
+                numbers.of_samples.iter().map(|number| line.intercept + line.slope * number).collect()
             }
         };
         Ok(Self {
@@ -132,14 +126,15 @@ impl Clock {
             reason,
             times_s,
             sample_rate_hz: rate,
-            sample_rate_std_error_hz: slope_std_error(&line) * rate * rate,
+            sample_rate_std_error_hz: line.slope_std_error() * rate * rate,
             statistics,
         })
     }
 }
 
-fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, String) {
+fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, String) {
     let rate = 1.0 / line.slope;
+    let preference = found.preference_for_even;
     if found.repeated > 0 {
         let share = 100.0 * found.repeated as f64 / stamps.len() as f64;
         let reason = format!(
@@ -151,7 +146,19 @@ fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Line) 
             found.groups,
             1e3 * found.group_interval_s,
         );
-        return (ClockKind::UniformIndex, reason);
+        return if found.lost > 0 {
+            (ClockKind::IndexWithGaps, format!("{reason} and {} samples were lost", found.lost))
+        } else {
+            (ClockKind::UniformIndex, reason)
+        };
+    }
+    if found.gaps > 0 && found.lost > 0 && preference > SIGNIFICANT {
+        let reason = format!(
+            "{} samples are missing in {} gaps; with these counted the values run more smoothly on an even clock of \
+             {rate:.2} Hz than on the stamps ({preference:.1} standard errors)",
+            found.lost, found.gaps
+        );
+        return (ClockKind::IndexWithGaps, reason);
     }
     if found.gaps > 0 {
         let reason = format!(
@@ -169,7 +176,15 @@ fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Line) 
         );
         return (ClockKind::UniformIndex, reason);
     }
-    let preference = preference_for_even(stamps, values, line);
+    if let Some(rounding) = found.rounding_s.filter(|step| found.left_by_bend_s <= *step) {
+        let reason = format!(
+            "the stamps bend away from an even clock of {rate:.4} Hz by {:.3} ms and lie within the {:.3} ms that they \
+             are rounded to of a parabola: the logger's clock drifts against the sensor's",
+            1e3 * found.bend_s,
+            1e3 * rounding
+        );
+        return (ClockKind::UniformIndex, reason);
+    }
     if preference > SIGNIFICANT {
         let reason = format!(
             "the values run more smoothly on an even clock of {rate:.2} Hz than on the stamps ({preference:.1} \
@@ -193,44 +208,6 @@ fn decide(stamps: &[f64], values: &[f64], found: &StampStatistics, line: &Line) 
 /// Standard errors that a preference must have: 1 % of chance, one-sided.
 const SIGNIFICANT: f64 = 2.33;
 
-/// By how many standard errors the values run more smoothly on the even clock than on the stamps.
-///
-/// Five neighbors deviate from a cubic by one number, their fourth divided difference scaled to unit
-/// noise. On a clock that is wrong by δ it grows by δ times the speed. The squares under either clock are
-/// compared in pairs, over stretches that do not overlap. Stamps must increase.
-fn preference_for_even(stamps: &[f64], values: &[f64], line: &Line) -> f64 {
-    let even: Vec<f64> = (0..stamps.len()).map(|i| line.slope * i as f64).collect();
-    let squares = |times: &[f64]| -> Vec<f64> {
-        times.chunks_exact(5).zip(values.chunks_exact(5)).map(|(t, y)| off_cubic(t, y).powi(2)).collect()
-    };
-    let differences: Vec<f64> =
-        squares(stamps).iter().zip(squares(&even)).map(|(host, even)| host - even).collect();
-    let count = differences.len() as f64;
-    let mean = differences.iter().sum::<f64>() / count;
-    let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let z = mean / (variance / count).sqrt();
-    if z.is_finite() { z } else { 0.0 }
-}
-
-/// Distance of points from a cubic, in the noise of a point: Σ cᵢ·yᵢ with cᵢ = 1/Π (tᵢ − tⱼ), scaled to
-/// Σ cᵢ² = 1.
-fn off_cubic(times: &[f64], values: &[f64]) -> f64 {
-    // Relative to the first value, so that values at rest lie on the cubic exactly.
-    let origin = values.first().copied().unwrap_or_default();
-    let (mut sum, mut norm) = (0.0, 0.0);
-    for (at, (&time, &value)) in times.iter().zip(values).enumerate() {
-        let product: f64 = times
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != at)
-            .map(|(_, other)| time - other)
-            .product();
-        sum += (value - origin) / product;
-        norm += 1.0 / (product * product);
-    }
-    sum / norm.sqrt()
-}
-
 /// Index and stamp of the last sample of each group of equal stamps. The record's last group may be
 /// cut off, so its last sample need not have been the least late; with many groups it does not matter.
 fn group_ends(stamps: &[f64]) -> Vec<(f64, f64)> {
@@ -242,82 +219,6 @@ fn group_ends(stamps: &[f64]) -> Vec<(f64, f64)> {
         .filter(|(_, (stamp, next))| *next != Some(*stamp))
         .map(|(index, (&stamp, _))| (index as f64, stamp))
         .collect()
-}
-
-/// The decimal step that stamps are rounded to.
-fn stamp_rounding(stamps: &[f64]) -> Option<f64> {
-    // Decimal rounding is what loggers do; a handful of powers of ten is all there is to try.
-    let span = stamps.last()? - stamps.first()?;
-    (1..=9)
-        .map(|digits| 10_f64.powi(digits))
-        .find(|scale| {
-            let tolerance = 1e-3_f64.max(scale * 4.0 * f64::EPSILON * (span + 1e4));
-            tolerance < 0.1
-                && stamps.iter().all(|stamp| {
-                    let scaled = stamp * scale;
-                    (scaled - scaled.round()).abs() <= tolerance
-                })
-        })
-        .map(|scale| 1.0 / scale)
-}
-
-fn statistics(stamps: &[f64], ends: &[(f64, f64)], line: &Line) -> StampStatistics {
-    let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
-    let mut ordered = steps.clone();
-    ordered.sort_by(f64::total_cmp);
-    let median = ordered.get(ordered.len() / 2).copied().unwrap_or_default();
-    let largest_group = ends
-        .iter()
-        .scan(-1.0, |previous, end| {
-            let size = end.0 - *previous;
-            *previous = end.0;
-            Some(size)
-        })
-        .fold(0.0, f64::max);
-    let repeated = stamps.len() - ends.len();
-    let rounding_s = stamp_rounding(stamps);
-    let long = 1.5 * median + rounding_s.unwrap_or_default().min(0.5 * median);
-    StampStatistics {
-        repeated,
-        groups: ends.len(),
-        largest_group: largest_group as usize,
-        group_interval_s: median,
-        gaps: if repeated == 0 { gaps(&steps, median, long) } else { 0 },
-        rounding_s,
-        deviation_s: (line.squares() / ends.len() as f64).sqrt(),
-        largest_deviation_s: line.residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
-    }
-}
-
-/// Steps longer than `long`, unless it is jitter that makes them so.
-///
-/// A stamp that is late by e makes its step longer by e and the next one shorter by as much: over all long steps the
-/// neighbors are short by as much as these are long. A missing sample leaves its neighbors as they are.
-fn gaps(steps: &[f64], median: f64, long: f64) -> usize {
-    let (mut count, mut excess, mut made_up) = (0, 0.0, 0.0);
-    for (index, step) in steps.iter().enumerate().filter(|(_, step)| **step > long) {
-        count += 1;
-        excess += step - median;
-        let before = index.checked_sub(1).and_then(|before| steps.get(before));
-        made_up += before.into_iter().chain(steps.get(index + 1)).map(|other| median - other).sum::<f64>();
-    }
-    if made_up > 0.5 * excess { 0 } else { count }
-}
-
-/// Lag-one autocorrelation about the mean; 0 for a constant series.
-fn autocorrelation(series: &[f64]) -> f64 {
-    let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
-    let square: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();
-    let product: f64 = series.iter().zip(series.iter().skip(1)).map(|(a, b)| (a - mean) * (b - mean)).sum();
-    if square > 0.0 { product / square } else { 0.0 }
-}
-
-/// Standard error of a line's slope under AR(1) residuals, which carry (1 − r)/(1 + r) as much
-/// information as white ones.
-fn slope_std_error(line: &Line) -> f64 {
-    let r = autocorrelation(&line.residuals).clamp(0.0, 0.99);
-    let degrees = (line.residuals.len() as f64 - 2.0).max(1.0);
-    (line.squares() / degrees * (1.0 + r) / (1.0 - r) / line.spread_x).sqrt()
 }
 
 #[cfg(test)]

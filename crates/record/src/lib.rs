@@ -14,16 +14,20 @@ mod file;
 mod host_log;
 mod lattice;
 mod line;
+mod lost;
 mod record;
+mod roughness;
+mod stamps;
 mod statement;
 mod unit;
 
-pub use clock::{Clock, ClockChoice, ClockKind, StampStatistics};
+pub use clock::{Clock, ClockChoice, ClockKind};
 pub use csv_file::CsvColumns;
 pub use error::{Fault, RecordError};
 pub use file::{Format, ReadOptions, Source, read_file, read_text};
 pub use lattice::Lattice;
 pub use record::{Quantity, Record};
+pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};
 pub use unit::{TimeUnit, Unit};
 

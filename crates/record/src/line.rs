@@ -28,8 +28,69 @@ impl Line {
         }
     }
 
+    /// Variance of the residuals, as much larger as AR(1) residuals carry less information than white ones:
+    /// (1 + r)/(1 − r) with their lag-one autocorrelation r.
+    pub(crate) fn effective_variance(&self) -> f64 {
+        let r = autocorrelation(&self.residuals).clamp(0.0, 0.99);
+        let degrees = (self.residuals.len() as f64 - 2.0).max(1.0);
+        self.squares() / degrees * (1.0 + r) / (1.0 - r)
+    }
+
+    /// Standard error of the slope.
+    pub(crate) fn slope_std_error(&self) -> f64 {
+        (self.effective_variance() / self.spread_x).sqrt()
+    }
+
     /// Sum of the squared residuals.
     pub(crate) fn squares(&self) -> f64 {
         self.residuals.iter().map(|residual| residual * residual).sum()
     }
+}
+
+/// What is left of a line's residuals once a parabola bends it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Bend {
+    /// Root mean square of the parabola's part beyond the line.
+    pub(crate) size: f64,
+    /// That part over its standard error. What is left may wander: the error is the larger one of two, widened for its
+    /// autocorrelation as of an AR(1) process, and from how much stretches of the points disagree.
+    pub(crate) standard_errors: f64,
+    /// The line, with the residuals that the parabola leaves.
+    pub(crate) line: Line,
+}
+
+/// Stretches that may disagree; three of them go into the parabola.
+const STRETCHES: usize = 12;
+
+impl Bend {
+    /// Bends a line that was laid through the points.
+    pub(crate) fn of(line: &Line, points: &[(f64, f64)]) -> Self {
+        let count = points.len() as f64;
+        let mean_x = points.iter().map(|point| point.0).sum::<f64>() / count;
+        let squares: Vec<(f64, f64)> =
+            points.iter().map(|point| (point.0, (point.0 - mean_x).powi(2) / line.spread_x)).collect();
+        // Orthogonal to constants and to x.
+        let bent = Line::through(&squares).residuals;
+        let square: f64 = bent.iter().map(|b| b * b).sum();
+        let product: f64 = bent.iter().zip(&line.residuals).map(|(b, r)| b * r).sum();
+        let factor = if square > 0.0 { product / square } else { 0.0 };
+        let residuals: Vec<f64> = line.residuals.iter().zip(&bent).map(|(r, b)| r - factor * b).collect();
+        let left = Line { residuals, ..line.clone() };
+        let length = points.len().div_ceil(STRETCHES).max(1);
+        let stretches = bent.chunks(length).zip(left.residuals.chunks(length));
+        let sums = stretches.map(|(b, r)| b.iter().zip(r).map(|(b, r)| b * r).sum::<f64>().powi(2));
+        let apart =
+            sums.sum::<f64>() * STRETCHES as f64 / (STRETCHES - 3) as f64 / square.max(f64::MIN_POSITIVE);
+        let error = (left.effective_variance().max(apart) / square.max(f64::MIN_POSITIVE)).sqrt();
+        let standard_errors = if error > 0.0 { factor.abs() / error } else { 0.0 };
+        Self { size: factor.abs() * (square / count).sqrt(), standard_errors, line: left }
+    }
+}
+
+/// Lag-one autocorrelation about the mean; 0 for a constant series.
+fn autocorrelation(series: &[f64]) -> f64 {
+    let mean = series.iter().sum::<f64>() / series.len().max(1) as f64;
+    let square: f64 = series.iter().map(|x| (x - mean).powi(2)).sum();
+    let product: f64 = series.iter().zip(series.iter().skip(1)).map(|(a, b)| (a - mean) * (b - mean)).sum();
+    if square > 0.0 { product / square } else { 0.0 }
 }
