@@ -79,6 +79,10 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     let mut order: Vec<(Candidate, f64)> =
         parts.named.iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
+    // What has no name is left unnamed: effects that explain a part of it stand in the list with their probabilities.
+    if parts.unnamed > 0.5 {
+        order.clear();
+    }
     let mut effects: Vec<&'static str> = order.iter().map(|(candidate, _)| candidate.id()).collect();
     let mut equivalent: Vec<Vec<&'static str>> = Vec::new();
     for effect in &effects {
@@ -132,11 +136,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
             )
         }
         Status::Effect => format!("The simulator lacks {} ({figures}).", effects.join(", ")),
-        Status::Unknown => format!(
-            "A torque without a name explains more than the vocabulary does ({figures}; {:.3e} with a free latent \
-             torque).",
-            gap.ceiling
-        ),
+        Status::Unknown => format!("What is missing has no name in the vocabulary ({figures})."),
     };
     Verdict { status, effects, confidence, equivalent, summary }
 }

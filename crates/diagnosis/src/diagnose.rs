@@ -54,6 +54,10 @@ impl Default for Settings {
 /// Most effects that a set can hold.
 const MOST_EFFECTS: usize = 5;
 
+/// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first order stays below
+/// it up to a correlation of 0.84 from sample to sample.
+const FAR_ABOVE: f64 = 3.0;
+
 /// Searches on longer horizons at most.
 const MOST_HORIZONS: usize = 3;
 
@@ -153,8 +157,14 @@ pub fn diagnose(
     let excess = figures.recalibrated.powi(2) - noise_square;
     let left = unexplained(data, repaired)?;
     let gained = (base.calibrated.squares - repaired.squares).max(0.0);
-    let nameless = left.squares / (left.squares + gained).max(f64::MIN_POSITIVE);
-    let unnamed = unknown(left.evidence, nameless);
+    let mut nameless = left.squares / (left.squares + gained).max(f64::MIN_POSITIVE);
+    let mut evidence = left.evidence;
+    if figures.repaired > FAR_ABOVE * floor.value {
+        // No noise is so smooth: whatever its spectrum is, it is a part of the gap.
+        nameless = nameless.max((figures.repaired.powi(2) - noise_square) / excess.max(f64::MIN_POSITIVE));
+        evidence = f64::INFINITY;
+    }
+    let unnamed = unknown(evidence, nameless.min(1.0));
     lap("unexplained");
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
@@ -347,4 +357,16 @@ fn series(data: &Data, [nominal, recalibrated, repaired]: [&HeldOut; 3], paths: 
     series.recalibrated_residual = flat(recalibrated);
     series.repaired_residual = flat(repaired);
     series
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FAR_ABOVE;
+
+    /// Second differences of an autoregressive noise of unit variance have the variance 6 − 8ρ + 2ρ².
+    #[test]
+    fn colored_noise_stays_below_what_is_no_noise() {
+        let over_floor = |rho: f64| (6.0 / (6.0 - 8.0 * rho + 2.0 * rho * rho)).sqrt();
+        assert!(over_floor(0.84) < FAR_ABOVE && over_floor(0.85) > FAR_ABOVE);
+    }
 }

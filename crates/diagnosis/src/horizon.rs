@@ -230,3 +230,99 @@ impl Horizon {
         reached
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Horizon, shortened};
+    use crate::calibrate::baseline;
+    use crate::observations::Observations;
+    use crate::segments::{Data, cut};
+    use crate::{Settings, Status, diagnose};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use nalgebra::DVector;
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    fn nominal() -> Nominal {
+        Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap()
+    }
+
+    /// 20 s of a swing at 3.5 Hz, 100 samples a second, noise of 1 mrad, with some effects.
+    fn observed(effects: &[(&str, &[f64])]) -> Observations {
+        let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+        let system = System::new(nominal(), active).unwrap();
+        let times: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
+        let motion = simulate(&system, Start::release(0.6), None, &times, &Tolerance::default()).unwrap();
+        let mut generator = Seed::new(5).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = motion.position.iter().map(|x| x + 1e-3 * noise()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        Observations::new(&record, &clock)
+    }
+
+    fn data(observations: &Observations) -> Data {
+        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &nominal()).unwrap()
+    }
+
+    #[test]
+    fn joined_segments_are_the_record_and_come_apart_again() {
+        let data = data(&observed(&[]));
+        let count = data.segments.len();
+        assert!(count > 8, "{count}");
+        let whole = data.joined(count);
+        assert_eq!(whole.segments.len(), 1);
+        assert_eq!(whole.samples(), data.samples());
+        let segment = &whole.segments[0];
+        assert_eq!(segment.parts.len(), count);
+        let parts = whole.by_part(&[DVector::from_vec(segment.values.clone())]);
+        for (part, original) in parts.iter().zip(&data.segments) {
+            assert_eq!(part.as_slice(), original.values.as_slice());
+        }
+        let pairs = data.joined(2);
+        assert_eq!(pairs.segments.len(), count.div_ceil(2));
+        assert_eq!(pairs.firsts(), (0..count).step_by(2).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_mask_leaves_the_parts_named_and_the_first_sample() {
+        let data = data(&observed(&[]));
+        let whole = data.joined(data.segments.len());
+        let (odd, numbers) = whole.masked(&|part| part % 2 == 1);
+        assert_eq!(numbers, [0]);
+        let expected: usize = data.segments.iter().skip(1).step_by(2).map(|s| s.times.len()).sum();
+        assert_eq!(odd.samples(), expected + 1);
+        assert_eq!(odd.segments[0].times[0], data.segments[0].times[0]);
+        assert_eq!(odd.segments[0].times[1], data.segments[1].times[0]);
+        let (none, numbers) = data.masked(&|_| false);
+        assert!(none.segments.is_empty() && numbers.is_empty());
+    }
+
+    /// Where nothing is missing the whole record follows from one start state, and the states along it fit each segment.
+    #[test]
+    fn a_record_without_effects_is_followed_as_a_whole() {
+        let data = data(&observed(&[]));
+        let base = baseline(&data, &nominal()).unwrap().calibrated;
+        let horizon = Horizon::longest(&data, &base);
+        assert_eq!(horizon.data.segments.len(), 1);
+        let noise = (horizon.calibrated.squares / horizon.calibrated.freedom()).sqrt();
+        assert!((noise / 1e-3 - 1.0).abs() < 0.05, "{noise}");
+        let short = shortened(&data, &horizon.data, &horizon.calibrated).unwrap();
+        assert_eq!(short.point.starts.len(), data.segments.len());
+        assert!((short.squares / horizon.calibrated.squares - 1.0).abs() < 0.05);
+    }
+
+    /// A softening whose frequency shift adds up over the record: 8e-4 of the spring's torque at most, next to nothing within
+    /// six periods.
+    #[test]
+    fn what_adds_up_over_a_record_is_seen() {
+        let observations = observed(&[("cubic_stiffness", &[-1.0])]);
+        let seconds = || 0.0;
+        let answer = diagnose(&[observations], &nominal(), &Settings::default(), &seconds).unwrap();
+        assert_eq!(answer.verdict.status, Status::Effect, "{:?}", answer.verdict);
+        let class = answer.verdict.equivalent.iter().flatten().chain(&answer.verdict.effects);
+        assert!(class.into_iter().any(|id| *id == "cubic_stiffness"), "{:?}", answer.verdict);
+    }
+}

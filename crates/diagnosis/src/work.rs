@@ -49,6 +49,10 @@ pub(crate) struct Thin<'a> {
     pub(crate) pool: &'a Pool,
 }
 
+/// Sets that are asked for their held-out error, and the factor in its mean square from which on one is clearly worse.
+const HELD_OUT: usize = 5;
+const CLEARLY_WORSE: f64 = 1.5;
+
 /// Held-out residuals, and the set that they and the evidence speak for.
 pub(crate) struct Held<'a> {
     pub(crate) nominal: HeldOut,
@@ -96,8 +100,8 @@ impl<'a> Work<'a> {
         }))
     }
 
-    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts better
-    /// than the calibrated simulator.
+    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts: better
+    /// than the calibrated simulator, and not clearly worse than any other of the best sets.
     pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
         let own = |followed: &'a Fit, fitted: &'a Fit| Both {
             longer: self.data,
@@ -112,7 +116,8 @@ impl<'a> Work<'a> {
         let recalibrated = recalibrated_both.interleaved(Moving::All)?;
         let third = recalibrated_both.last_third(Moving::All)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
-        for w in weighed.iter().take(4) {
+        let mut tried: Vec<Held<'a>> = Vec::new();
+        for w in weighed.iter().take(HELD_OUT) {
             if w.fit.hypothesis.candidates.is_empty() {
                 break;
             }
@@ -124,8 +129,13 @@ impl<'a> Work<'a> {
             let Ok(later) = both.last_third(Moving::All) else { continue };
             if after.continued < recalibrated.continued {
                 let last_third = [third, later];
-                return Ok(Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted });
+                let (nominal, recalibrated) = (nominal.clone(), recalibrated.clone());
+                tried.push(Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted });
             }
+        }
+        let least = tried.iter().map(|held| held.after.mean_square()).fold(f64::INFINITY, f64::min);
+        if let Some(held) = tried.into_iter().find(|held| held.after.mean_square() <= CLEARLY_WORSE * least) {
+            return Ok(held);
         }
         let repaired = calibrated
             .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;

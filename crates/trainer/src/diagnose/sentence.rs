@@ -34,8 +34,8 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
             if gap.closure.value >= 1.0 { "all".to_owned() } else { percent(gap.closure.value) }
         ),
         Status::Unknown => format!(
-            "Something is missing that no known effect explains: the best named model leaves {floor}, and a torque \
-             without a name predicts better, so it is left unnamed{}.",
+            "Something is missing that no known effect explains: the best named model leaves {floor}, and what it \
+             leaves is no noise, so it is left unnamed{}.",
             match found.verdict.effects.is_empty() {
                 true => String::new(),
                 false => format!("; {}", in_a_sentence(&lacking(found))),
