@@ -300,9 +300,9 @@ mod tests {
         let drift = |change: f64| move |time: f64| time + 0.5 * change * time * time;
         assert_eq!(named(2, |time, _| Some(drift(2e-5)(time))), ["clock_drift"]);
         assert_eq!(named(2, |time, _| Some(drift(5e-7)(time))), [""; 0]);
-        let bursts = |time: f64| (drift(6e-5)(time) / 0.0616).ceil() * 0.0616;
+        let bursts = |time: f64| (drift(6e-5)(time) / 0.0637).ceil() * 0.0637;
         assert_eq!(named(3, |time, _| Some(bursts(time))), ["timestamp_batching", "clock_drift"]);
-        let still = |time: f64| (time / 0.0616).ceil() * 0.0616;
+        let still = |time: f64| (time / 0.0637).ceil() * 0.0637;
         assert_eq!(named(4, |time, _| Some(still(time))), ["timestamp_batching"]);
     }
 }
