@@ -134,3 +134,62 @@ fn gaps(steps: &[f64], median: f64, long: f64) -> usize {
     }
     if made_up > 0.5 * excess { 0 } else { count }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Clock, ClockChoice, ClockKind, Quantity, Record};
+
+    /// Pseudo-random numbers in −0.5..0.5 without a generator.
+    fn noise(index: usize) -> f64 {
+        (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5
+    }
+
+    fn of(stamps: impl Iterator<Item = f64>) -> Clock {
+        let stamps: Vec<f64> = stamps.map(|stamp| (stamp * 1e6).round() / 1e6).collect();
+        let values = (0..stamps.len()).map(|index| (0.077 * index as f64).sin() + 1e-3 * noise(31 * index));
+        let record = Record::new(stamps, values.collect(), None, Quantity::Position, "rad").unwrap();
+        Clock::new(&record, ClockChoice::Auto).unwrap()
+    }
+
+    /// Uniform errors of width w have the standard deviation w/√12.
+    #[test]
+    fn scatter_is_that_of_the_errors_whatever_drifts() {
+        for change in [0.0, 1e-4] {
+            let clock = of((0..6500).map(|index| {
+                let time = index as f64 / 260.0;
+                time + 0.5 * change * time * time + 3e-4 * noise(index)
+            }));
+            let scatter = clock.statistics.scatter_s * 12.0_f64.sqrt() / 3e-4;
+            assert!((scatter - 1.0).abs() < 0.05, "{scatter}");
+        }
+    }
+
+    /// Half a change of the rate times the time squared, less its line, is (change/2)·T²·(x² − x + 1/6) for x = t/T, whose mean
+    /// square is (change/2)²·T⁴/180.
+    #[test]
+    fn a_changing_rate_bends_the_stamps() {
+        let change = 2e-5;
+        let bent = |index: usize| {
+            let time = index as f64 / 260.0;
+            time + 0.5 * change * time * time
+        };
+        let clock = of((0..6500).map(bent));
+        let expected = 0.5 * change * 625.0 / 180.0_f64.sqrt();
+        assert!((clock.statistics.bend_s / expected - 1.0).abs() < 1e-2, "{}", clock.statistics.bend_s);
+        assert!(clock.statistics.bend_standard_errors > 100.0);
+        assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+    }
+
+    #[test]
+    fn stamps_that_wander_do_not_bend() {
+        let mut wander = 0.0;
+        let stamps: Vec<f64> = (0..6500)
+            .map(|index| {
+                wander = 0.998 * wander + 2e-5 * noise(index);
+                index as f64 / 260.0 + wander
+            })
+            .collect();
+        let found = of(stamps.into_iter()).statistics;
+        assert!(found.bend_standard_errors < 6.594, "{}", found.bend_standard_errors);
+    }
+}
