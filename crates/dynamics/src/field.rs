@@ -52,6 +52,27 @@ pub(crate) struct Field<S> {
     pub(crate) terms: Vec<Term<S>>,
 }
 
+impl Field<f64> {
+    /// The same field on another kind of number.
+    pub(crate) fn over<S: Scalar>(&self) -> Field<S> {
+        let Coefficients { inertia, damping, stiffness, rest_angle, input_gain } = self.nominal;
+        let nominal = Coefficients {
+            inertia: S::from(inertia),
+            damping: S::from(damping),
+            stiffness: S::from(stiffness),
+            rest_angle: S::from(rest_angle),
+            input_gain: S::from(input_gain),
+        };
+        let terms = self.terms.iter();
+        let terms = terms.map(|&Term { effect, values, hidden }| Term {
+            effect,
+            values: values.map(S::from),
+            hidden,
+        });
+        Field { nominal, terms: terms.collect() }
+    }
+}
+
 impl<S: Scalar> Term<S> {
     /// What the effect sees.
     #[inline]

@@ -30,6 +30,8 @@ mod law;
 mod nominal;
 pub mod reference;
 pub mod registry;
+#[cfg(test)]
+mod rest_tests;
 mod root;
 pub mod scalar;
 pub mod sensitivity;

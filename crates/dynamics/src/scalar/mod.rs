@@ -7,10 +7,12 @@
 #[cfg(test)]
 mod complex;
 mod dual;
+mod rounded;
 
 #[cfg(test)]
 pub(crate) use complex::Complex;
 pub use dual::Dual;
+pub(crate) use rounded::Rounded;
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -11,6 +11,7 @@ use crate::error::DynamicsError;
 use crate::field::{Field, Mode};
 use crate::input::Input;
 use crate::law::MOST_PARAMETERS;
+use crate::scalar::Rounded;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,8 @@ impl Default for Settings {
 #[derive(Debug, Clone)]
 pub struct Model {
     pub(super) field: Field<f64>,
+    /// The field with the rounding of its rates.
+    pub(super) rounded: Field<Rounded>,
     pub(super) directed: bool,
     pub(super) delay: f64,
     pub(super) free: Vec<Place>,
@@ -80,6 +83,7 @@ impl Model {
         let degree = settings.degree.clamp(2, LENGTH - 1);
         Ok(Self {
             directed: field.directed(),
+            rounded: field.over(),
             delay: system.input_delay(),
             states,
             settings: Settings { degree, ..settings },
@@ -132,6 +136,7 @@ impl Model {
         }
         let delay = self.field.terms.iter().find_map(|term| term.effect.input_delay(&term.values));
         self.delay = delay.unwrap_or(0.0);
+        self.rounded = self.field.over();
         for piece in &mut self.graphs {
             piece.current = false;
         }

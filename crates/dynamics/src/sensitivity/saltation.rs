@@ -10,13 +10,22 @@ impl March<'_> {
     /// Passes to the piece behind an edge; the columns jump where the force does.
     pub(super) fn cross(&mut self, edge: Edge, number: usize) {
         self.response.events += 1;
+        let [_, velocity, ..] = &mut self.state;
+        let at_rest = *velocity == 0.0;
         if edge == Edge::Reversal {
-            let [_, velocity, ..] = &mut self.state;
             *velocity = 0.0;
         }
         let before = self.rates();
         let old = self.mode;
         self.mode = self.model.field.behind(&self.point(), &old, edge);
+        if edge == Edge::Reversal
+            && at_rest
+            && self.mode.direction == old.direction
+            && self.model.field.holding_torque().is_none()
+        {
+            // At rest in balance the torque does not tell which way it goes on; the series has.
+            self.mode = self.model.field.moving(&self.point(), -old.direction);
+        }
         let after = self.rates();
         let [_, _, hidden @ ..] = &mut self.state;
         self.model.field.settle(&self.mode, hidden);

@@ -4,12 +4,16 @@ use super::graph::{Graph, MOST_STATES};
 use super::march::March;
 use super::series::{Series, slope, value};
 use crate::field::State;
+use crate::scalar::Rounded;
 
 /// Parts of a step at which its defect is looked at.
 const PARTS: [f64; 2] = [1.0, 0.6];
 
 /// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
 const MOST_DEFECT: f64 = 20.0;
+
+/// How many times the bound on its rounding a rate may be off: a series groups its terms otherwise than the law does.
+const ROUNDING: f64 = 4.0;
 
 impl March<'_> {
     /// The largest step for which the last two coefficients of every series are below the tolerance, and
@@ -36,7 +40,19 @@ impl March<'_> {
     fn reach(&self, series: &Series, scale: f64) -> f64 {
         let [_, first, second, third, ..] = series;
         let time = self.size;
-        scale.max(first.abs() * time).max(second.abs() * time * time).max(third.abs() * time * time * time)
+        let reach = scale
+            .max(first.abs() * time)
+            .max(second.abs() * time * time)
+            .max(third.abs() * time * time * time);
+        if reach > 0.0 {
+            return reach;
+        }
+        // Behind a soft coupling a ramp of the torque is felt in the fourth term or the fifth.
+        let terms = series.iter().zip(0_i32..);
+        terms
+            .map(|(coefficient, degree)| coefficient.abs() * time.powi(degree))
+            .find(|term| *term > 0.0)
+            .unwrap_or(0.0)
     }
 
     /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
@@ -54,13 +70,40 @@ impl March<'_> {
         let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
         let rates = [velocity, acceleration].into_iter().chain(hidden);
         let defects = series.iter().zip(rates).zip(&self.scale).take(states);
-        defects
-            .map(|((series, rate), &scale)| {
-                let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
-                let defect = slope(series.get(..=degree).unwrap_or_default(), size) - rate;
-                defect.abs() * size / (scale * self.model.settings.tolerance)
-            })
-            .fold(0.0, |largest: f64, part| if part.is_finite() { largest.max(part) } else { f64::INFINITY })
+        let mut rounding = None;
+        let mut largest = 0.0_f64;
+        for (variable, ((series, rate), &scale)) in defects.enumerate() {
+            let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
+            let defect = (slope(series.get(..=degree).unwrap_or_default(), size) - rate).abs();
+            let parts = |defect: f64| defect * size / (scale * self.model.settings.tolerance);
+            let mut part = parts(defect);
+            if part > MOST_DEFECT {
+                // Where torques cancel, what is left of them is rounding, and no step is short enough for it.
+                let rounding = rounding.get_or_insert_with(|| self.rounding(&point));
+                let known = rounding.get(variable).copied().unwrap_or(0.0);
+                part = parts((defect - ROUNDING * known).max(0.0));
+            }
+            largest = if part.is_finite() { largest.max(part) } else { f64::INFINITY };
+        }
+        largest
+    }
+
+    /// How much of each rate of the state may be rounding.
+    fn rounding(&self, point: &State<f64>) -> [f64; MOST_STATES] {
+        let point = State {
+            time: Rounded::from(point.time),
+            position: Rounded::from(point.position),
+            velocity: Rounded::from(point.velocity),
+            hidden: point.hidden.map(Rounded::from),
+            input: Rounded::from(point.input),
+        };
+        let (acceleration, hidden) = self.model.rounded.rates(&point, &self.mode);
+        let mut errors = [0.0; MOST_STATES];
+        let rates = [point.velocity, acceleration].into_iter().chain(hidden);
+        for (error, rate) in errors.iter_mut().zip(rates) {
+            *error = rate.error;
+        }
+        errors
     }
 
     /// A step shortened until the equation of motion holds along it.
