@@ -153,7 +153,7 @@ pub struct Finding {
 /// The measuring chain.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct MeasuringChain {
-    /// The clock believed: `host` or `uniform-index`.
+    /// The clock believed: `host`, `uniform-index` or `index-with-gaps`.
     pub clock: &'static str,
     /// Sampling rate in hertz.
     pub sample_rate_hz: f64,

@@ -57,6 +57,12 @@ const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
     Parameter { name, lower, upper, strength: false, shape: true, simpler: false }
 }
 
+/// A second mode's frequency relative to the swing's at least, its decay over the longest record as a logarithm at least, and
+/// its damping ratio at most.
+const SLOWEST_MODE: f64 = 0.3;
+const LEAST_DECAY: f64 = 0.3;
+const MOST_DAMPED: f64 = 0.7;
+
 /// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Polar {
@@ -193,7 +199,8 @@ impl Candidate {
                 SystemEffect::StiffnessDrift | SystemEffect::DampingDrift => vec![any("rate")],
                 SystemEffect::PeriodicForcing => vec![
                     any("torque"),
-                    between("frequency", PI / facts.duration, PI / facts.interval),
+                    // A forcing that does not repeat within the records is a drift.
+                    between("frequency", 4.0 * PI / facts.duration, PI / facts.interval),
                     any("phase"),
                 ],
                 SystemEffect::FlexibleCoupling => vec![
@@ -284,6 +291,23 @@ impl Candidate {
             (angle, size, -sine / length),
             (angle, angle, cosine / length),
         ]
+    }
+
+    /// Whether fitted values are what the effect's name says. A second body whose mode does not decay within the records is a
+    /// forcing, one that is much slower than the swing, or hardly swings at all, a drift.
+    pub(crate) fn is_itself(self, fitted: &[f64], facts: &Facts) -> bool {
+        match (self, fitted) {
+            (Self::System(SystemEffect::FlexibleCoupling), &[inertia, stiffness, damping])
+                if inertia > 0.0 =>
+            {
+                let mode = (stiffness / inertia).sqrt();
+                let rate = damping / (2.0 * inertia);
+                mode >= SLOWEST_MODE * facts.frequency
+                    && rate * facts.duration >= LEAST_DECAY
+                    && rate <= MOST_DAMPED * mode
+            }
+            _ => true,
+        }
     }
 
     /// Hidden state variables that a segment in the middle of a record cannot know and has to fit.

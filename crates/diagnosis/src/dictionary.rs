@@ -58,8 +58,8 @@ pub(crate) struct Gain {
 const STRIBECK: [f64; 3] = [0.02, 0.06, 0.2];
 const PLAY: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
 const BENDING: [f64; 5] = [0.005, 0.02, 0.06, 0.2, 0.6];
-const STOPS: [f64; 4] = [0.015, 0.05, 0.12, 0.25];
-const CLIPS: [f64; 4] = [0.98, 0.93, 0.85, 0.7];
+const STOPS: [f64; 5] = [0.004, 0.015, 0.05, 0.12, 0.25];
+const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
 const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 const DELAYS: [f64; 2] = [0.01, 0.1];
 const LINES: usize = 3;

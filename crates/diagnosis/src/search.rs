@@ -83,8 +83,13 @@ impl Pool {
     }
 }
 
-/// A size at zero, or a shape at which the candidate is a simpler one: it is not there.
+/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
+    let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
+    let mut members = fit.hypothesis.candidates.iter().zip(parts);
+    if members.any(|(candidate, part)| !candidate.is_itself(part, &data.facts)) {
+        return true;
+    }
     let parameters = fit.hypothesis.parameters(&data.facts);
     let calibrated = fit.hypothesis.calibrated.len();
     let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);

@@ -135,8 +135,8 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
             squares += 2.0 * (band.power - band.bins * beside.mean());
         }
     }
-    let seen = bands.iter().filter(|band| band.bins > 0.0).count().max(1) as f64;
-    let evidence = (evidence - seen.ln()).max(0.0);
+    let looks = 1.0 + 2.0 * HARMONICS as f64;
+    let evidence = (evidence - looks.ln()).max(0.0);
     (Unexplained { evidence, squares }, at(Some(0)).with(at(Some(2))))
 }
 
@@ -184,7 +184,10 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
-    let evidence = larger(squares / directions.max(1.0), directions, noise.mean(), noise.worth);
+    // The largest of as many looks as there are bands, and this one.
+    let looks = 1.0 + 2.0 * HARMONICS as f64;
+    let evidence = larger(squares / directions.max(1.0), directions, noise.mean(), noise.worth) - looks.ln();
+    let evidence = evidence.max(0.0);
     let beyond = (squares - directions * noise.mean()).max(0.0);
     Ok(Unexplained {
         evidence: evidence.max(spectrum.evidence),

@@ -19,8 +19,9 @@ pub(crate) const UNKNOWN_SHARE: f64 = 0.25;
 /// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
 const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
 
-/// Prior odds that something acts that has no name.
-const UNKNOWN_ODDS: f64 = 0.05;
+/// Prior odds that something acts that has no name. A likelihood ratio of two variances that chance alone exceeds once in a
+/// thousand records makes them even.
+const UNKNOWN_ODDS: f64 = 0.01;
 
 /// A set with its evidence.
 #[derive(Debug, Clone)]
@@ -102,6 +103,6 @@ mod tests {
         assert!((unknown(200.0, 0.25) - 0.5).abs() < 1e-12);
         let odds = |share: f64| unknown(200.0, share) / (1.0 - unknown(200.0, share));
         assert!((odds(0.5) / odds(0.125) / 4.0_f64.exp() - 1.0).abs() < 1e-9);
-        assert!((unknown(0.0, 0.25) - 0.5 * 0.05 / 1.05).abs() < 1e-12);
+        assert!((unknown(0.0, 0.25) - 0.5 * 0.01 / 1.01).abs() < 1e-12);
     }
 }

@@ -213,7 +213,7 @@ pub struct MapCell {
 /// The measuring chain.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ChainSummary {
-    /// The clock believed: `host` or `uniform-index`.
+    /// The clock believed: `host`, `uniform-index` or `index-with-gaps`.
     pub clock: String,
     /// Why, in a sentence.
     pub clock_reason: String,
@@ -298,7 +298,7 @@ pub struct RecordRow {
     pub samples: usize,
     /// From the first sample to the last, in seconds.
     pub duration_s: f64,
-    /// The clock believed: `host` or `uniform-index`.
+    /// The clock believed: `host`, `uniform-index` or `index-with-gaps`.
     pub clock: String,
     /// Why, in a sentence.
     pub clock_reason: String,

@@ -88,7 +88,7 @@ pub struct DataSummary {
     pub origin: String,
     /// Samples in the file.
     pub samples: usize,
-    /// The clock in force: `"host"` or `"uniform-index"`.
+    /// The clock in force: `"host"`, `"uniform-index"` or `"index-with-gaps"`.
     pub clock: String,
     /// Why that clock is in force, in a sentence.
     pub clock_reason: String,
@@ -204,7 +204,7 @@ pub struct SeedRow {
 pub struct PipelineRow {
     /// `"paper"` or `"recommended"`.
     pub pipeline: String,
-    /// `"host"` or `"uniform-index"`.
+    /// `"host"`, `"uniform-index"` or `"index-with-gaps"`.
     pub clock: String,
     /// Whether the fits of this run used this row's envelope.
     pub in_force: bool,
