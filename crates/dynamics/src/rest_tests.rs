@@ -121,6 +121,15 @@ fn from_balance_a_motion_gets_under_way() {
         let response =
             model.run(start.into(), input.as_ref(), &times).unwrap_or_else(|error| panic!("{what}: {error}"));
         assert!(response.position_sensitivity.iter().all(|value| value.is_finite()), "{what}");
+        if list.is_empty() && input.is_some() {
+            // What moves a linear oscillator from rest is in proportion to the gain, which is 1.
+            let by_gain: Vec<f64> =
+                response.position_sensitivity.chunks(2).map(|row| start.position + row[1]).collect();
+            let largest = response.position.iter().map(|position| (position - start.position).abs());
+            let rounding = 1e-13 * start.position.abs().max(1e-3);
+            let bar = 1e3 * tolerance * largest.fold(0.0, f64::max) + rounding;
+            assert!(difference(&by_gain, &response.position) < bar, "{what}");
+        }
         runs += 1;
         let exact = Tolerance { most_steps: 6_000, ..Tolerance::default() };
         let Ok(exact) = simulate(&system, start, input.as_ref(), &times, &exact) else { continue };
