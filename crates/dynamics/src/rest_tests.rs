@@ -147,6 +147,7 @@ fn from_balance_a_motion_gets_under_way() {
 #[test]
 fn in_balance_nothing_moves_and_steps_stay_long() {
     // The oscillator has 3.5 Hz: a few steps a period do, whatever rounding leaves of its torques.
+    let settings = Settings { most_steps: 1_000, ..Settings::default() };
     for inertia in [1.0, 0.37, 3.0e-5, 71.0] {
         let omega = 7.0 * std::f64::consts::PI;
         let nominal = Nominal::new(inertia, 0.2 * inertia, omega * omega * inertia, 0.313_703_371_9).unwrap();
@@ -156,11 +157,10 @@ fn in_balance_nothing_moves_and_steps_stay_long() {
                 list.iter().map(|(id, values)| (*id, values.as_slice())).collect();
             let system = with(nominal, &list);
             let start = Start::release(balance(&system));
-            let mut model = Model::new(&system, &[], Settings::default()).unwrap();
+            let mut model = Model::new(&system, &[], settings).unwrap();
             let response = model.run(start.into(), None, &grid(10.0, 260.0)).unwrap();
             let moved = response.position.iter().map(|position| (position - start.position).abs());
             assert!(moved.fold(0.0, f64::max) < 1e-14, "{list:?} {inertia}");
-            assert!(response.steps < 1_000, "{list:?} {inertia}: {} steps", response.steps);
         }
     }
 }
