@@ -121,6 +121,15 @@ fn from_balance_a_motion_gets_under_way() {
         let response =
             model.run(start.into(), input.as_ref(), &times).unwrap_or_else(|error| panic!("{what}: {error}"));
         assert!(response.position_sensitivity.iter().all(|value| value.is_finite()), "{what}");
+        if list.is_empty() && input.is_some() {
+            // What moves a linear oscillator from rest is in proportion to the gain, which is 1.
+            let by_gain: Vec<f64> =
+                response.position_sensitivity.chunks(2).map(|row| start.position + row[1]).collect();
+            let largest = response.position.iter().map(|position| (position - start.position).abs());
+            let rounding = 1e-13 * start.position.abs().max(1e-3);
+            let bar = 1e3 * tolerance * largest.fold(0.0, f64::max) + rounding;
+            assert!(difference(&by_gain, &response.position) < bar, "{what}");
+        }
         runs += 1;
         let exact = Tolerance { most_steps: 6_000, ..Tolerance::default() };
         let Ok(exact) = simulate(&system, start, input.as_ref(), &times, &exact) else { continue };
@@ -138,6 +147,7 @@ fn from_balance_a_motion_gets_under_way() {
 #[test]
 fn in_balance_nothing_moves_and_steps_stay_long() {
     // The oscillator has 3.5 Hz: a few steps a period do, whatever rounding leaves of its torques.
+    let settings = Settings { most_steps: 1_000, ..Settings::default() };
     for inertia in [1.0, 0.37, 3.0e-5, 71.0] {
         let omega = 7.0 * std::f64::consts::PI;
         let nominal = Nominal::new(inertia, 0.2 * inertia, omega * omega * inertia, 0.313_703_371_9).unwrap();
@@ -147,11 +157,10 @@ fn in_balance_nothing_moves_and_steps_stay_long() {
                 list.iter().map(|(id, values)| (*id, values.as_slice())).collect();
             let system = with(nominal, &list);
             let start = Start::release(balance(&system));
-            let mut model = Model::new(&system, &[], Settings::default()).unwrap();
+            let mut model = Model::new(&system, &[], settings).unwrap();
             let response = model.run(start.into(), None, &grid(10.0, 260.0)).unwrap();
             let moved = response.position.iter().map(|position| (position - start.position).abs());
             assert!(moved.fold(0.0, f64::max) < 1e-14, "{list:?} {inertia}");
-            assert!(response.steps < 1_000, "{list:?} {inertia}: {} steps", response.steps);
         }
     }
 }

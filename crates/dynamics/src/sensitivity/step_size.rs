@@ -44,51 +44,46 @@ impl March<'_> {
             .max(first.abs() * time)
             .max(second.abs() * time * time)
             .max(third.abs() * time * time * time);
-        if reach > 0.0 {
-            return reach;
-        }
-        // Behind a soft coupling a ramp of the torque is felt in the fourth term or the fifth.
-        let terms = series.iter().zip(0_i32..);
-        terms
-            .map(|(coefficient, degree)| coefficient.abs() * time.powi(degree))
-            .find(|term| *term > 0.0)
-            .unwrap_or(0.0)
+        if reach > 0.0 { reach } else { first_term(series, time) }
     }
 
-    /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
-    /// tolerance. The coefficients alone do not betray a narrow peak ahead; this does.
-    fn defect(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> f64 {
-        let states = self.model.states;
+    /// Where the series get to in a time.
+    fn reached(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> State<f64> {
         let mut end = [0.0; MOST_STATES];
-        for (slot, series) in end.iter_mut().zip(series).take(states) {
+        for (slot, series) in end.iter_mut().zip(series).take(self.model.states) {
             *slot = value(series.get(..=degree).unwrap_or_default(), size);
         }
         let [position, velocity, hidden @ ..] = end;
         let time = self.time + size;
         let input = if self.drive.is_present() { self.drive.torque(time) } else { 0.0 };
-        let point = State { time, position, velocity, hidden, input };
-        let (acceleration, hidden) = self.model.field.rates(&point, &self.mode);
-        let rates = [velocity, acceleration].into_iter().chain(hidden);
-        let defects = series.iter().zip(rates).zip(&self.scale).take(states);
-        let mut rounding = None;
-        let mut largest = 0.0_f64;
-        for (variable, ((series, rate), &scale)) in defects.enumerate() {
-            let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
-            let defect = (slope(series.get(..=degree).unwrap_or_default(), size) - rate).abs();
-            let parts = |defect: f64| defect * size / (scale * self.model.settings.tolerance);
-            let mut part = parts(defect);
-            if part > MOST_DEFECT {
-                // Where torques cancel, what is left of them is rounding, and no step is short enough for it.
-                let rounding = rounding.get_or_insert_with(|| self.rounding(&point));
-                let known = rounding.get(variable).copied().unwrap_or(0.0);
-                part = parts((defect - ROUNDING * known).max(0.0));
-            }
-            largest = if part.is_finite() { largest.max(part) } else { f64::INFINITY };
-        }
-        largest
+        State { time, position, velocity, hidden, input }
+    }
+
+    /// By how much the series at the end of a step fails the equation of motion, over the step, in units of the
+    /// tolerance. The coefficients alone do not betray a narrow peak ahead; this does. `known` is what the rates may
+    /// be off by anyway.
+    fn defect(
+        &self,
+        series: &[Series; MOST_STATES],
+        degree: usize,
+        size: f64,
+        end: &State<f64>,
+        known: &[f64; MOST_STATES],
+    ) -> f64 {
+        let (acceleration, hidden) = self.model.field.rates(end, &self.mode);
+        let rates = [end.velocity, acceleration].into_iter().chain(hidden);
+        let defects = series.iter().zip(rates).zip(&self.scale).zip(known).take(self.model.states);
+        defects
+            .map(|(((series, rate), &scale), known)| {
+                let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
+                let defect = slope(series.get(..=degree).unwrap_or_default(), size) - rate;
+                (defect.abs() - known) * size / (scale * self.model.settings.tolerance)
+            })
+            .fold(0.0, |largest: f64, part| if part.is_finite() { largest.max(part) } else { f64::INFINITY })
     }
 
     /// How much of each rate of the state may be rounding.
+    #[cold]
     fn rounding(&self, point: &State<f64>) -> [f64; MOST_STATES] {
         let point = State {
             time: Rounded::from(point.time),
@@ -101,20 +96,37 @@ impl March<'_> {
         let mut errors = [0.0; MOST_STATES];
         let rates = [point.velocity, acceleration].into_iter().chain(hidden);
         for (error, rate) in errors.iter_mut().zip(rates) {
-            *error = rate.error;
+            *error = ROUNDING * rate.error;
         }
         errors
+    }
+
+    /// Whether the equation of motion fails in a time by more than the tolerance and rounding allow. Where torques
+    /// cancel, what is left of them is rounding, and no step is short enough for it.
+    fn fails(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> bool {
+        let end = self.reached(series, degree, size);
+        self.defect(series, degree, size, &end, &[0.0; MOST_STATES]) > MOST_DEFECT
+            && self.defect(series, degree, size, &end, &self.rounding(&end)) > MOST_DEFECT
     }
 
     /// A step shortened until the equation of motion holds along it.
     pub(super) fn without_defect(&self, series: &[Series; MOST_STATES], degree: usize, mut size: f64) -> f64 {
         while size > f64::EPSILON * self.time.abs()
-            && PARTS.into_iter().any(|part| self.defect(series, degree, part * size) > MOST_DEFECT)
+            && PARTS.into_iter().any(|part| self.fails(series, degree, part * size))
         {
             size *= 0.7;
         }
         size
     }
+}
+
+/// How far the first term that is not zero takes a variable. Behind a soft coupling a ramp of the torque is felt in
+/// the fourth or the fifth only.
+#[cold]
+fn first_term(series: &Series, time: f64) -> f64 {
+    let mut terms =
+        series.iter().zip(0_i32..).map(|(coefficient, degree)| coefficient.abs() * time.powi(degree));
+    terms.find(|term| *term > 0.0).unwrap_or(0.0)
 }
 
 /// The largest of the last coefficients of several series, the highest degree first, each relative to its scale.
