@@ -18,7 +18,7 @@ use crate::search::{Breadth, Pool, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
-use crate::verdict::{significant, unknown, weigh};
+use crate::verdict::{significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null};
 use dynamics::Nominal;
@@ -132,6 +132,7 @@ pub fn diagnose(
     let work = Work { data, base, segments, pool: &pool, thin, time, settings };
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
+    let weighed = without_passed_over(weighed, repaired);
     let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     lap("held out");
     let fitted = &held.fitted;

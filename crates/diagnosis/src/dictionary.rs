@@ -63,10 +63,23 @@ const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
 const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 const DELAYS: [f64; 2] = [0.01, 0.1];
 const LINES: usize = 3;
-/// A second body to begin with: how many lines, its part of the inertia, twice its damping ratio.
+/// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a segment, its part
+/// of the inertia at most, twice its damping ratios.
 const SECOND_MODES: usize = 2;
-const SECOND_BODY: f64 = 0.02;
-const SECOND_DAMPING: f64 = 0.05;
+const OUT_OF_PHASE: f64 = 0.1;
+const LARGEST_BODY: f64 = 0.02;
+const SECOND_DAMPING: [f64; 2] = [0.05, 0.005];
+
+/// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
+/// a body that is not yet where it belongs would lose count of the swings.
+fn second_body(data: &Data) -> f64 {
+    let spans = data.segments.iter().map(|s| match s.times.as_slice() {
+        [first, .., last] => last - first,
+        _ => 0.0,
+    });
+    let phase = data.facts.frequency * spans.fold(0.0, f64::max);
+    (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(LARGEST_BODY)
+}
 
 /// The shapes that a candidate is tried at, as parameters of the fit with unit coefficients.
 pub(crate) fn shapes(candidate: Candidate, facts: &Facts) -> Vec<Vec<f64>> {
@@ -244,13 +257,14 @@ impl Dictionary {
         let mut further = Vec::new();
         if candidates.contains(&coupling) {
             let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
+            let body = second_body(data) * nominal.inertia;
             further = lines(data, &residuals, false, SECOND_MODES)
                 .into_iter()
-                .map(|line| {
-                    let inertia = SECOND_BODY * nominal.inertia;
-                    let stiffness = inertia * line.frequency * line.frequency;
-                    let damping = SECOND_DAMPING * inertia * line.frequency;
-                    (coupling, vec![inertia, stiffness, damping], line.gain)
+                .flat_map(|line| SECOND_DAMPING.map(|damping| (line, damping)))
+                .map(|(line, damping)| {
+                    let values =
+                        vec![body, body * line.frequency * line.frequency, damping * body * line.frequency];
+                    (coupling, values, line.gain)
                 })
                 .collect();
         }

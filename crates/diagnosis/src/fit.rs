@@ -148,6 +148,9 @@ const LOWEST_CUT: f64 = 1.0 / 3.0;
 /// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones.
 const RAISE: f64 = 2.0;
 
+/// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
+const SHORT: f64 = 1e-2;
+
 /// Damping at which steps are so short that nothing comes of them.
 const MOST_DAMPING: f64 = 1e6;
 
@@ -311,7 +314,7 @@ pub(crate) fn fit(
             }
         }
         // Nothing more to be had: no need to try.
-        let done = promised <= effort.small * weighted(&at, &weights);
+        let done = damping <= SHORT && promised <= effort.small * weighted(&at, &weights);
         let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
             let evaluation = evaluate(&mut simulator, &data.segments, &next).ok()?;
             Some((next, evaluation))
@@ -320,7 +323,7 @@ pub(crate) fn fit(
             Some((next, evaluation)) if weighted(&evaluation, &weights) <= weighted(&at, &weights) => {
                 let before = weighted(&at, &weights);
                 let decrease = before - weighted(&evaluation, &weights);
-                small = if decrease <= effort.small * before { small + 1 } else { 0 };
+                small = if damping <= SHORT && decrease <= effort.small * before { small + 1 } else { 0 };
                 point = next;
                 at = evaluation;
                 if wary {

@@ -40,60 +40,74 @@ pub(crate) struct Both<'a> {
     pub(crate) fitted: &'a Fit,
 }
 
-/// What one half says of the other.
-struct OneWay {
-    scored: Vec<DVector<f64>>,
-    continued: Vec<DVector<f64>>,
-}
-
 impl Both<'_> {
-    /// Fits the parts that `train` names, on the longer horizon; then the start states alone of the others.
-    fn one_way(&self, train: &dyn Fn(usize) -> bool, moving: Moving) -> Result<OneWay, DynamicsError> {
+    /// Fits the parts that `train` names, on the longer horizon. Gives the numbers of the segments that were left too.
+    fn learned(
+        &self,
+        train: &dyn Fn(usize) -> bool,
+        moving: Moving,
+    ) -> Result<(Fit, Vec<usize>), DynamicsError> {
         let (masked, numbers) = self.longer.masked(train);
         let own = numbers.iter().filter_map(|&number| self.followed.point.starts.get(number).cloned());
         let point = Point { globals: self.followed.point.globals.clone(), starts: own.collect() };
-        let learned = fit(&masked, &self.followed.hypothesis, point, moving, Effort::HELD_OUT)?;
+        Ok((fit(&masked, &self.followed.hypothesis, point, moving, Effort::HELD_OUT)?, numbers))
+    }
+
+    /// Residuals of the segments that `train` does not name, only start states fitted to them.
+    fn scored(
+        &self,
+        train: &dyn Fn(usize) -> bool,
+        moving: Moving,
+    ) -> Result<Vec<DVector<f64>>, DynamicsError> {
+        let (learned, _) = self.learned(train, moving)?;
         let others = self.fitted.point.starts.iter().enumerate().filter(|(index, _)| !train(*index));
         let point = Point {
-            globals: learned.point.globals.clone(),
+            globals: learned.point.globals,
             starts: others.map(|(_, start)| start.clone()).collect(),
         };
         let rest = self.segments.only(|index| !train(index));
-        let scored = fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Effort::HELD_OUT)?;
-        let mut continued = Vec::new();
-        if self.longer.is_joined() {
-            let mut simulator =
-                Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, true)?;
-            simulator.set(&learned.point.globals)?;
-            let mut all = Vec::new();
-            let mut starts = learned.point.starts.iter();
-            for (number, segment) in self.longer.segments.iter().enumerate() {
-                // A segment that was left out as a whole goes on from nowhere.
-                let Some(start) = numbers.contains(&number).then(|| starts.next()).flatten() else {
-                    all.push(DVector::zeros(segment.times.len()));
-                    continue;
-                };
+        Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Effort::HELD_OUT)?.residuals)
+    }
+
+    /// Residuals of the parts that neither `train` names nor a record begins with, nothing fitted to them. The first part is
+    /// always among those fitted: going back to it would be another question than going on.
+    fn continued(
+        &self,
+        train: &dyn Fn(usize) -> bool,
+        moving: Moving,
+    ) -> Result<Vec<DVector<f64>>, DynamicsError> {
+        let firsts = self.longer.firsts();
+        let train = |index: usize| train(index) || firsts.contains(&index);
+        let (learned, numbers) = self.learned(&train, moving)?;
+        let mut simulator = Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, true)?;
+        simulator.set(&learned.point.globals)?;
+        let mut all = Vec::new();
+        for (&number, start) in numbers.iter().zip(&learned.point.starts) {
+            if let Some(segment) = self.longer.segments.get(number) {
                 all.push(simulator.predict(segment, start)?.residual);
             }
-            let parts = self.longer.by_part(&all).into_iter().enumerate();
-            continued = parts.filter(|(index, _)| !train(*index)).map(|(_, part)| part).collect();
         }
-        Ok(OneWay { scored: scored.residuals, continued })
+        let parts = self.longer.by_part(&all).into_iter().enumerate();
+        Ok(parts.filter(|(index, _)| !train(*index)).map(|(_, part)| part).collect())
     }
 
     /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
     /// With `Moving::Starts` no coefficient is fitted at all.
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
-        let odd = self.one_way(&|index| index % 2 == 0, moving)?;
-        let even = self.one_way(&|index| index % 2 == 1, moving)?;
+        let (even, odd) = (|index: usize| index % 2 == 0, |index: usize| index % 2 == 1);
         let starts = self.fitted.hypothesis.start_length();
-        let parts: Vec<DVector<f64>> = odd.continued.into_iter().chain(even.continued).collect();
-        let (mut odd, mut even) = (odd.scored.into_iter(), even.scored.into_iter());
+        let mut first = self.scored(&odd, moving)?.into_iter();
+        let mut second = self.scored(&even, moving)?.into_iter();
         let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
-            .filter_map(|index| if index % 2 == 0 { even.next() } else { odd.next() })
+            .filter_map(|index| if even(index) { first.next() } else { second.next() })
             .collect();
-        let continued =
-            if parts.is_empty() { mean_square(&residuals, starts) } else { mean_square(&parts, 0) };
+        let continued = if self.longer.is_joined() {
+            let mut parts = self.continued(&odd, moving)?;
+            parts.extend(self.continued(&even, moving)?);
+            mean_square(&parts, 0)
+        } else {
+            mean_square(&residuals, starts)
+        };
         Ok(HeldOut { residuals, starts, continued })
     }
 
@@ -101,7 +115,7 @@ impl Both<'_> {
     pub(crate) fn last_third(&self, moving: Moving) -> Result<f64, DynamicsError> {
         let count = self.segments.segments.len();
         let first = count - (count / 3).max(1);
-        let scored = self.one_way(&|index| index < first, moving)?.scored;
+        let scored = self.scored(&|index| index < first, moving)?;
         Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
     }
 }

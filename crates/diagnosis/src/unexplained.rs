@@ -31,7 +31,7 @@ pub(crate) struct Unexplained {
 }
 
 /// Harmonics of the swing that are looked at.
-const HARMONICS: usize = 6;
+const HARMONICS: usize = 12;
 
 /// Bins of a segment's spectrum on either side of a band's middle that belong to it.
 const BESIDE: i32 = 1;

@@ -75,6 +75,24 @@ pub(crate) fn weigh<'a>(
     weighed
 }
 
+/// The same after sets have been passed over, for what they predict, in favor of one behind them: they lose their probability to
+/// the others.
+pub(crate) fn without_passed_over<'a>(mut weighed: Vec<Weighed<'a>>, chosen: &Fit) -> Vec<Weighed<'a>> {
+    let own = &chosen.hypothesis.candidates;
+    let place = weighed.iter().position(|w| w.fit.hypothesis.candidates == *own).unwrap_or(0);
+    for w in weighed.iter_mut().take(place) {
+        w.probability = 0.0;
+    }
+    let total: f64 = weighed.iter().map(|w| w.probability).sum();
+    if total > 0.0 {
+        for w in &mut weighed {
+            w.probability /= total;
+        }
+    }
+    weighed.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    weighed
+}
+
 /// Probability that an effect acts: that of all sets with it.
 pub(crate) fn marginal(weighed: &[Weighed<'_>], candidate: Candidate) -> f64 {
     let with = weighed.iter().filter(|w| w.fit.hypothesis.candidates.contains(&candidate));
