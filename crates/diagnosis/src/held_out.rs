@@ -94,7 +94,7 @@ impl Both<'_> {
     /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
     /// With `Moving::Starts` no coefficient is fitted at all.
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
-        let (even, odd) = (|index: usize| index % 2 == 0, |index: usize| index % 2 == 1);
+        let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
         let starts = self.fitted.hypothesis.start_length();
         let mut first = self.scored(&odd, moving)?.into_iter();
         let mut second = self.scored(&even, moving)?.into_iter();
