@@ -3,6 +3,7 @@
 use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
 use crate::candidate::Candidate;
 use crate::coefficients::parameters;
+use crate::confidence::confidence;
 use crate::fit::Fit;
 use crate::verdict::{Weighed, marginal};
 use crate::work::{Shift, Work};
@@ -122,7 +123,8 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     } else {
         Status::None
     };
-    let confidence = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
+    let probability = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
+    let confidence = confidence(status, parts.named.len(), probability);
     let gap = parts.gap;
     let figures = format!(
         "{:.3e} {} recalibrated, {:.3e} after, noise floor {:.3e}",

@@ -24,6 +24,7 @@ mod candidate;
 mod chain_statistics;
 mod coefficients;
 mod conclusion;
+mod confidence;
 mod diagnose;
 mod dictionary;
 mod error;

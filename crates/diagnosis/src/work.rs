@@ -238,7 +238,8 @@ impl<'a> Work<'a> {
                 let swapped = repaired
                     .hypothesis
                     .with(&own.iter().map(|c| if c == member { general } else { *c }).collect::<Vec<_>>());
-                if self.pool.rejected.contains(&swapped.candidates) {
+                let given_up = self.pool.rejected.contains(&swapped.candidates);
+                if given_up && self.pool.find(&swapped.candidates).is_none() {
                     let rivalry = Rivalry { effect: member.id(), rival: general.id(), distance: 0.0 };
                     nested.push(rivalry);
                 }
