@@ -18,7 +18,7 @@ use crate::search::{Breadth, Pool, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
-use crate::verdict::{significant, unknown, weigh, without_passed_over};
+use crate::verdict::{by_members, significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null};
 use dynamics::Nominal;
@@ -125,7 +125,7 @@ pub fn diagnose(
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
     let pool = refine(data, &base.calibrated, &found, &candidates, finer);
     let time = pool.autocorrelation_time();
-    let weighed = weigh(&pool, &base.calibrated, time, threshold, candidates.len());
+    let weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, candidates.len()));
     lap("fits");
 
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };

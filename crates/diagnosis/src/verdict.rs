@@ -75,6 +75,34 @@ pub(crate) fn weigh<'a>(
     weighed
 }
 
+/// Part of the best set's probability down to which another can come before it for its members' sake.
+const NEAR_BEST: f64 = 0.2;
+
+/// The same with that set in front, of the size of the best and nearly as probable, whose members are each the most probable:
+/// where rivals share the probability of one part of a set, the rest should not decide between them.
+///
+/// # Reference
+/// Barbieri, Berger, Annals of Statistics 32 (2004) 870: the median probability model.
+pub(crate) fn by_members(mut weighed: Vec<Weighed<'_>>) -> Vec<Weighed<'_>> {
+    let Some(best) = weighed.first() else { return weighed };
+    let (size, least) = (best.fit.hypothesis.candidates.len(), NEAR_BEST * best.probability);
+    let near: Vec<(usize, f64)> = weighed
+        .iter()
+        .enumerate()
+        .filter(|(_, w)| w.probability >= least && w.fit.hypothesis.candidates.len() == size)
+        .map(|(place, w)| {
+            let members = w.fit.hypothesis.candidates.iter();
+            (place, members.map(|candidate| marginal(&weighed, *candidate)).sum())
+        })
+        .collect();
+    // Of equals the more probable stays in front.
+    let front = near.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |near| near.0);
+    if let Some(part) = weighed.get_mut(..=front) {
+        part.rotate_right(1);
+    }
+    weighed
+}
+
 /// The same after sets have been passed over, for what they predict, in favor of one behind them: they lose their probability to
 /// the others.
 pub(crate) fn without_passed_over<'a>(mut weighed: Vec<Weighed<'a>>, chosen: &Fit) -> Vec<Weighed<'a>> {

@@ -38,7 +38,7 @@ fn verdict(result: &DiagnosisResult) -> String {
         _ => "UNKNOWN",
     };
     let confidence = percent(result.verdict.confidence);
-    format!("{label} (probability {confidence})\n{}", result.verdict.summary)
+    format!("{label} (confidence in exactly this: {confidence})\n{}", result.verdict.summary)
 }
 
 fn gap(result: &DiagnosisResult) -> String {
