@@ -73,11 +73,7 @@ const SECOND_DAMPING: [f64; 2] = [0.05, 0.005];
 /// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
 /// a body that is not yet where it belongs would lose count of the swings.
 fn second_body(data: &Data) -> f64 {
-    let spans = data.segments.iter().map(|s| match s.times.as_slice() {
-        [first, .., last] => last - first,
-        _ => 0.0,
-    });
-    let phase = data.facts.frequency * spans.fold(0.0, f64::max);
+    let phase = data.facts.frequency * data.longest_span();
     (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(LARGEST_BODY)
 }
 

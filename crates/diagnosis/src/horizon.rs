@@ -81,10 +81,7 @@ impl Data {
     pub(crate) fn by_part(&self, residuals: &[DVector<f64>]) -> Vec<DVector<f64>> {
         let mut all = Vec::new();
         for (segment, residual) in self.segments.iter().zip(residuals) {
-            for (part, &from) in segment.parts.iter().enumerate() {
-                let to = segment.parts.get(part + 1).copied().unwrap_or(residual.len());
-                all.push(residual.rows(from, to.saturating_sub(from)).clone_owned());
-            }
+            all.extend(segment.part_ranges().map(|part| residual.rows(part.start, part.len()).clone_owned()));
         }
         all
     }

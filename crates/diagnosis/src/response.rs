@@ -96,12 +96,8 @@ impl<'a> Simulator<'a> {
             }
         }
         let lag = measurement.lag.is_some();
-        let seconds = |segment: &Segment| match segment.times.as_slice() {
-            [first, .., last] => last - first,
-            _ => 0.0,
-        };
         // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
-        let longest = data.segments.iter().map(seconds).fold(0.0, f64::max) / facts.interval;
+        let longest = data.longest_span() / facts.interval;
         let settings = Settings {
             tolerance: facts.tolerance,
             velocity: true,

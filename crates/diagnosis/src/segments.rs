@@ -12,6 +12,7 @@ use crate::statistics::{median, quantile};
 use dynamics::{Coordinate, Hold, Input, Nominal};
 use record::Quantity;
 use std::f64::consts::TAU;
+use std::ops::Range;
 
 /// Periods in a segment.
 pub(crate) const PERIODS: f64 = 6.0;
@@ -71,7 +72,28 @@ pub(crate) struct Data {
     pub(crate) resolution: Option<f64>,
 }
 
+impl Segment {
+    /// From the first sample to the last, in seconds.
+    pub(crate) fn span(&self) -> f64 {
+        match self.times.as_slice() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// The samples of each of the segments that it was joined from.
+    pub(crate) fn part_ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        let ends = self.parts.iter().skip(1).copied().chain([self.times.len()]);
+        self.parts.iter().copied().zip(ends).map(|(from, to)| from..to)
+    }
+}
+
 impl Data {
+    /// Span of the longest segment, in seconds.
+    pub(crate) fn longest_span(&self) -> f64 {
+        self.segments.iter().map(Segment::span).fold(0.0, f64::max)
+    }
+
     pub(crate) fn samples(&self) -> usize {
         self.segments.iter().map(|segment| segment.times.len()).sum()
     }

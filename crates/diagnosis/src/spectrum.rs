@@ -17,10 +17,14 @@ const MOST_FREQUENCIES: usize = 4000;
 /// Up to this multiple of the oscillator's own frequency: above it hardly anything moves the body.
 const HIGHEST: f64 = 12.0;
 
+/// The highest angular frequency looked at: short of half the sampling rate.
+fn highest(data: &Data) -> f64 {
+    (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval)
+}
+
 /// About how many independent frequencies the lines of a whole record are chosen from.
 pub(crate) fn frequencies(data: &Data) -> f64 {
-    let highest = (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval);
-    (highest * data.facts.duration / std::f64::consts::TAU).max(1.0)
+    (highest(data) * data.facts.duration / std::f64::consts::TAU).max(1.0)
 }
 
 /// Adds to each frequency of a grid what a sine and a cosine of it take away from values at even or uneven times.
@@ -48,12 +52,8 @@ fn add(points: &[(f64, f64)], lowest: f64, step: f64, gains: &mut [f64]) {
 ///
 /// Peaks of the periodogram on a grid of half the resolution.
 pub(crate) fn lines(data: &Data, residuals: &[&[f64]], coherent: bool, most: usize) -> Vec<Line> {
-    let spans = data.segments.iter().map(|s| match s.times.as_slice() {
-        [first, .., last] => last - first,
-        _ => 0.0,
-    });
-    let span = if coherent { data.facts.duration } else { spans.fold(0.0, f64::max) };
-    let highest = (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval);
+    let span = if coherent { data.facts.duration } else { data.longest_span() };
+    let highest = highest(data);
     let lowest = 1.5 * std::f64::consts::TAU / span;
     let count = (((highest - lowest) * span / std::f64::consts::PI) as usize).clamp(1, MOST_FREQUENCIES);
     let records = data.inputs.len();

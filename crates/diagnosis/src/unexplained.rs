@@ -95,10 +95,9 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
     let highest = 0.8 * TAU / (2.0 * data.facts.interval);
     for (segment, residual) in data.segments.iter().zip(residuals) {
-        for (part, &from) in segment.parts.iter().enumerate() {
-            let to = segment.parts.get(part + 1).copied().unwrap_or(segment.times.len());
-            let Some(times) = segment.times.get(from..to) else { continue };
-            let Some(values) = residual.as_slice().get(from..to) else { continue };
+        for part in segment.part_ranges() {
+            let Some(times) = segment.times.get(part.clone()) else { continue };
+            let Some(values) = residual.as_slice().get(part) else { continue };
             let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
             // A stretch cut short has no bins between the harmonics.
             if length * data.facts.frequency < 0.8 * TAU * PERIODS {
