@@ -64,8 +64,8 @@ const MOST_HORIZONS: usize = 3;
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
 /// `seconds` is a stopwatch: it gives seconds since any moment. Costs are linear in the number of samples up to
-/// 10,000; longer data are thinned by whole segments, and the answer states the share used. The same input gives the
-/// same bits with any number of threads (times apart).
+/// 20,000; of more, every so many are taken or whole segments are left out, and the answer states the share used. The
+/// same input gives the same bits with any number of threads (times apart).
 ///
 /// # Errors
 /// [`DiagnosisError`] for records that say nothing, or that are not of this system.
