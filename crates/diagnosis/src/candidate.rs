@@ -57,11 +57,13 @@ const fn between(name: &'static str, lower: f64, upper: f64) -> Parameter {
     Parameter { name, lower, upper, strength: false, shape: true, simpler: false }
 }
 
-/// A second mode's frequency relative to the swing's at least, its decay over the longest record as a logarithm at least, and
-/// its damping ratio at most.
-const SLOWEST_MODE: f64 = 0.3;
+/// A second mode's decay over the longest record as a logarithm at least, and its damping ratio at most.
 const LEAST_DECAY: f64 = 0.3;
 const MOST_DAMPED: f64 = 0.7;
+
+/// A second body's part of the inertia: smaller ones move nothing, larger ones are the body themselves.
+const SMALLEST_BODY: f64 = 1e-9;
+const LARGEST_BODY: f64 = 1e2;
 
 /// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -203,11 +205,19 @@ impl Candidate {
                     between("frequency", 4.0 * PI / facts.duration, PI / facts.interval),
                     any("phase"),
                 ],
-                SystemEffect::FlexibleCoupling => vec![
-                    Parameter { upper: 1e2 * facts.inertia, ..positive("inertia") },
-                    between("stiffness", 1e-6 * facts.stiffness, 1e4 * facts.stiffness),
-                    Parameter { strength: false, ..positive("damping") },
-                ],
+                SystemEffect::FlexibleCoupling => {
+                    let [slowest, fastest] = facts.modes();
+                    let decay = between("damping", LEAST_DECAY / facts.duration, MOST_DAMPED * fastest);
+                    vec![
+                        Parameter {
+                            lower: SMALLEST_BODY * facts.inertia,
+                            upper: LARGEST_BODY * facts.inertia,
+                            ..positive("inertia")
+                        },
+                        Parameter { simpler: true, ..between("stiffness", slowest, fastest) },
+                        Parameter { simpler: true, ..decay },
+                    ]
+                }
                 SystemEffect::InputDelay => {
                     vec![Parameter {
                         strength: true,
@@ -251,8 +261,10 @@ impl Candidate {
     }
 
     /// The law's parameters from a fit's. They differ where the law has a size and an angle, which are fitted as (size·cos,
-    /// size·sin), and for Stribeck friction, whose second is fitted as the excess of the static torque, so that it
-    /// stays at least the first.
+    /// size·sin); for Stribeck friction, whose second is fitted as the excess of the static torque, so that it
+    /// stays at least the first; and for a second body, whose stiffness k and damping c are fitted as its frequency and
+    /// decay rate on a body at rest, k = I·ω² and c = 2·I·r: these are what a record shows, and no step makes the
+    /// motion faster than its samples.
     pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
         let mut values = fitted.to_vec();
         if let Some(Polar { size, angle }) = self.polar()
@@ -269,6 +281,12 @@ impl Candidate {
         {
             *excess += *torque;
         }
+        if let (Self::System(SystemEffect::FlexibleCoupling), [inertia, stiffness, damping]) =
+            (self, values.as_mut_slice())
+        {
+            *stiffness *= *stiffness * *inertia;
+            *damping *= 2.0 * *inertia;
+        }
         values
     }
 
@@ -276,6 +294,14 @@ impl Candidate {
     pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         if self == Self::System(SystemEffect::StribeckFriction) {
             return vec![(1, 0, 1.0)];
+        }
+        if let (Self::System(SystemEffect::FlexibleCoupling), &[inertia, frequency, rate]) = (self, fitted) {
+            return vec![
+                (1, 0, frequency * frequency),
+                (1, 1, 2.0 * inertia * frequency),
+                (2, 0, 2.0 * rate),
+                (2, 2, 2.0 * inertia),
+            ];
         }
         let Some(Polar { size, angle }) = self.polar() else { return Vec::new() };
         let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
@@ -293,19 +319,12 @@ impl Candidate {
         ]
     }
 
-    /// Whether fitted values are what the effect's name says. A second body whose mode does not decay within the records is a
-    /// forcing, one that is much slower than the swing, or hardly swings at all, a drift.
-    pub(crate) fn is_itself(self, fitted: &[f64], facts: &Facts) -> bool {
+    /// Whether fitted values are what the effect's name says. A second body that hardly swings at all is a drift; at the ends
+    /// of its parameters' ranges one whose mode does not decay within the records is a forcing, one much slower than
+    /// the swing a drift.
+    pub(crate) fn is_itself(self, fitted: &[f64]) -> bool {
         match (self, fitted) {
-            (Self::System(SystemEffect::FlexibleCoupling), &[inertia, stiffness, damping])
-                if inertia > 0.0 =>
-            {
-                let mode = (stiffness / inertia).sqrt();
-                let rate = damping / (2.0 * inertia);
-                mode >= SLOWEST_MODE * facts.frequency
-                    && rate * facts.duration >= LEAST_DECAY
-                    && rate <= MOST_DAMPED * mode
-            }
+            (Self::System(SystemEffect::FlexibleCoupling), &[_, mode, rate]) => rate <= MOST_DAMPED * mode,
             _ => true,
         }
     }

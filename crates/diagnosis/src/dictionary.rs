@@ -64,11 +64,11 @@ const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 const DELAYS: [f64; 2] = [0.01, 0.1];
 const LINES: usize = 3;
 /// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a segment, its part
-/// of the inertia at most, twice its damping ratios.
+/// of the inertia at most, its damping ratios.
 const SECOND_MODES: usize = 2;
 const OUT_OF_PHASE: f64 = 0.1;
 const LARGEST_BODY: f64 = 0.02;
-const SECOND_DAMPING: [f64; 2] = [0.05, 0.005];
+const SECOND_DAMPING: [f64; 2] = [0.025, 0.0025];
 
 /// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
 /// a body that is not yet where it belongs would lose count of the swings.
@@ -258,9 +258,7 @@ impl Dictionary {
                 .into_iter()
                 .flat_map(|line| SECOND_DAMPING.map(|damping| (line, damping)))
                 .map(|(line, damping)| {
-                    let values =
-                        vec![body, body * line.frequency * line.frequency, damping * body * line.frequency];
-                    (coupling, values, line.gain)
+                    (coupling, vec![body, line.frequency, damping * line.frequency], line.gain)
                 })
                 .collect();
         }

@@ -33,7 +33,24 @@ const FINEST: f64 = 1e-10;
 const COARSEST: f64 = 1e-6;
 const OF_NOISE: f64 = 1e-3;
 
+/// A motion's frequencies relative to the swing's: far slower than it a second body drifts along, and above the upper end
+/// hardly anything moves the body.
+const SLOWEST_MODE: f64 = 0.3;
+const FASTEST: f64 = 12.0;
+
 impl Facts {
+    /// The highest angular frequency looked at in samples so far apart: short of half their rate, where frequencies are told
+    /// from their images.
+    pub(crate) fn highest_frequency(&self, interval: f64) -> f64 {
+        (FASTEST * self.frequency).min(0.8 * std::f64::consts::PI / interval)
+    }
+
+    /// Angular frequencies that a second body may have, lowest and highest.
+    pub(crate) fn modes(&self) -> [f64; 2] {
+        let lowest = SLOWEST_MODE * self.frequency;
+        [lowest, self.highest_frequency(self.interval).max(2.0 * lowest)]
+    }
+
     /// The same with the tolerance that a noise of this size asks for.
     pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
         Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), ..self }

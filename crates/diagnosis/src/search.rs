@@ -87,7 +87,7 @@ impl Pool {
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
-    if members.any(|(candidate, part)| !candidate.is_itself(part, &data.facts)) {
+    if members.any(|(candidate, part)| !candidate.is_itself(part)) {
         return true;
     }
     let parameters = fit.hypothesis.parameters(&data.facts);
@@ -220,9 +220,14 @@ const PROMISE: f64 = 0.5;
 /// show only once the first is in. The best of many frequencies promises something where there is nothing: the logarithm
 /// of how many `looked` at there were, for a sine and a cosine in white noise.
 fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+    time > WHITE || stands_out(base, time, gain, threshold, looked)
+}
+
+/// Whether a linearized gain would count by itself, however much structure is left beside it.
+fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     let left = (base.squares - gain).max(f64::MIN_POSITIVE);
     let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
-    time > WHITE || score > PROMISE * threshold + looked.ln()
+    score > PROMISE * threshold + looked.ln()
 }
 
 /// Score behind the best from which on a set is not gone on from.
@@ -252,7 +257,8 @@ fn around(
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
             // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
-            if (best || *gain > weakest) && worth(*gain, dictionary.frequencies) {
+            let stands_out = stands_out(base, time, *gain, threshold, dictionary.frequencies);
+            if (best || *gain > weakest) && stands_out {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -340,8 +346,10 @@ fn begin(
     {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    for (candidate, parameters, _) in
-        dictionary.further.iter().filter(|further| worth(further.2, dictionary.frequencies))
+    for (candidate, parameters, _) in dictionary
+        .further
+        .iter()
+        .filter(|further| stands_out(calibrated, time, further.2, threshold, dictionary.frequencies))
     {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }

@@ -14,12 +14,12 @@ pub(crate) struct Line {
 /// Frequencies looked at, at most.
 const MOST_FREQUENCIES: usize = 4000;
 
-/// Up to this multiple of the oscillator's own frequency: above it hardly anything moves the body.
-const HIGHEST: f64 = 12.0;
-
-/// The highest angular frequency looked at: short of half the sampling rate.
+/// The highest angular frequency looked at. A search looks at every so many samples only.
 fn highest(data: &Data) -> f64 {
-    (HIGHEST * data.facts.frequency).min(0.8 * std::f64::consts::PI / data.facts.interval)
+    let steps = data.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum::<usize>();
+    let spans =
+        data.segments.iter().filter_map(|segment| Some(segment.times.last()? - segment.times.first()?));
+    data.facts.highest_frequency(spans.sum::<f64>() / steps.max(1) as f64)
 }
 
 /// About how many independent frequencies the lines of a whole record are chosen from.
