@@ -284,7 +284,7 @@ impl Candidate {
         if let (Self::System(SystemEffect::FlexibleCoupling), [inertia, stiffness, damping]) =
             (self, values.as_mut_slice())
         {
-            *stiffness *= *stiffness * *inertia;
+            *stiffness = *stiffness * *stiffness * *inertia;
             *damping *= 2.0 * *inertia;
         }
         values

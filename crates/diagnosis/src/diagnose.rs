@@ -150,7 +150,6 @@ pub fn diagnose(
         (floor, &noise::squares(segments.data, &fitted.residuals)),
         held.last_third,
         unit,
-        &settings.seed,
     );
     lap("gap");
 

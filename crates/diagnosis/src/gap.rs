@@ -3,13 +3,8 @@
 use crate::answer::{Gap, Interval};
 use crate::held_out::HeldOut;
 use crate::noise::NoiseFloor;
-use crate::statistics::quantile;
+use crate::ratio::{Block, ratio_interval};
 use nalgebra::DVector;
-use rand::RngExt;
-use seed::Seed;
-
-/// Draws of the bootstrap.
-const DRAWS: usize = 1000;
 
 /// Held-out residuals of the three simulators, and of the free latent torque.
 pub(crate) struct Stages<'a> {
@@ -19,15 +14,40 @@ pub(crate) struct Stages<'a> {
     pub(crate) ceiling: &'a [DVector<f64>],
 }
 
-/// Sums by segment: squares and degrees of freedom.
-fn sums(held: &HeldOut) -> Vec<(f64, f64)> {
-    let freedom = |e: &DVector<f64>| (e.len() as f64 - held.starts as f64).max(1.0);
-    held.residuals.iter().map(|e| (e.norm_squared(), freedom(e))).collect()
+/// Blocks of a segment: swings, of which it holds about six.
+const BLOCKS: usize = 6;
+
+/// Ends of an interval of closures of a gap that is not told from none.
+const ANY_CLOSURE: [f64; 2] = [-1.0, 1.0];
+
+/// Squares by block of a segment, on the scale of a variance's sum: what the fitted start states have taken is put back.
+type Squares = Vec<Vec<f64>>;
+
+fn by_block(squares: &[f64], scale: f64) -> Vec<f64> {
+    let size = squares.len().div_ceil(BLOCKS).max(1);
+    squares.chunks(size).map(|block| scale * block.iter().sum::<f64>()).collect()
 }
 
-fn mean_square(sums: &[(f64, f64)], chosen: &[usize]) -> f64 {
-    let picked = || chosen.iter().filter_map(|index| sums.get(*index));
-    picked().map(|s| s.0).sum::<f64>() / picked().map(|s| s.1).sum::<f64>().max(1.0)
+fn held_out(held: &HeldOut) -> Squares {
+    let own = |e: &DVector<f64>| {
+        let squares: Vec<f64> = e.iter().map(|e| e * e).collect();
+        by_block(&squares, e.len() as f64 / (e.len() as f64 - held.starts as f64).max(1.0))
+    };
+    held.residuals.iter().map(own).collect()
+}
+
+/// The noise floor's, its mean taken where it was not measured.
+fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
+    let mean = floor.value * floor.value;
+    let own = |squares: &Vec<Option<f64>>| {
+        let filled: Vec<f64> = squares.iter().map(|square| square.unwrap_or(mean)).collect();
+        by_block(&filled, 1.0)
+    };
+    squares.iter().map(own).collect()
+}
+
+fn mean_square(squares: &Squares, samples: f64) -> f64 {
+    squares.iter().flatten().sum::<f64>() / samples
 }
 
 fn closure(after: f64, before: f64, noise: f64) -> f64 {
@@ -35,36 +55,45 @@ fn closure(after: f64, before: f64, noise: f64) -> f64 {
     if excess > 0.0 { 1.0 - (after - noise) / excess } else { 0.0 }
 }
 
-/// The gap. Intervals by a paired bootstrap over segments: the same segments are drawn for all simulators and for the noise
-/// floor, whose squares and count come by segment.
+/// Interval of a ratio of sums of squares, block by block.
+fn interval(squares: [&Squares; 3], block: impl Fn([f64; 3]) -> Block) -> Option<[f64; 2]> {
+    let [one, other, third] = squares;
+    let runs: Vec<Vec<Block>> = one
+        .iter()
+        .zip(other)
+        .zip(third)
+        .map(|((a, b), c)| a.iter().zip(b).zip(c).map(|((a, b), c)| block([*a, *b, *c])).collect())
+        .collect();
+    ratio_interval(&runs)
+}
+
+/// The gap. Intervals hold the sums of squares of the simulators and of the noise floor against one another, swing by swing
+/// ([`ratio_interval`]). Where the gap is not told from none its closure may be anything from −1 to 1.
 pub(crate) fn gap(
     stages: &Stages<'_>,
-    (floor, floors): (NoiseFloor, &[(f64, f64)]),
+    (floor, floors): (NoiseFloor, &[Vec<Option<f64>>]),
     last_third: [f64; 2],
     unit: &'static str,
-    seed: &Seed,
 ) -> Gap {
-    let [nominal, recalibrated, repaired] = [stages.nominal, stages.recalibrated, stages.repaired].map(sums);
-    let all: Vec<usize> = (0..nominal.len()).collect();
+    let [nominal, recalibrated, repaired] =
+        [stages.nominal, stages.recalibrated, stages.repaired].map(held_out);
+    let floors = of_floor(floors, &floor);
+    let samples = stages.repaired.residuals.iter().map(DVector::len).sum::<usize>().max(1) as f64;
     let noise = floor.value * floor.value;
-    let mut generator = seed.child("segments").generator();
-    let (mut closures, mut further, mut ratios) = (Vec::new(), Vec::new(), Vec::new());
-    for _ in 0..DRAWS {
-        let drawn: Vec<usize> = all.iter().map(|_| generator.random_range(0..all.len().max(1))).collect();
-        let after = mean_square(&repaired, &drawn);
-        // The floor is an estimate too, from the same segments.
-        let noise = mean_square(floors, &drawn);
-        closures.push(closure(after, mean_square(&nominal, &drawn), noise));
-        further.push(closure(after, mean_square(&recalibrated, &drawn), noise));
-        ratios.push((after / noise).sqrt());
-    }
-    let interval = |value: f64, draws: &[f64]| Interval {
-        value,
-        interval_95: [quantile(draws, 0.025), quantile(draws, 0.975)],
+    let [r0, rc, rm] = [&nominal, &recalibrated, &repaired].map(|own| mean_square(own, samples));
+    let closed = |before: &Squares, value: f64| {
+        let left =
+            interval([&repaired, before, &floors], |[after, before, noise]| [after - noise, before - noise]);
+        Interval { value, interval_95: left.map_or(ANY_CLOSURE, |[low, high]| [1.0 - high, 1.0 - low]) }
     };
-    let at = |sums: &[(f64, f64)]| mean_square(sums, &all);
-    let (r0, rc, rm) = (at(&nominal), at(&recalibrated), at(&repaired));
-    let freedom: f64 = repaired.iter().map(|s| s.1).sum();
+    let over = interval([&repaired, &floors, &floors], |[after, noise, _]| [after, noise]);
+    let ratio = (rm / noise).sqrt();
+    let freedom: f64 = stages
+        .repaired
+        .residuals
+        .iter()
+        .map(|e| (e.len() as f64 - stages.repaired.starts as f64).max(1.0))
+        .sum();
     let left: f64 = stages.ceiling.iter().map(DVector::norm_squared).sum();
     Gap {
         unit,
@@ -72,9 +101,12 @@ pub(crate) fn gap(
         recalibrated: rc.sqrt(),
         repaired: rm.sqrt(),
         ceiling: (left / freedom.max(1.0)).sqrt(),
-        closure: interval(closure(rm, r0, noise), &closures),
-        closure_of_recalibrated: interval(closure(rm, rc, noise), &further),
-        ratio_to_floor: interval((rm / noise).sqrt(), &ratios),
+        closure: closed(&nominal, closure(rm, r0, noise)),
+        closure_of_recalibrated: closed(&recalibrated, closure(rm, rc, noise)),
+        ratio_to_floor: Interval {
+            value: ratio,
+            interval_95: over.map_or([0.0, ratio], |ends| ends.map(|end| end.max(0.0).sqrt())),
+        },
         noise_floor: floor,
         last_third: last_third.map(f64::sqrt),
         held_out: "segments of about six periods (without a spring: three time constants), fitted to the even ones and \

@@ -45,6 +45,7 @@ mod outliers;
 mod period;
 mod portrait;
 mod projection;
+mod ratio;
 mod refine;
 mod response;
 mod score;

@@ -6,7 +6,7 @@ use nalgebra::DVector;
 use serde::Serialize;
 
 /// Fewest second differences of a moving signal that a floor is taken from.
-const FEWEST: f64 = 100.0;
+const FEWEST: usize = 100;
 
 /// Standard deviation of the white part of a residual.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -28,9 +28,9 @@ pub struct NoiseFloor {
 /// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
 /// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
 pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
-    let by_segment = squares(data, residuals);
-    let count = by_segment.iter().map(|own| own.1).sum::<f64>();
-    let variance = by_segment.iter().map(|own| own.0).sum::<f64>() / count.max(1.0);
+    let squares = squares(data, residuals);
+    let count = squares.iter().flatten().flatten().count() as f64;
+    let variance = squares.iter().flatten().flatten().sum::<f64>() / count.max(1.0);
     let worth = count / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
     let spread = normal_above(0.025) * (2.0 / worth.max(1.0)).sqrt();
     let end = |factor: f64| (variance * factor.max(0.0)).sqrt();
@@ -41,25 +41,23 @@ pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
     }
 }
 
-/// For each segment, a sixth of the sum of the squared second differences that count, and how many do.
-pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<(f64, f64)> {
+/// For each sample of each segment, a sixth of the squared second difference about it, where it counts.
+pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
     let step = data.resolution.unwrap_or(0.0);
-    let sums = |only_moving: bool| -> Vec<(f64, f64)> {
+    let differences = |only_moving: bool| -> Vec<Vec<Option<f64>>> {
         let pieces = data.segments.iter().zip(residuals);
         let own = |(segment, residual): (&Segment, &DVector<f64>)| {
-            let (mut sum, mut count) = (0.0, 0.0);
-            for (e, y) in residual.as_slice().windows(3).zip(segment.values.windows(3)) {
-                if let (&[a, b, c], &[first, _, last]) = (e, y)
-                    && (!only_moving || (last - first).abs() >= 2.0 * step)
-                {
-                    sum += (a - 2.0 * b + c).powi(2) / 6.0;
-                    count += 1.0;
+            let inner = residual.as_slice().windows(3).zip(segment.values.windows(3));
+            let inner = inner.map(|(e, y)| match (e, y) {
+                (&[a, b, c], &[first, _, last]) if !only_moving || (last - first).abs() >= 2.0 * step => {
+                    Some((a - 2.0 * b + c).powi(2) / 6.0)
                 }
-            }
-            (sum, count)
+                _ => None,
+            });
+            std::iter::once(None).chain(inner).chain([None]).take(residual.len()).collect()
         };
         pieces.map(own).collect()
     };
-    let moving = sums(true);
-    if moving.iter().map(|own| own.1).sum::<f64>() >= FEWEST { moving } else { sums(false) }
+    let moving = differences(true);
+    if moving.iter().flatten().flatten().count() >= FEWEST { moving } else { differences(false) }
 }

@@ -1,6 +1,6 @@
 //! Small statistics that several parts use.
 
-use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
+use statrs::distribution::{ChiSquared, ContinuousCDF, Normal, StudentsT};
 
 /// Mean; 0 of nothing.
 pub(crate) fn mean(values: &[f64]) -> f64 {
@@ -29,6 +29,11 @@ pub(crate) fn chi_squared_above(degrees: f64, probability: f64) -> f64 {
 /// The value that a standard normal variable exceeds with a probability.
 pub(crate) fn normal_above(probability: f64) -> f64 {
     Normal::new(0.0, 1.0).map_or(f64::INFINITY, |d| -d.inverse_cdf(probability))
+}
+
+/// The value that a Student variable with so many degrees of freedom exceeds with a probability.
+pub(crate) fn student_above(probability: f64, degrees: f64) -> f64 {
+    StudentsT::new(0.0, 1.0, degrees).map_or(f64::INFINITY, |d| -d.inverse_cdf(probability))
 }
 
 /// Integrated autocorrelation time τ = 1 + 2·Σ ρₖ of a zero-mean series that comes in pieces, at least 1: N samples
@@ -69,7 +74,7 @@ pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{autocorrelation_time, chi_squared_above, normal_above, quantile};
+    use super::{autocorrelation_time, chi_squared_above, normal_above, quantile, student_above};
     use rand_distr::{Distribution, StandardNormal};
 
     #[test]
@@ -82,6 +87,7 @@ mod tests {
     fn tails_are_the_tables() {
         assert!((chi_squared_above(1.0, 0.05) - 3.841_458_820_694_124).abs() < 1e-6);
         assert!((normal_above(0.025) - 1.959_963_984_540_054).abs() < 1e-6);
+        assert!((student_above(0.025, 10.0) - 2.228_138_85).abs() < 1e-6);
     }
 
     /// An AR(1) process has τ = (1 + r)/(1 − r).
