@@ -216,6 +216,14 @@ const WHITE: f64 = 1.5;
 /// Part of the threshold that the linearized gain has to promise at a white residual.
 const PROMISE: f64 = 0.5;
 
+/// Every candidate alone, at the best of its shapes.
+pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> Vec<Proposal> {
+    let linear = singles(dictionary);
+    let linear = linear.iter().map(|gain| additions(&data.facts, dictionary, gain));
+    let further = dictionary.further.iter().map(|(candidate, start, _)| vec![(*candidate, start.clone())]);
+    linear.chain(further).map(|added| proposal(data, calibrated, None, &added)).collect()
+}
+
 /// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
 /// show only once the first is in. The best of many frequencies promises something where there is nothing: the logarithm
 /// of how many `looked` at there were, for a sine and a cosine in white noise.

@@ -42,6 +42,8 @@ pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerE
 /// What a diagnosis of a case is given, for those who do simpler things with it.
 pub(crate) struct GivenCase {
     pub(crate) nominal: Nominal,
+    /// What a diagnosis is given.
+    pub(crate) observations: Vec<Observations>,
     /// Positions only: none where the sensor observes something else.
     pub(crate) records: Vec<BaselineRecord>,
 }
@@ -55,7 +57,10 @@ pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, Tr
         values: given.observations.values().to_vec(),
         input: given.observations.input().map(<[f64]>::to_vec),
     });
-    Ok(GivenCase { records: records.collect(), nominal: question.stated.nominal })
+    let records = records.collect();
+    let nominal = question.stated.nominal;
+    let observations = question.given.into_iter().map(|given| given.observations).collect();
+    Ok(GivenCase { nominal, observations, records })
 }
 
 /// One diagnosis with all that it needs to be shown.

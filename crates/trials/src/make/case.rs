@@ -181,12 +181,11 @@ impl Job {
         let subject = self.subject(plan);
         for attempt in 0..ATTEMPTS {
             let setup = Setup::draw(plan, *self, attempt, subject.motions, &subject.ids)?;
-            let hidden = subject
-                .ids
-                .iter()
-                .map(|id| hide(&setup, id, subject.wanted))
-                .collect::<Result<Option<Vec<_>>, _>>()?;
-            if let Some(hidden) = hidden {
+            let hidden = |wanted: f64| {
+                let effects = subject.ids.iter().map(|id| hide(&setup, id, wanted));
+                effects.collect::<Result<Option<Vec<_>>, _>>()
+            };
+            if let Some(hidden) = apart(&setup, subject.wanted, hidden)? {
                 return self.written(plan, id, &setup, hidden, &subject);
             }
         }
@@ -310,17 +309,57 @@ pub(crate) fn hide(setup: &Setup, id: &str, wanted: f64) -> Result<Option<(Activ
             Some(clean) => clean.clone(),
             None => situation.motions(&[active])?,
         };
-        let distortions = if clean.is_some() { vec![active] } else { Vec::new() };
-        let chain = Chain::new(Observed::Position, 0.0, distortions)?;
-        let seen = motions
-            .iter()
-            .map(|motion| {
-                let unused = |name: &'static str| setup.seed.child(name).generator();
-                chain.observe(&motion.sampled(), Coordinate::Angle, unused)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        Ok(left_over(situation, &seen, absorbed)? / setup.white)
+        beyond_recalibration(setup, motions, clean.is_some().then_some(active), absorbed)
     };
     let sized = solve(wanted, shape.guess, shape.most, detectability)?;
     sized.map(|sized| Ok((shape.at(sized.size)?, sized.detectability))).transpose()
+}
+
+/// Size in noise units of noise-free motions that a sensor with distortions of its own sees.
+fn beyond_recalibration(
+    setup: &Setup,
+    motions: Vec<Motion>,
+    distortions: impl IntoIterator<Item = Active>,
+    absorbed: Absorbed,
+) -> Result<f64, TrialError> {
+    let chain = Chain::new(Observed::Position, 0.0, distortions.into_iter().collect())?;
+    let seen = motions
+        .iter()
+        .map(|motion| {
+            let unused = |name: &'static str| setup.seed.child(name).generator();
+            chain.observe(&motion.sampled(), Coordinate::Angle, unused)
+        })
+        .collect::<Result<Vec<_>, _>>()?;
+    Ok(left_over(&setup.situation, &seen, absorbed)? / setup.white)
+}
+
+/// Factor beyond which two effects are one for all that a record says.
+const HARDLY_APART: f64 = 10.0;
+
+/// Effects of which each is as detectable as wanted beyond what recalibration *and the other one* make up for.
+///
+/// Two that are so detectable alone may cancel: dry friction flattens the end of a decay and drag its beginning. With sizes d₁
+/// and d₂ alone and d₁₂ together their correlation is ρ = (d₁₂² − d₁² − d₂²)/(2·d₁·d₂), and of each d·√(1 − ρ²) is its own: both
+/// are hidden anew at so many times the size. `None` where that is out of reach.
+fn apart(
+    setup: &Setup,
+    wanted: f64,
+    hidden: impl Fn(f64) -> Result<Option<Vec<(Active, f64)>>, TrialError>,
+) -> Result<Option<Vec<(Active, f64)>>, TrialError> {
+    let Some(alone) = hidden(wanted)? else { return Ok(None) };
+    let &[(one, first), (other, second)] = alone.as_slice() else { return Ok(Some(alone)) };
+    let (acting, sensing): (Vec<Active>, Vec<Active>) =
+        [one, other].into_iter().partition(|active| matches!(active.effect(), Effect::System(_)));
+    let preload = [one, other].iter().any(|active| active.id() == "constant_torque");
+    let absorbed = Absorbed { rest_angle: !preload, ..Absorbed::BY_RECALIBRATION };
+    let both = beyond_recalibration(setup, setup.situation.motions(&acting)?, sensing, absorbed)?;
+    let correlation = (both * both - first * first - second * second) / (2.0 * first * second);
+    let factor = (1.0 - correlation * correlation).max(0.0).sqrt().recip();
+    if factor.is_nan() || factor >= HARDLY_APART {
+        return Ok(None);
+    }
+    let own = |effects: Vec<(Active, f64)>| {
+        effects.into_iter().map(|(active, detectability)| (active, detectability / factor)).collect()
+    };
+    Ok(hidden(wanted * factor)?.map(own))
 }
