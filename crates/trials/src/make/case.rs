@@ -334,7 +334,7 @@ fn beyond_recalibration(
 }
 
 /// Factor beyond which two effects are one for all that a record says.
-const HARDLY_APART: f64 = 10.0;
+const HARDLY_APART: f64 = 5.0;
 
 /// Effects of which each is as detectable as wanted beyond what recalibration *and the other one* make up for.
 ///

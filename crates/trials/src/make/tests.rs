@@ -2,6 +2,7 @@
 
 use super::case::{Job, Setup};
 use super::plan::TrialPlan;
+use super::recalibration::Absorbed;
 use super::situation::{Motions, Nuisances, Scatter};
 use crate::{Bank, Hidden};
 use dynamics::reference::{Tolerance, simulate};
@@ -175,6 +176,44 @@ fn sizes_are_as_detectable_as_wanted() {
         checked += 1;
     }
     assert!(checked > 20, "{checked}");
+}
+
+/// What recalibration and the other one of a pair together leave of it: the size of the first alone.
+#[test]
+fn each_of_a_pair_is_as_detectable_as_wanted_beyond_the_other() {
+    let plan = plan(&[("pair", 54)], &["trials.detectabilities=[12]"]);
+    let mut checked = 0;
+    for index in 0..plan.len() {
+        let job = plan.job(index).unwrap();
+        let hidden = plan.case(index).unwrap().hidden;
+        let stand_in: &'static [&'static str] = match &hidden.effects[..] {
+            [one, other] if [&one.id, &other.id].iter().all(|id| *id != "flexible_coupling") => {
+                let ids = [one.id.as_str(), other.id.as_str()];
+                match ids.iter().find(|id| ["quadratic_drag", "cubic_stiffness"].contains(id)) {
+                    Some(&"quadratic_drag") => &["quadratic_drag"],
+                    Some(&"cubic_stiffness") => &["cubic_stiffness"],
+                    _ => continue,
+                }
+            }
+            _ => continue,
+        };
+        let truth = &hidden.records[0];
+        if truth.excitation.is_some() || truth.system.effects().len() < 2 {
+            continue;
+        }
+        let ids: Vec<&str> = hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
+        let setup = (0..40)
+            .map(|attempt| Setup::draw(&plan, job, attempt, Motions::Release, &ids).unwrap())
+            .find(|setup| setup.situation.nominal == *truth.system.nominal())
+            .unwrap();
+        let motions = setup.situation.motions(truth.system.effects()).unwrap();
+        let absorbed = Absorbed { stand_ins: stand_in, ..Absorbed::BY_RECALIBRATION };
+        let found = setup.detectability(motions, absorbed).unwrap();
+        // The larger the sizes, the less linear; a factor of two would be two effects that cancel.
+        assert!((found / 12.0 - 1.0).abs() < 0.2, "{ids:?} {found}");
+        checked += 1;
+    }
+    assert!(checked > 5, "{checked}");
 }
 
 /// ‖P·Δ‖ of a case with effects in the system.
