@@ -238,6 +238,20 @@ fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> 
     score > PROMISE * threshold + looked.ln()
 }
 
+/// The same of candidates that no columns stand for: those bring start states of their own into every segment, and a line in
+/// the spectrum of many short ones has to be worth these.
+fn stands_alone(
+    base: &Fit,
+    time: f64,
+    (candidate, gain): (Candidate, f64),
+    threshold: f64,
+    looked: f64,
+) -> bool {
+    let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
+    let price = starts * (base.samples() as f64 / time).max(2.0).ln();
+    stands_out(base, time, gain, threshold.max(price), looked)
+}
+
 /// Score behind the best from which on a set is not gone on from.
 const FAR_BEHIND: f64 = 60.0;
 
@@ -265,8 +279,9 @@ fn around(
         for (candidate, parameters, gain) in &dictionary.further {
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
             // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
-            let stands_out = stands_out(base, time, *gain, threshold, dictionary.frequencies);
-            if (best || *gain > weakest) && stands_out {
+            let own = (*candidate, *gain);
+            let is_worth_it = stands_alone(base, time, own, threshold, dictionary.frequencies);
+            if (best || *gain > weakest) && is_worth_it {
                 proposals.push(proposal(data, base, None, &[(*candidate, parameters.clone())]));
             }
         }
@@ -354,11 +369,9 @@ fn begin(
     {
         proposals.push(proposal(data, calibrated, None, &additions(&data.facts, &dictionary, gain)));
     }
-    for (candidate, parameters, _) in dictionary
-        .further
-        .iter()
-        .filter(|further| stands_out(calibrated, time, further.2, threshold, dictionary.frequencies))
-    {
+    for (candidate, parameters, _) in dictionary.further.iter().filter(|(candidate, _, gain)| {
+        stands_alone(calibrated, time, (*candidate, *gain), threshold, dictionary.frequencies)
+    }) {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }
     for gain in pairs(&dictionary)
