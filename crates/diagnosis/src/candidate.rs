@@ -319,12 +319,19 @@ impl Candidate {
         ]
     }
 
-    /// Whether fitted values are what the effect's name says. A second body that hardly swings at all is a drift; at the ends
-    /// of its parameters' ranges one whose mode does not decay within the records is a forcing, one much slower than
-    /// the swing a drift.
-    pub(crate) fn is_itself(self, fitted: &[f64]) -> bool {
+    /// Whether fitted values are what the effect's name says, for a swing of an angular frequency.
+    ///
+    /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its own half-width of
+    /// the swing's or of a harmonic is no second line: it shows a damping or a force that changes with amplitude. At the
+    /// ends of its parameters' ranges one whose mode does not decay within the records is a forcing, one much
+    /// slower than the swing a drift.
+    pub(crate) fn is_itself(self, fitted: &[f64], swing: f64, inertia: f64) -> bool {
         match (self, fitted) {
-            (Self::System(SystemEffect::FlexibleCoupling), &[_, mode, rate]) => rate <= MOST_DAMPED * mode,
+            (Self::System(SystemEffect::FlexibleCoupling), &[body, mode, rate]) => {
+                let line = mode * (1.0 + body / inertia).sqrt();
+                let harmonic = (line / swing).round().max(1.0) * swing;
+                rate <= MOST_DAMPED * mode && (line - harmonic).abs() > rate
+            }
             _ => true,
         }
     }

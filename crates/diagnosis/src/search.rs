@@ -87,7 +87,11 @@ impl Pool {
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
-    if members.any(|(candidate, part)| !candidate.is_itself(part)) {
+    let (swing, inertia) = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
+        Ok(nominal) => ((nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(), nominal.inertia()),
+        Err(_) => (data.facts.frequency, data.facts.inertia),
+    };
+    if members.any(|(candidate, part)| !candidate.is_itself(part, swing, inertia)) {
         return true;
     }
     let parameters = fit.hypothesis.parameters(&data.facts);
