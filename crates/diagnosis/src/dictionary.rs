@@ -7,7 +7,7 @@ use crate::matrices::{element, entry};
 use crate::projection::Projection;
 use crate::response::bent;
 use crate::segments::Data;
-use crate::spectrum::{frequencies, lines};
+use crate::spectrum::{decaying_lines, frequencies, lines};
 use crate::tangent::{Path, matrix, plain_moment, stack};
 use dynamics::{Coefficients, DynamicsError, MOST_PARAMETERS, SystemEffect};
 use nalgebra::{DMatrix, DVector};
@@ -64,11 +64,10 @@ const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 const DELAYS: [f64; 2] = [0.01, 0.1];
 const LINES: usize = 3;
 /// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a segment, its part
-/// of the inertia at most, its damping ratios.
-const SECOND_MODES: usize = 2;
+/// of the inertia at most.
+const SECOND_MODES: usize = 3;
 const OUT_OF_PHASE: f64 = 0.1;
 const LARGEST_BODY: f64 = 0.02;
-const SECOND_DAMPING: [f64; 2] = [0.025, 0.0025];
 
 /// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
 /// a body that is not yet where it belongs would lose count of the swings.
@@ -219,7 +218,7 @@ impl Dictionary {
             let mut shapes = shapes(candidate, &data.facts);
             if candidate == Candidate::System(SystemEffect::PeriodicForcing) {
                 let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
-                shapes = lines(data, &residuals, true, LINES)
+                shapes = lines(data, &residuals, LINES)
                     .into_iter()
                     .map(|line| vec![1.0, line.frequency, 0.0])
                     .collect();
@@ -254,12 +253,9 @@ impl Dictionary {
         if candidates.contains(&coupling) {
             let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
             let body = second_body(data) * nominal.inertia;
-            further = lines(data, &residuals, false, SECOND_MODES)
+            further = decaying_lines(data, &residuals, SECOND_MODES)
                 .into_iter()
-                .flat_map(|line| SECOND_DAMPING.map(|damping| (line, damping)))
-                .map(|(line, damping)| {
-                    (coupling, vec![body, line.frequency, damping * line.frequency], line.gain)
-                })
+                .map(|(line, rate)| (coupling, vec![body, line.frequency, rate], line.gain))
                 .collect();
         }
         let mut columns = matrix(projection.rows(), &all);

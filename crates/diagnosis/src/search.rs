@@ -11,6 +11,7 @@ use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
 use crate::segments::Data;
+use crate::spectrum::DECAYS;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -253,7 +254,7 @@ fn stands_alone(
 ) -> bool {
     let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
     let price = starts * (base.samples() as f64 / time).max(2.0).ln();
-    stands_out(base, time, gain, threshold.max(price), looked)
+    stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
 }
 
 /// Score behind the best from which on a set is not gone on from.
