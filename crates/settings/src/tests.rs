@@ -213,7 +213,8 @@ fn an_override_displaces_what_it_contradicts() {
 
 #[test]
 fn a_table_is_cleared_of_what_the_file_says_only() {
-    let mut document = Document::parse("a.toml", "[a]\nb = 1\nc = 2\n[ab]\nx = 1\n[a.inner]\ny = 1\n").unwrap();
+    let mut document =
+        Document::parse("a.toml", "[a]\nb = 1\nc = 2\n[ab]\nx = 1\n[a.inner]\ny = 1\n").unwrap();
     document.apply_override("a.c=3").unwrap();
     document.clear_table("a");
     let keys: Vec<&str> = document.leaves().iter().map(|leaf| leaf.key.as_str()).collect();
@@ -227,5 +228,8 @@ fn equal_values_have_equal_texts_wherever_they_were_written() {
     let other = resolve("", &["fit.duration=2.0", "seed=7"]).unwrap();
     assert_ne!(one.to_toml(), other.to_toml());
     assert_eq!(one.values_text(), other.values_text());
-    assert_eq!(one.values_text(), "fit.duration = 2.0\nfit.hidden = [16, 16]\nfit.mode = \"slow\"\nseed = 7\n");
+    assert_eq!(
+        one.values_text(),
+        "fit.duration = 2.0\nfit.hidden = [16, 16]\nfit.mode = \"slow\"\nseed = 7\n"
+    );
 }

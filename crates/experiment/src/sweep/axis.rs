@@ -144,7 +144,10 @@ mod tests {
         assert_eq!(values("estimator=pinn,lstm"), ["pinn", "lstm"]);
         assert_eq!(values("estimator.hidden=[64],[32, 32]"), ["[64]", "[32, 32]"]);
         assert_eq!(values("a={x=[1,2],y=3},4"), ["{x=[1,2],y=3}", "4"]);
-        assert_eq!(values(r#"data.path="a,b.csv",'c\,d.csv',e.csv"#), [r#""a,b.csv""#, r"'c\,d.csv'", "e.csv"]);
+        assert_eq!(
+            values(r#"data.path="a,b.csv",'c\,d.csv',e.csv"#),
+            [r#""a,b.csv""#, r"'c\,d.csv'", "e.csv"]
+        );
         assert_eq!(values(r#"a="x\"y,z",2"#), [r#""x\"y,z""#, "2"]);
         assert_eq!(values("fit.tolerance_percent=1e-3"), ["1e-3"]);
     }

@@ -20,7 +20,9 @@ pub enum SweepError {
         argument: String,
     },
     /// A bracket, brace or quote without its other half.
-    #[error("command line: `{argument}`: a bracket or quote is not closed; values with commas need both, as [32,32]")]
+    #[error(
+        "command line: `{argument}`: a bracket or quote is not closed; values with commas need both, as [32,32]"
+    )]
     Unclosed {
         /// The argument as given.
         argument: String,

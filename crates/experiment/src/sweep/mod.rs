@@ -86,11 +86,13 @@ pub fn digest(experiment: &Experiment) -> String {
 /// # Errors
 /// As [`Document::apply_override`].
 pub fn apply_override(document: &mut Document, argument: &str) -> Result<(), SettingsError> {
-    let Some(("estimator", name)) = argument.split_once('=').map(|(key, value)| (key.trim(), value.trim())) else {
+    let Some(("estimator", name)) = argument.split_once('=').map(|(key, value)| (key.trim(), value.trim()))
+    else {
         return document.apply_override(argument);
     };
-    let is_chosen =
-        document.get("estimator.name").is_some_and(|leaf| leaf.value.as_str() == Some(name.trim_matches('"')));
+    let is_chosen = document
+        .get("estimator.name")
+        .is_some_and(|leaf| leaf.value.as_str() == Some(name.trim_matches('"')));
     if !is_chosen {
         document.clear_table("estimator");
     }

@@ -34,7 +34,8 @@ fn every_combination_is_resolved() {
 
 #[test]
 fn a_digest_is_of_the_values_not_of_where_they_stand() {
-    let elsewhere = planned("[estimator]\nname = \"qr\"\n[fit]\nseeds = 2\n[data]\npath = \"a.csv\"", &["seed=1"]);
+    let elsewhere =
+        planned("[estimator]\nname = \"qr\"\n[fit]\nseeds = 2\n[data]\npath = \"a.csv\"", &["seed=1"]);
     let here = planned(CONFIG, &["estimator=ols,qr", "seed=0..1"]).unwrap();
     assert_eq!(elsewhere.unwrap()[0].digest, here[3].digest);
 }
@@ -47,7 +48,10 @@ fn a_bad_combination_is_named_before_anything_runs() {
          `fit.tolerance_percent` is -1; expected a finite number from 0 to 1000000000 (%)"
     );
     let unknown = refused(CONFIG, &["estimator=ols,qrr"]);
-    assert!(unknown.contains("combination 2 (estimator=qrr)") && unknown.contains("did you mean `qr`"), "{unknown}");
+    assert!(
+        unknown.contains("combination 2 (estimator=qrr)") && unknown.contains("did you mean `qr`"),
+        "{unknown}"
+    );
     let twice = refused(CONFIG, &["seed=1,2,1"]);
     assert!(twice.starts_with("combinations 1 (seed=1) and 3 are the same experiment"), "{twice}");
     let task = refused("task = \"predict\"\n", &["seed=1"]);
@@ -66,7 +70,10 @@ fn the_short_form_leaves_out_what_belongs_to_another_estimator() {
     };
     assert_eq!(keys(&["estimator=ols"]), ["estimator.name=\"ols\""]);
     assert_eq!(keys(&["estimator=pinn"]), ["estimator.name=\"pinn\"", "estimator.hidden=[3]"]);
-    assert_eq!(keys(&["estimator.steps=1", "estimator=ols"]), ["estimator.steps=1", "estimator.name=\"ols\""]);
+    assert_eq!(
+        keys(&["estimator.steps=1", "estimator=ols"]),
+        ["estimator.steps=1", "estimator.name=\"ols\""]
+    );
     // In a sweep the order of the axes says nothing about it.
     let both = ["estimator.hidden=[4]", "estimator=ols"];
     let message = refused(text, &both);
