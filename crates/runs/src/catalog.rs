@@ -41,6 +41,14 @@ pub struct KeptRun {
     pub rows: Vec<RunTableRow>,
 }
 
+impl KeptRun {
+    /// When it began, in UTC, to the second; empty where that is not known.
+    #[must_use]
+    pub fn began(&self) -> String {
+        self.started.map_or_else(String::new, |time| time.strftime("%Y-%m-%d %H:%M:%S").to_string())
+    }
+}
+
 /// What every result says of itself.
 #[derive(Deserialize)]
 struct Tag {

@@ -4,13 +4,16 @@ use crate::Outcome;
 use crate::cli::{Listing, Output};
 use crate::console;
 use crate::error::TrainerError;
+use crate::list_runs::list_runs;
 use crate::method::Method;
 use crate::summary::table;
 use dynamics::{Class, Coordinate, Description, Kind, REGISTRY, Units};
 use serde_json::json;
+use std::path::Path;
 
-pub(crate) fn list(what: Listing, output: Output) -> Result<Outcome, TrainerError> {
+pub(crate) fn list(what: Listing, folder: Option<&Path>, output: Output) -> Result<Outcome, TrainerError> {
     match what {
+        Listing::Runs => return list_runs(folder, output),
         Listing::Estimators => estimators(output)?,
         Listing::Effects => effects(output),
     }

@@ -23,9 +23,9 @@ pub fn first_difference(then: &Document, now: &Document) -> Option<String> {
 /// The settings of an estimator are compared among configurations of that estimator: that another one has no such
 /// key is no difference. `estimator.name` is left out; it is a column of every table.
 #[must_use]
-pub fn differing_keys(configurations: &[Document]) -> Vec<String> {
+pub fn differing_keys(configurations: &[&Document]) -> Vec<String> {
     let mut keys: Vec<&str> = Vec::new();
-    for leaf in configurations.iter().flat_map(Document::leaves) {
+    for leaf in configurations.iter().flat_map(|document| document.leaves()) {
         if leaf.key != "estimator.name" && !keys.contains(&leaf.key.as_str()) {
             keys.push(&leaf.key);
         }
@@ -72,6 +72,7 @@ mod tests {
             "seed = 0\n[fit]\nseeds = 1\nmax_steps = 3\n[estimator]\nname = 'lstm'\ncells = 2\n",
         ]
         .map(document);
+        let all: Vec<&Document> = all.iter().collect();
         assert_eq!(differing_keys(&all), ["seed", "fit.max_steps"]);
         assert_eq!(differing_keys(&all[..1]), [] as [&str; 0]);
         assert_eq!(differing_keys(&[]), [] as [&str; 0]);
