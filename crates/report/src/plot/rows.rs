@@ -255,7 +255,8 @@ impl Form {
     /// Left of the axis.
     fn left(&self, rows: &[DotRow]) -> f64 {
         if self.above {
-            return 18.0;
+            // Half of the first tick's label.
+            return 24.0;
         }
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
         let names = letters as f64 * LETTER * f64::from(self.canvas.tick_size);

@@ -28,7 +28,7 @@ pub(super) struct RowView {
     pub(super) is_bad: bool,
 }
 
-/// Titles of the columns between settings and state.
+/// Titles of the columns behind the settings.
 pub(super) const NUMBERS: [&str; 9] = [
     "ζ",
     "± of ζ",
@@ -44,10 +44,9 @@ pub(super) const NUMBERS: [&str; 9] = [
 /// Every column, from left to right.
 pub(super) fn columns(table: &RunTable) -> Vec<Column> {
     let words = |title: &str| Column { title: title.to_owned(), words: true };
-    let mut columns = vec![words("run"), words("method")];
+    let mut columns = vec![words("run"), words("state"), words("method")];
     columns.extend(table.columns.iter().map(|key| words(key)));
     columns.extend(NUMBERS.iter().map(|title| Column { title: (*title).to_owned(), words: false }));
-    columns.push(words("state"));
     columns
 }
 
@@ -106,7 +105,7 @@ fn gap(percent: f64) -> String {
     if percent == 0.0 { "0".to_owned() } else { significant(percent, 2) }
 }
 
-/// The last cell and its class.
+/// What a run's state is called, and its class.
 fn state(row: &RunTableRow) -> (&'static str, &'static str) {
     match (row.state, row.pass) {
         (RunState::Failed, _) => ("FAILED", "bad"),

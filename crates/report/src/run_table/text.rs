@@ -67,15 +67,15 @@ pub fn markdown(table: &RunTable) -> String {
         columns.iter().map(|column| (column.title.as_str(), !column.words)).collect();
     let rows = table.rows.iter().map(|row| {
         let view = cells::row(table, row);
-        let mut line = vec![escape(&view.name)];
+        let state = if view.is_bad { format!("**{}**", view.state) } else { view.state.to_owned() };
+        let mut line = vec![escape(&view.name), state];
         line.extend(view.settings.iter().map(|cell| escape(cell)));
         if view.numbers.is_empty() {
             line.push(escape(&view.reason));
-            line.resize(columns.len() - 1, String::new());
+            line.resize(columns.len(), String::new());
         } else {
             line.extend(view.numbers.iter().map(|cell| escape(cell)));
         }
-        line.push(if view.is_bad { format!("**{}**", view.state) } else { view.state.to_owned() });
         line
     });
     let name = if table.name.is_empty() { "Runs side by side" } else { &table.name };

@@ -1,6 +1,7 @@
 //! What a sweep can fail of as a whole; what a run fails of is its row.
 
 use experiment::sweep::SweepError;
+use record::RecordError;
 use runs::SweepFolderError;
 use thiserror::Error;
 
@@ -9,6 +10,8 @@ use thiserror::Error;
 pub(crate) enum SweepCommandError {
     #[error(transparent)]
     Plan(#[from] SweepError),
+    #[error("combination {number}{overrides}: {source}")]
+    Record { number: usize, overrides: String, source: RecordError },
     #[error(transparent)]
     Folder(#[from] SweepFolderError),
     #[error(

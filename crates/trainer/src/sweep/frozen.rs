@@ -98,13 +98,15 @@ pub(super) fn classical() -> Vec<&'static str> {
 
 /// The manifest of a sweep that begins now. A record that cannot be read is found out here, not by its runs.
 fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerError> {
-    let mut paths: Vec<&str> = planned.runs.iter().map(|run| run.data_path.as_str()).collect();
-    paths.sort_unstable();
-    paths.dedup();
-    let records = paths
-        .into_iter()
-        .map(|path| Ok(SweepRecord { path: path.to_owned(), digest: record::file_digest(Path::new(path))? }))
-        .collect::<Result<_, TrainerError>>()?;
+    let mut records: Vec<SweepRecord> = Vec::new();
+    for run in &planned.runs {
+        if records.iter().all(|known| known.path != run.data_path) {
+            let digest = record::file_digest(Path::new(&run.data_path)).map_err(|source| {
+                SweepCommandError::Record { number: run.number, overrides: named(&run.overrides), source }
+            })?;
+            records.push(SweepRecord { path: run.data_path.clone(), digest });
+        }
+    }
     let line = |run: &PlannedRun| SweepLine {
         number: run.number,
         digest: run.digest.clone(),
@@ -189,11 +191,13 @@ fn frozen_config(folder: &SweepFolder, line: &SweepLine) -> Result<String, Sweep
     text.filter(holds).ok_or_else(lost)
 }
 
+/// The overrides of a run in brackets, with a leading blank.
+fn named(overrides: &[String]) -> String {
+    if overrides.is_empty() { String::new() } else { format!(" ({})", overrides.join(" ")) }
+}
+
 /// What differs between the frozen list and another, in words.
 fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned) -> Option<String> {
-    let named = |overrides: &[String]| {
-        if overrides.is_empty() { String::new() } else { format!(" ({})", overrides.join(" ")) }
-    };
     for (line, run) in manifest.runs.iter().zip(&planned.runs) {
         if line.digest == run.digest {
             continue;
@@ -204,5 +208,6 @@ fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned)
         return Some(format!("run {}{}: {said}", line.number, named(&line.overrides)));
     }
     let (then, now) = (manifest.runs.len(), planned.runs.len());
+    // The first of them are the same: an axis has become longer or shorter at its end.
     (then != now).then(|| format!("{then} runs then, {now} now"))
 }

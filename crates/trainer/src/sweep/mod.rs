@@ -4,6 +4,7 @@ pub(crate) mod arguments;
 mod error;
 mod execute;
 mod frozen;
+mod slurm;
 mod table;
 
 use crate::Outcome;
@@ -12,7 +13,7 @@ use crate::error::TrainerError;
 use crate::interrupt;
 use crate::rerender::write_report;
 use crate::side_by_side::print_table;
-use arguments::SweepArguments;
+use arguments::{Launcher, SweepArguments};
 use execute::Job;
 use experiment::sweep::Shard;
 use frozen::FrozenSweep;
@@ -36,6 +37,9 @@ struct Answer<'a> {
 pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let mut sweep = frozen::settle(arguments)?;
+    if let Some(Launcher::Slurm) = arguments.launcher {
+        return slurm::launch(arguments, &sweep);
+    }
     let shard = arguments.shard.unwrap_or(Shard::ALL);
     let output = arguments.output;
     let jobs: Vec<Job<'_>> = sweep
