@@ -3,6 +3,7 @@
 use crate::support::{result, root, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
@@ -285,6 +286,27 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
     assert_eq!(states(&out), ["done"; 6]);
 }
 
+/// Killed before its manifest was written, a sweep was not begun; the files that come first are no obstacle.
+#[test]
+fn killed_while_it_froze_it_begins_again() {
+    let (_folder, out) = scratch();
+    let arguments = ["sweep", "configs/ols.toml", "seed=0,1"];
+    assert_eq!(code(&sweep(&arguments, &out, &["--quiet"])), 0);
+    for left in [&["configs", "config.toml", "environment.json"][..], &["configs"]] {
+        for entry in std::fs::read_dir(&out).unwrap() {
+            let path = entry.unwrap().path();
+            match path.file_name().is_some_and(|name| left.iter().any(|kept| name == *kept)) {
+                true => continue,
+                false if path.is_dir() => std::fs::remove_dir_all(&path).unwrap(),
+                false => std::fs::remove_file(&path).unwrap(),
+            }
+        }
+        assert_eq!(code(&sweep(&arguments, &out, &["--quiet"])), 2, "it holds something");
+        assert_eq!(code(&sweep(&arguments, &out, &["--quiet", "--resume"])), 0);
+        assert_eq!(states(&out), ["done"; 2]);
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn interrupted_it_keeps_what_is_done_and_exits_with_130() {
@@ -346,7 +368,18 @@ fn refused_in(folder: &Path, config: &str) -> String {
     said(&output)
 }
 
-/// A machine without Slurm, one whose `sbatch` runs the tasks at once, and one whose `sbatch` refuses.
+/// Hands a sweep of five runs to Slurm in three shares, with these folders to look for programs in.
+fn launch(out: &str, path: &str, options: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", out, "--launcher", "slurm"])
+        .args([&["--shards", "3"], options].concat())
+        .env("PATH", path)
+        .current_dir(root())
+        .output()
+        .unwrap()
+}
+
+/// A machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
 #[cfg(unix)]
 #[test]
 fn a_slurm_array_has_one_task_for_each_share() {
@@ -354,39 +387,59 @@ fn a_slurm_array_has_one_task_for_each_share() {
     let (folder, out) = scratch();
     let tools = folder.path().join("tools");
     std::fs::create_dir(&tools).unwrap();
-    let launch = |options: &[&str]| {
-        let path = format!("{}:/usr/bin:/bin", tools.display());
-        Command::new(env!("CARGO_BIN_EXE_trainer"))
-            .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", &out, "--launcher", "slurm"])
-            .args([&["--shards", "3"], options].concat())
-            .env("PATH", path)
-            .current_dir(root())
-            .output()
-            .unwrap()
-    };
-    let script = Path::new(&out).join("slurm.sh");
+    let path = tools.to_str().unwrap();
     let sbatch = |text: &str| {
         let program = tools.join("sbatch");
         std::fs::write(&program, text).unwrap();
         std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
     };
-    if !Path::new("/usr/bin/sbatch").exists() {
-        let output = launch(&[]);
-        assert_eq!(code(&output), 2);
-        assert!(said(&output).contains("there is no sbatch on this machine"), "{}", said(&output));
-        assert!(script.is_file() && states(&out) == ["pending"; 5]);
-    }
+    let absent = launch(&out, path, &[]);
+    assert_eq!(code(&absent), 2);
+    assert!(said(&absent).contains("there is no sbatch on this machine"), "{}", said(&absent));
+    let script = Path::new(&out).join("slurm.sh");
+    assert!(script.is_file() && states(&out) == ["pending"; 5]);
+
     sbatch("#!/bin/sh\necho 'invalid partition' >&2\nexit 1\n");
-    let options: &[&str] = if script.exists() { &["--resume"] } else { &[] };
-    let output = launch(options);
-    assert!(said(&output).contains("sbatch refused it: invalid partition"), "{}", said(&output));
+    let refused = launch(&out, path, &["--resume"]);
+    assert_eq!(code(&refused), 2);
+    assert!(said(&refused).contains("sbatch refused it: invalid partition"), "{}", said(&refused));
+
     sbatch(
-        "#!/bin/sh\nfor task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task sh \"$1\" >/dev/null 2>&1 || exit 1; done\n\
+        "#!/bin/sh\nfor task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task /bin/sh \"$1\" >/dev/null 2>&1 || exit 1; done\n\
          echo 'Submitted batch job 7'\n",
     );
-    let output = launch(&["--resume"]);
-    assert_eq!(code(&output), 0, "{}", said(&output));
-    assert!(String::from_utf8_lossy(&output.stdout).contains("Submitted batch job 7"));
+    let submitted = launch(&out, path, &["--resume"]);
+    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
+    assert!(String::from_utf8_lossy(&submitted.stdout).contains("Submitted batch job 7"));
     assert!(std::fs::read_to_string(&script).unwrap().contains("#SBATCH --array=1-3\n"));
     assert_eq!(states(&out), ["done"; 5]);
+}
+
+/// Where a Slurm controller answers, the tasks go through it.
+#[test]
+fn slurm_itself_runs_the_shares() {
+    let path = std::env::var("PATH").unwrap();
+    let answer = Command::new("sinfo").args(["--noheader", "--states=idle"]).output();
+    if !answer.is_ok_and(|answer| answer.status.success() && !answer.stdout.is_empty()) {
+        let line =
+            b"SKIPPED: no Slurm with an idle node answers here; job arrays were run by a stand-in only\n";
+        std::io::stderr().write_all(line).unwrap();
+        return;
+    }
+    let (_folder, out) = scratch();
+    let submitted = launch(&out, &path, &[]);
+    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
+    let since = Instant::now();
+    while ends(&out).len() < 5 {
+        assert!(since.elapsed() < Duration::from_secs(120), "the queue does not move");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    // The last task writes the manifest a moment after its last run.
+    while states(&out) != ["done"; 5] {
+        assert!(since.elapsed() < Duration::from_secs(150), "{:?}", states(&out));
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let alone = scratch();
+    assert_eq!(code(&sweep(&["sweep", "configs/ols.toml", "seed=0..4"], &alone.1, &["--quiet"])), 0);
+    assert_eq!(results(&out), results(&alone.1));
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `sweep.json` | the frozen list of runs ([`SweepManifest`]); what became of each, as of its last writing |
 //! | `configs/NNNN.toml` | each run's resolved configuration |
+//! | `config.toml`, `environment.json` | the configuration that every run starts from; what it was frozen with |
 //! | `state/<digest>.json` | one file for each run that came to its end ([`SweepEnd`]) |
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
@@ -99,16 +100,25 @@ impl SweepFolder {
         Ok(Some(manifest))
     }
 
-    /// Freezes the list of runs; `configs` are the texts of the runs' configurations, in the list's order.
+    /// Freezes the list of runs; `configs` are the texts of the runs' configurations, in the list's order, and `beside`
+    /// the files of the sweep as a whole by name. The manifest comes last: where it is, all of these are.
     ///
     /// `false` where another process has frozen one meanwhile: its manifest stays.
     ///
     /// # Errors
     /// [`RunError`] where something cannot be written.
-    pub fn freeze(&self, manifest: &SweepManifest, configs: &[String]) -> Result<bool, RunError> {
+    pub fn freeze(
+        &self,
+        manifest: &SweepManifest,
+        configs: &[String],
+        beside: &[(&str, Vec<u8>)],
+    ) -> Result<bool, RunError> {
         for (line, config) in manifest.runs.iter().zip(configs) {
             // Flushing ten thousand files takes minutes; the digests in the manifest tell whether one was lost.
             self.folder.write_reproducible(&line.config, config.as_bytes())?;
+        }
+        for (name, content) in beside {
+            self.folder.write(name, content)?;
         }
         let path = self.path().join(MANIFEST);
         let mut file = NamedTempFile::new_in(self.path()).map_err(RunError::io(&path, "create"))?;
@@ -243,7 +253,7 @@ mod tests {
         let sweep = SweepFolder::open(path);
         assert!(!SweepFolder::is_one(path) && sweep.manifest().unwrap().is_none());
         let texts: Vec<String> = (1..=runs).map(|number| format!("seed = {number}\n")).collect();
-        assert!(sweep.freeze(&manifest(runs), &texts).unwrap());
+        assert!(sweep.freeze(&manifest(runs), &texts, &[]).unwrap());
         sweep
     }
 
@@ -261,7 +271,7 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let sweep = frozen(root.path(), 2);
         assert_eq!(sweep.manifest().unwrap().unwrap(), manifest(2));
-        assert!(!sweep.freeze(&manifest(3), &[]).unwrap());
+        assert!(!sweep.freeze(&manifest(3), &[], &[("config.toml", b"x".to_vec())]).unwrap());
         assert_eq!(sweep.manifest().unwrap().unwrap().runs.len(), 2);
         let config = std::fs::read_to_string(root.path().join("configs/0002.toml")).unwrap();
         assert_eq!(config, "seed = 2\n");

@@ -130,7 +130,7 @@ impl Output {
 
 /// Reads the configuration that the arguments name, overrides applied.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
-    let mut document = read_document(arguments.config.as_ref().ok_or(TrainerError::NoConfig)?)?;
+    let (_, mut document) = read_document(arguments.config.as_ref().ok_or(TrainerError::NoConfig)?)?;
     for argument in &arguments.overrides {
         apply_override(&mut document, argument)?;
     }
@@ -140,12 +140,13 @@ pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, T
     Ok(document)
 }
 
-/// Reads a configuration file as it is written.
-pub(crate) fn read_document(path: &Path) -> Result<Document, TrainerError> {
+/// Reads a configuration file: its text, and what that says.
+pub(crate) fn read_document(path: &Path) -> Result<(String, Document), TrainerError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
         file: file.clone(),
         problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
     })?;
-    Ok(Document::parse(&file, &text)?)
+    let document = Document::parse(&file, &text)?;
+    Ok((text, document))
 }

@@ -21,7 +21,7 @@ const COLUMNS: [&str; 8] = ["run", "method", "zeta", "error", "worst", "steps", 
 /// Puts runs into one table. Its columns are what a sweep varies, and every other key in which the runs differ.
 pub(crate) fn build(task: &str, name: &str, axes: Vec<SweepAxis>, entries: Vec<Entry>) -> RunTable {
     let configs: Vec<&Document> = entries.iter().filter_map(|entry| entry.config.as_ref()).collect();
-    let varied = axes.iter().map(|axis| axis.key.clone());
+    let varied = axes.iter().filter(|axis| axis.values.len() > 1).map(|axis| axis.key.clone());
     // The estimator is a column of its own.
     let mut columns: Vec<String> =
         varied.filter(|key| !["estimator", "estimator.name"].contains(&key.as_str())).collect();

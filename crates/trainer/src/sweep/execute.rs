@@ -108,16 +108,17 @@ fn attempt(
         .num_threads(1)
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
-    let (name, folder) = sweep.folder.begin_run(&label(line))?;
+    let (name, folder) = sweep.folder.begin_run(&label(&sweep.manifest, line))?;
     *run = Some(name);
     Run { experiment: &experiment, input, folder, pool, cancel, output: SILENT }.perform(config)
 }
 
-/// What a run's folder is called: its number and what is special about it.
-pub(super) fn label(line: &SweepLine) -> String {
+/// What a run's folder is called: its number and what is special about it. What all runs share is left out.
+pub(super) fn label(manifest: &SweepManifest, line: &SweepLine) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
     let mut label = format!("{:04}", line.number);
-    for argument in &line.overrides {
+    let varied = manifest.axes.iter().zip(&line.overrides).filter(|(axis, _)| axis.values.len() > 1);
+    for (_, argument) in varied {
         let (key, value) = argument.split_once('=').unwrap_or((argument, ""));
         let short = key.rsplit('.').next().unwrap_or(key);
         let words: String = format!("{short}-{value}").chars().map(safe).collect();
@@ -185,24 +186,39 @@ impl Clerk {
 #[cfg(test)]
 mod tests {
     use super::label;
-    use runs::result::{SweepLine, SweepState};
+    use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepState};
 
     #[test]
     fn a_label_is_a_file_name_that_tells_runs_apart() {
-        let line = |overrides: &[&str]| SweepLine {
-            number: 7,
-            digest: String::new(),
-            overrides: overrides.iter().map(|text| (*text).to_owned()).collect(),
-            config: String::new(),
-            state: SweepState::Pending,
-            run: None,
-            message: None,
+        let named = |overrides: &[(&str, usize)]| {
+            let axis = |&(text, values): &(&str, usize)| SweepAxis {
+                key: text.to_owned(),
+                values: vec![String::new(); values],
+            };
+            let line = SweepLine {
+                number: 7,
+                digest: String::new(),
+                overrides: overrides.iter().map(|(text, _)| (*text).to_owned()).collect(),
+                config: String::new(),
+                state: SweepState::Pending,
+                run: None,
+                message: None,
+            };
+            let manifest = SweepManifest {
+                schema: SWEEP_SCHEMA.into(),
+                name: String::new(),
+                config: String::new(),
+                version: String::new(),
+                axes: overrides.iter().map(axis).collect(),
+                records: vec![],
+                runs: vec![],
+            };
+            label(&manifest, &line)
         };
-        let named = |overrides: &[&str]| label(&line(overrides));
-        assert_eq!(named(&["estimator=pinn", "seed=3"]), "0007-estimator-pinn-seed-3");
-        assert_eq!(named(&["estimator.hidden=[32, 16]"]), "0007-hidden-32-16");
-        assert_eq!(named(&["data.path=../a/b c.csv"]), "0007-path-..-a-b-c.csv");
+        assert_eq!(named(&[("estimator=pinn", 2), ("seed=3", 5)]), "0007-estimator-pinn-seed-3");
+        assert_eq!(named(&[("estimator.hidden=[32, 16]", 2)]), "0007-hidden-32-16");
+        assert_eq!(named(&[("data.path=../a/b c.csv", 2), ("fit.seeds=3", 1)]), "0007-path-..-a-b-c.csv");
         assert_eq!(named(&[]), "0007");
-        assert_eq!(named(&[&format!("name={}", "x".repeat(500))]).len(), 80);
+        assert_eq!(named(&[(&format!("name={}", "x".repeat(500)), 2)]).len(), 80);
     }
 }

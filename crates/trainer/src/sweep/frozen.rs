@@ -49,21 +49,15 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
     };
     let folder = SweepFolder::open(folder.path());
     let configs: Vec<String> = planned.runs.iter().map(|run| run.config.clone()).collect();
-    if !folder.freeze(&manifest, &configs)? {
+    let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
+    let environment = Environment::new(super::threads(arguments), &digests.join(" "));
+    let environment = serde_json::to_vec_pretty(&environment)
+        .map_err(|error| TrainerError::System { what: "environment.json", problem: error.to_string() })?;
+    let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];
+    if !folder.freeze(&manifest, &configs, &beside)? {
         // Another share came first.
         return take_up(folder, Some(planned));
     }
-    if let Some(path) = &arguments.config {
-        let text = std::fs::read(path).map_err(|error| RunError::Io {
-            path: path.clone(),
-            action: "read",
-            source: error,
-        })?;
-        folder.folder().write("config.toml", &text)?;
-    }
-    let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
-    let environment = Environment::new(super::threads(arguments), &digests.join(" "));
-    folder.folder().write_json("environment.json", &environment)?;
     folder.folder().record_event("start", &json!({ "name": manifest.name, "runs": manifest.runs.len() }))?;
     Ok(FrozenSweep { folder, manifest, configs })
 }
@@ -71,12 +65,14 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
 /// What a configuration and axes come to.
 struct Planned {
     name: String,
+    /// The configuration as its file has it.
+    text: String,
     axes: Vec<Axis>,
     runs: Vec<PlannedRun>,
 }
 
 fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
-    let mut document = read_document(config)?;
+    let (text, mut document) = read_document(config)?;
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
@@ -89,7 +85,7 @@ fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, Trainer
     let runs = plan(&document, &axes, ESTIMATORS, &classical()).map_err(SweepCommandError::Plan)?;
     let stem = config.file_stem().unwrap_or_default().to_string_lossy();
     let name = document.get("name").and_then(|leaf| leaf.value.as_str()).unwrap_or(&stem);
-    Ok(Planned { name: format!("{name}-sweep"), axes, runs })
+    Ok(Planned { text, name: format!("{name}-sweep"), axes, runs })
 }
 
 pub(super) fn classical() -> Vec<&'static str> {
@@ -128,14 +124,16 @@ fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerE
     })
 }
 
-/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but frozen configurations.
+/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written before the
+/// manifest, of which the frozen configurations come first.
 fn beginning(path: &Path) -> Result<RunFolder, RunError> {
     match RunFolder::create_at(path) {
         Err(RunError::Occupied { path }) => {
-            let is_ours = |name: &str| name == "configs" || name == "sweep.json" || name.starts_with(".tmp");
+            let known = ["configs", "config.toml", "environment.json", "sweep.json"];
+            let is_ours = |name: &str| known.contains(&name) || name.starts_with(".tmp");
             let entries = std::fs::read_dir(&path);
             let mut names = entries.into_iter().flatten().flatten().map(|entry| entry.file_name());
-            if names.all(|name| is_ours(&name.to_string_lossy())) {
+            if path.join("configs").is_dir() && names.all(|name| is_ours(&name.to_string_lossy())) {
                 Ok(RunFolder::open(&path))
             } else {
                 Err(RunError::Occupied { path })

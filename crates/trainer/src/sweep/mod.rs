@@ -18,7 +18,7 @@ use execute::Job;
 use experiment::sweep::Shard;
 use frozen::FrozenSweep;
 use report::{run_table_csv, run_table_markdown};
-use runs::result::{RunTable, SweepLine, SweepState};
+use runs::result::{RunTable, SweepLine, SweepManifest, SweepState};
 use serde::Serialize;
 use serde_json::json;
 
@@ -74,7 +74,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         return Ok(Outcome::Interrupted);
     }
     let own = sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
-    let is_fine = own.map(|(_, line)| line).all(|line| holds(&table, line));
+    let is_fine = own.map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
     Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
 }
 
@@ -93,8 +93,8 @@ fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
 }
 
 /// Whether a run is done and every row of it within its tolerance.
-fn holds(table: &RunTable, line: &SweepLine) -> bool {
-    let name = table::run_name(line);
+fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
+    let name = table::run_name(manifest, line);
     line.state == SweepState::Done
         && table
             .rows

@@ -8,23 +8,29 @@ use settings::Document;
 
 /// The table, in the order of the frozen list; runs are named from the sweep's folder.
 pub(super) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> RunTable {
-    let entries = manifest.runs.iter().map(|line| entry(folder, line, &|run| run.to_owned())).collect();
+    let entry = |line| entry(folder, manifest, line, &|run| run.to_owned());
+    let entries = manifest.runs.iter().map(entry).collect();
     build("sweep", &manifest.name, manifest.axes.clone(), entries)
 }
 
 /// The runs of a sweep as entries of another table; runs are named from the current folder.
 pub(crate) fn entries(folder: &SweepFolder, manifest: &SweepManifest) -> Vec<Entry> {
     let place = |run: &str| folder.path().join(run).display().to_string();
-    manifest.runs.iter().map(|line| entry(folder, line, &place)).collect()
+    manifest.runs.iter().map(|line| entry(folder, manifest, line, &place)).collect()
 }
 
 /// What a row of this run is called: by its folder, or by what that would be called.
-pub(super) fn run_name(line: &SweepLine) -> String {
-    line.run.clone().unwrap_or_else(|| label(line))
+pub(super) fn run_name(manifest: &SweepManifest, line: &SweepLine) -> String {
+    line.run.clone().unwrap_or_else(|| label(manifest, line))
 }
 
-fn entry(folder: &SweepFolder, line: &SweepLine, place: &dyn Fn(&str) -> String) -> Entry {
-    let name = place(&run_name(line));
+fn entry(
+    folder: &SweepFolder,
+    manifest: &SweepManifest,
+    line: &SweepLine,
+    place: &dyn Fn(&str) -> String,
+) -> Entry {
+    let name = place(&run_name(manifest, line));
     let row = |state, reason: &str| vec![RunTableRow::without_numbers(&name, state, reason)];
     let mut rows = match (line.state, &line.run) {
         (SweepState::Failed, _) => row(RunState::Failed, line.message.as_deref().unwrap_or_default()),
