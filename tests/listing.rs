@@ -148,14 +148,13 @@ fn what_is_not_there_is_named() {
         (&["compare", "no-such-*"], "nothing matches the pattern"),
         (&["compare", "a[b"], "not a pattern"),
         (&["list", "runs", "no-such-folder"], "no-such-folder: cannot list"),
+        (&["list", "effects", "somewhere"], "takes no folder"),
     ] {
         let output = trainer(arguments);
         let message = String::from_utf8_lossy(&output.stderr).into_owned();
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(says), "{message}");
     }
-    // Estimators and effects lie in no folder.
-    assert_eq!(trainer(&["list", "estimators"]).status.code(), Some(0));
 }
 
 /// A thousand runs, one of them cut short: 999 rows and a red one. How long that takes is said:

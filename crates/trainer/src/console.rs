@@ -31,3 +31,12 @@ pub(crate) fn remark(text: &str) {
 pub(crate) fn error(text: &str) {
     eprintln!("error: {text}");
 }
+
+/// What one of many failed of, on standard error; red on a terminal.
+pub(crate) fn failure(text: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("\u{1b}[31m{text}\u{1b}[0m");
+    } else {
+        eprintln!("error: {text}");
+    }
+}

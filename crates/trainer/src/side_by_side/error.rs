@@ -11,6 +11,10 @@ pub(crate) enum TableError {
     NoMatch { pattern: String },
     #[error("{pattern}: not a pattern: {problem}")]
     BadPattern { pattern: String, problem: String },
+    #[error(
+        "trainer list {what} takes no folder ({folder}); runs lie in folders: trainer list runs {folder}"
+    )]
+    NoFolder { what: &'static str, folder: String },
     #[error("--sort {key}: no such column; there are {known}")]
     NoColumn { key: String, known: String },
 }

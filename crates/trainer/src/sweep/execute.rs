@@ -80,6 +80,8 @@ fn make(sweep: &FrozenSweep, line: &SweepLine, config: &str, cancel: &'static Ca
     let (state, message) = match made {
         Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
         Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
+        // A request to stop may also end training that has nothing to show yet.
+        Ok(Err(_)) if cancel.is_requested() => (SweepState::Interrupted, None),
         Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
         Err(_) => {
             let message = "the program panicked; what it said stands above (a fault, please report it)";
@@ -134,7 +136,7 @@ fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Prog
     if let Some(message) = &end.message {
         let said = format!("run {name} FAILED: {message}");
         if !output.quiet {
-            progress.aside(|| console::error(&said));
+            progress.aside(|| console::failure(&said));
         }
         progress.run_done(&format!("{name}: FAILED"));
         return;
