@@ -11,6 +11,8 @@ use crate::plot::{Axis, DotRow, DotRows, Drawing};
 const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
 /// Rows of one plot; beyond, a table reads better.
 const MOST_ROWS: usize = 200;
+/// Letters of a value beside a row.
+const MOST_LETTERS: usize = 16;
 
 pub(super) fn figures(table: &RunTable) -> Vec<Figure> {
     [gaps(table), ratios(table)].into_iter().flatten().collect()
@@ -35,13 +37,37 @@ fn groups(table: &RunTable) -> Vec<Group<'_>> {
     groups
 }
 
+impl Group<'_> {
+    /// What stands beside its row of a plot.
+    fn short_name(&self, table: &RunTable) -> String {
+        self.rows.first().map_or_else(String::new, |row| short_label(table, row, &|key| key != "seed"))
+    }
+}
+
 /// The method and what differs, as `pinn, hidden = [64]`.
 fn label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&str) -> bool) -> String {
+    parts(table, row, wanted, &|value| value)
+}
+
+/// As [`label`], of long values their ends alone: of paths that is where they differ.
+fn short_label(table: &RunTable, row: &RunTableRow, wanted: &dyn Fn(&str) -> bool) -> String {
+    parts(table, row, wanted, &|value| {
+        let left_out = value.chars().count().saturating_sub(MOST_LETTERS);
+        if left_out == 0 { value } else { format!("…{}", value.chars().skip(left_out).collect::<String>()) }
+    })
+}
+
+fn parts(
+    table: &RunTable,
+    row: &RunTableRow,
+    wanted: &dyn Fn(&str) -> bool,
+    shape: &dyn Fn(String) -> String,
+) -> String {
     let mut parts = vec![row.estimator.clone()];
     for key in table.columns.iter().filter(|key| wanted(key)) {
         if let Some(value) = row.settings.get(key) {
             let short = key.rsplit('.').next().unwrap_or(key);
-            parts.push(format!("{short} = {}", setting(value)));
+            parts.push(format!("{short} = {}", shape(setting(value))));
         }
     }
     parts.join(", ")
@@ -70,7 +96,7 @@ fn gaps(table: &RunTable) -> Option<Figure> {
         rows: groups
             .iter()
             .map(|group| DotRow {
-                name: group.name.clone(),
+                name: group.short_name(table),
                 value: Some(drawn(middle(group))),
                 extreme: Some(drawn(worst(group))),
                 interval: None,
@@ -108,7 +134,7 @@ fn ratios(table: &RunTable) -> Option<Figure> {
         rows: rows
             .iter()
             .map(|row| DotRow {
-                name: label(table, row, &|_| true),
+                name: short_label(table, row, &|_| true),
                 value: row.zeta,
                 extreme: None,
                 interval: row.zeta_interval_95,
@@ -170,7 +196,20 @@ fn figure(
 
 #[cfg(test)]
 mod tests {
-    use super::median;
+    use super::{label, median, short_label};
+    use runs::result::{RunState, RunTable, RunTableRow};
+
+    #[test]
+    fn of_a_long_value_its_end_is_shown() {
+        let mut row = RunTableRow::without_numbers("a", RunState::Done, "");
+        row.estimator = "pinn".into();
+        row.settings.insert("data.path".into(), "a/long/way/to/record-07.csv".into());
+        row.settings.insert("seed".into(), 3.into());
+        let columns = vec!["data.path".into(), "seed".into()];
+        let table = RunTable::new("runs", "", vec![], columns, vec![row.clone()]);
+        assert_eq!(short_label(&table, &row, &|_| true), "pinn, path = …to/record-07.csv, seed = 3");
+        assert_eq!(label(&table, &row, &|key| key != "seed"), "pinn, path = a/long/way/to/record-07.csv");
+    }
 
     #[test]
     fn the_median_is_the_middle() {
