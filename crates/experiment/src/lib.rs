@@ -1,11 +1,14 @@
-//! The configuration of an experiment: schema, overrides, checks.
+//! The configuration of an experiment: schema, overrides, checks, sweeps.
 //!
 //! Pure: text in, checked settings out. What an estimator's section may hold comes from the registry's
 //! entry that is handed in; this crate knows no estimator.
 
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
 mod experiment;
 mod prediction;
 mod schema;
+pub mod sweep;
 
 pub use experiment::{
     Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,

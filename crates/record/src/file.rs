@@ -56,13 +56,7 @@ pub struct Source {
 /// # Errors
 /// [`RecordError`] with the path, the line where there is one, what was found and what was expected.
 pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source), RecordError> {
-    let name = path.display().to_string();
-    if path.is_dir() {
-        return Err(Fault::Folder.in_file(&name));
-    }
-    let bytes = std::fs::read(path)
-        .map_err(|error| Fault::Unreadable { problem: error.to_string() }.in_file(&name))?;
-    read_text(&name, &bytes, options)
+    read_text(&path.display().to_string(), &bytes_of(path)?, options)
 }
 
 /// Reads a record from the bytes of a file; `name` is what messages call it.
@@ -85,9 +79,29 @@ pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Rec
         .finish(options.quantity)
     };
     let (record, statements, findings) = parse().map_err(|fault| fault.in_file(name))?;
-    let digest = Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect::<String>();
-    let source = Source { path: name.to_owned(), digest: format!("sha256:{digest}"), statements, findings };
+    let source = Source { path: name.to_owned(), digest: digest(bytes), statements, findings };
     Ok((record, source))
+}
+
+/// The digest of a record file, as [`Source::digest`] has it, without reading what the file holds.
+///
+/// # Errors
+/// [`RecordError`] with the path where it cannot be read.
+pub fn file_digest(path: &Path) -> Result<String, RecordError> {
+    Ok(digest(&bytes_of(path)?))
+}
+
+fn bytes_of(path: &Path) -> Result<Vec<u8>, RecordError> {
+    let fault = match std::fs::read(path) {
+        Ok(bytes) => return Ok(bytes),
+        Err(_) if path.is_dir() => Fault::Folder,
+        Err(error) => Fault::Unreadable { problem: error.to_string() },
+    };
+    Err(fault.in_file(&path.display().to_string()))
+}
+
+fn digest(bytes: &[u8]) -> String {
+    Sha256::digest(bytes).iter().fold("sha256:".to_owned(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 /// What a reader of one format collects.

@@ -24,7 +24,7 @@ mod unit;
 pub use clock::{Clock, ClockChoice, ClockKind};
 pub use csv_file::CsvColumns;
 pub use error::{Fault, RecordError};
-pub use file::{Format, ReadOptions, Source, read_file, read_text};
+pub use file::{Format, ReadOptions, Source, file_digest, read_file, read_text};
 pub use lattice::Lattice;
 pub use record::{Quantity, Record};
 pub use stamps::StampStatistics;

@@ -7,7 +7,7 @@
 //! What was run decides the page: [`render_run`] shows one estimator's estimate,
 //! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
 //! did not see, [`render_diagnosis`] where the gap between a simulator and records lies, [`render_trials`] how often a
-//! diagnosis is right. The tables of comparison and prediction [`comparison_markdown`] and [`prediction_markdown`] give as
+//! diagnosis is right, [`render_run_table`] the runs of a sweep. The tables of comparison and prediction [`comparison_markdown`] and [`prediction_markdown`] give as
 //! Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
@@ -22,6 +22,7 @@ mod page;
 mod parse;
 pub mod plot;
 mod prediction;
+mod run_table;
 mod tables;
 mod trials;
 mod verdict;
@@ -30,6 +31,7 @@ mod verdict;
 mod sample;
 
 pub use error::ReportError;
+pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
 pub use verdict::in_a_sentence;
 
 /// The texts of the files in a run folder.
@@ -69,6 +71,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
         parse::Task::Trials => render_trials(texts),
+        parse::Task::Table => render_run_table(texts),
     }
 }
 
@@ -116,6 +119,15 @@ pub fn render_diagnosis(texts: &RunTexts<'_>) -> Result<String, ReportError> {
 /// As [`render`], and where the run was asked for something else.
 pub fn render_trials(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     trials::render(texts, &parse::trials_result(texts.result)?)
+}
+
+/// The page of a table of runs: of a sweep or of runs put side by side.
+///
+/// # Errors
+///
+/// As [`render`], and where the run was asked for something else.
+pub fn render_run_table(texts: &RunTexts<'_>) -> Result<String, ReportError> {
+    run_table::render(texts, &parse::run_table(texts.result)?)
 }
 
 /// The verdicts and the tables of a study of held-out prediction as GitHub Markdown, from its

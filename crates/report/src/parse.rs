@@ -2,7 +2,7 @@
 
 use runs::result::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, PredictionCsvRow,
-    PredictionResult, RESULT_SCHEMA, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
+    PredictionResult, RESULT_SCHEMA, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -43,6 +43,8 @@ pub(crate) enum Task {
     Predict,
     Diagnose,
     Trials,
+    /// A table of runs: `"sweep"` or `"runs"`.
+    Table,
 }
 
 impl Task {
@@ -54,6 +56,7 @@ impl Task {
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
             Self::Trials => "trials",
+            Self::Table => "sweep",
         }
     }
 }
@@ -104,6 +107,10 @@ pub(crate) fn parse_diagnosis(texts: &RunTexts<'_>) -> Result<Diagnosis, ReportE
     })
 }
 
+pub(crate) fn run_table(text: &str) -> Result<RunTable, ReportError> {
+    result(text, Task::Table)
+}
+
 pub(crate) fn trials_result(text: &str) -> Result<TrialsResult, ReportError> {
     result(text, Task::Trials)
 }
@@ -141,11 +148,14 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     if tag.schema != RESULT_SCHEMA {
         return Err(ReportError::Schema { expected: RESULT_SCHEMA, found: tag.schema });
     }
-    [Task::Estimate, Task::Compare, Task::Predict]
+    if tag.task == "runs" {
+        return Ok(Task::Table);
+    }
+    [Task::Estimate, Task::Compare, Task::Predict, Task::Table]
         .into_iter()
         .find(|task| task.name() == tag.task)
         .ok_or_else(|| ReportError::Task {
-            expected: "\"estimate\", \"compare\" or \"predict\"".to_owned(),
+            expected: "\"estimate\", \"sweep\", \"runs\", \"compare\" or \"predict\"".to_owned(),
             found: tag.task,
         })
 }

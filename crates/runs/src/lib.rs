@@ -15,11 +15,15 @@
 )]
 
 mod atomic;
+mod catalog;
 mod error;
 mod folder;
 pub mod result;
+mod sweep;
 mod table;
 
+pub use catalog::{KeptRun, has_run_files, list_runs, read_run};
 pub use error::RunError;
 pub use folder::{RunFolder, Texts, default_root};
+pub use sweep::{SweepFolder, SweepFolderError};
 pub use table::to_csv;

@@ -135,11 +135,16 @@ impl Document {
         Ok(())
     }
 
+    /// Takes away what the file writes in a table and below it; what overrides put there stays.
+    pub fn clear_table(&mut self, table: &str) {
+        self.leaves
+            .retain(|leaf| !lies_below(&leaf.key, table) || !matches!(leaf.origin, Origin::File { .. }));
+        self.tables.retain(|known| !lies_below(known, table));
+    }
+
     /// Puts a leaf in place of what it displaces: the leaf of that key, a table of that name with all that is
     /// below it, or a value where the key now needs a table.
     fn set(&mut self, leaf: Leaf) {
-        let lies_below =
-            |key: &str, table: &str| key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'));
         self.leaves.retain(|known| !lies_below(&known.key, &leaf.key) && !lies_below(&leaf.key, &known.key));
         self.tables.retain(|table| *table != leaf.key && !lies_below(table, &leaf.key));
         match self.leaves.iter_mut().find(|known| known.key == leaf.key) {
@@ -178,6 +183,11 @@ impl Document {
         }
         Ok(())
     }
+}
+
+/// Whether a dotted key belongs to a table or to one below it.
+fn lies_below(key: &str, table: &str) -> bool {
+    key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'))
 }
 
 /// The tables of a list that holds nothing else, and something.

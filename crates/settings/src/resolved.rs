@@ -97,6 +97,16 @@ impl Resolved {
         })
     }
 
+    /// Every value in force as a line `key = value` with its dotted key, in the order of the keys: equal texts are
+    /// equal configurations, wherever their values were written.
+    #[must_use]
+    pub fn values_text(&self) -> String {
+        let line = |setting: &Setting| Some(format!("{} = {}\n", setting.key(), setting.value.as_ref()?));
+        let mut lines: Vec<String> = self.settings.iter().filter_map(line).collect();
+        lines.sort_unstable();
+        lines.concat()
+    }
+
     /// The configuration as TOML, every value in force, with unit and origin as comments.
     ///
     /// Read again, it resolves to the same values.

@@ -210,3 +210,26 @@ fn an_override_displaces_what_it_contradicts() {
     assert_eq!(keys("a.c.from=7"), ["a.b.from", "a.b.to", "a.c.from"]);
     assert_eq!(keys("a.bb=7"), ["a.b.from", "a.b.to", "a.c", "a.bb"]);
 }
+
+#[test]
+fn a_table_is_cleared_of_what_the_file_says_only() {
+    let mut document =
+        Document::parse("a.toml", "[a]\nb = 1\nc = 2\n[ab]\nx = 1\n[a.inner]\ny = 1\n").unwrap();
+    document.apply_override("a.c=3").unwrap();
+    document.clear_table("a");
+    let keys: Vec<&str> = document.leaves().iter().map(|leaf| leaf.key.as_str()).collect();
+    assert_eq!(keys, ["a.c", "ab.x"]);
+    assert_eq!(document.tables_below("a"), [] as [&str; 0]);
+}
+
+#[test]
+fn equal_values_have_equal_texts_wherever_they_were_written() {
+    let one = resolve("seed = 7\n[fit]\nduration = 2\n", &[]).unwrap();
+    let other = resolve("", &["fit.duration=2.0", "seed=7"]).unwrap();
+    assert_ne!(one.to_toml(), other.to_toml());
+    assert_eq!(one.values_text(), other.values_text());
+    assert_eq!(
+        one.values_text(),
+        "fit.duration = 2.0\nfit.hidden = [16, 16]\nfit.mode = \"slow\"\nseed = 7\n"
+    );
+}

@@ -1,6 +1,8 @@
 //! The arguments.
 
 use crate::diagnose::arguments::DiagnoseArguments;
+use crate::side_by_side::arguments::CompareArguments;
+use crate::sweep::arguments::SweepArguments;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -23,8 +25,11 @@ Examples:
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
+  trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable
+  trainer compare 'reports/runs/pinn-*'           runs side by side
   trainer list estimators
   trainer list effects
+  trainer list runs                               what lies below reports/runs
   trainer report reports/runs/RUN
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
@@ -80,11 +85,18 @@ pub(crate) enum Command {
         /// What to list
         #[arg(value_enum, default_value_t = Listing::Estimators)]
         what: Listing,
+        /// Of runs, the folder that they lie in, or a sweep's [default: reports/runs]
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
         #[command(flatten)]
         output: Output,
     },
     /// Makes records of systems drawn from priors, their truths sealed in a folder apart
     Simulate(ExperimentArguments),
+    /// Runs every combination of some keys' values, in parallel; resumable
+    Sweep(Box<SweepArguments>),
+    /// Puts finished runs side by side in one table
+    Compare(CompareArguments),
     /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
     Trials(Box<TrialsArguments>),
     /// Makes the report of a finished run again, from its folder alone
@@ -102,4 +114,6 @@ pub(crate) enum Listing {
     Estimators,
     /// The effects that a simulator may lack
     Effects,
+    /// The runs that are kept in a folder, newest first
+    Runs,
 }

@@ -2,12 +2,24 @@
 
 #![expect(clippy::print_stderr, reason = "this module owns the terminal")]
 
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 
 /// A result, on standard output. A reader that has gone away (`| head`) is no error.
 pub(crate) fn result(text: &str) {
     let mut out = std::io::stdout().lock();
     let _ = writeln!(out, "{text}").and_then(|()| out.flush());
+}
+
+/// A table, on standard output: on a terminal, lines that hold one of these words in red.
+pub(crate) fn table(text: &str, red: &[&str]) {
+    if !std::io::stdout().is_terminal() {
+        return result(text);
+    }
+    let is_red = |line: &str| red.iter().any(|word| line.contains(word));
+    let lines = text
+        .lines()
+        .map(|line| if is_red(line) { format!("\u{1b}[31m{line}\u{1b}[0m") } else { line.to_owned() });
+    result(&lines.collect::<Vec<_>>().join("\n"));
 }
 
 /// A remark, on standard error.
@@ -18,4 +30,13 @@ pub(crate) fn remark(text: &str) {
 /// An error, on standard error.
 pub(crate) fn error(text: &str) {
     eprintln!("error: {text}");
+}
+
+/// What one of many failed of, on standard error; red on a terminal.
+pub(crate) fn failure(text: &str) {
+    if std::io::stderr().is_terminal() {
+        eprintln!("\u{1b}[31m{text}\u{1b}[0m");
+    } else {
+        eprintln!("error: {text}");
+    }
 }

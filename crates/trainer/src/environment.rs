@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 use std::process::Command;
+use std::sync::OnceLock;
 
 /// The content of `environment.json`.
 #[derive(Debug, Serialize)]
@@ -22,7 +23,7 @@ struct Library {
     version: String,
 }
 
-#[derive(Debug, Serialize)]
+#[derive(Debug, Clone, Serialize)]
 struct Git {
     commit: String,
     dirty: bool,
@@ -56,8 +57,14 @@ fn locked_version(lock: &str, name: &str) -> Option<String> {
     lines.nth(1)?.strip_prefix("version = \"")?.strip_suffix('"').map(str::to_owned)
 }
 
-/// The commit of the folder the program runs in. No answer where there is no git or no repository.
+/// The commit of the folder the program runs in. No answer where there is no git or no repository. Asked once: a sweep
+/// of a thousand short runs would wait for git longer than for the fits.
 fn git() -> Option<Git> {
+    static ANSWER: OnceLock<Option<Git>> = OnceLock::new();
+    ANSWER.get_or_init(ask_git).clone()
+}
+
+fn ask_git() -> Option<Git> {
     let ask = |arguments: &[&str]| {
         let output = Command::new("git").args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())

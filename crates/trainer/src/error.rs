@@ -1,5 +1,7 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::side_by_side::TableError;
+use crate::sweep::SweepCommandError;
 use crate::trials::TrialsError;
 use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
@@ -78,6 +80,10 @@ pub(crate) enum TrainerError {
     #[error(transparent)]
     Trials(#[from] TrialsError),
     #[error(transparent)]
+    Sweep(#[from] SweepCommandError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -110,6 +116,8 @@ impl TrainerError {
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
+            | Self::Sweep(_)
+            | Self::Table(_)
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

@@ -4,13 +4,25 @@ use crate::Outcome;
 use crate::cli::{Listing, Output};
 use crate::console;
 use crate::error::TrainerError;
+use crate::list_runs::list_runs;
 use crate::method::Method;
+use crate::side_by_side::TableError;
 use crate::summary::table;
 use dynamics::{Class, Coordinate, Description, Kind, REGISTRY, Units};
 use serde_json::json;
+use std::path::Path;
 
-pub(crate) fn list(what: Listing, output: Output) -> Result<Outcome, TrainerError> {
+pub(crate) fn list(what: Listing, folder: Option<&Path>, output: Output) -> Result<Outcome, TrainerError> {
+    let name = match what {
+        Listing::Runs => None,
+        Listing::Estimators => Some("estimators"),
+        Listing::Effects => Some("effects"),
+    };
+    if let (Some(what), Some(folder)) = (name, folder) {
+        return Err(TableError::NoFolder { what, folder: folder.display().to_string() }.into());
+    }
     match what {
+        Listing::Runs => return list_runs(folder, output),
         Listing::Estimators => estimators(output)?,
         Listing::Effects => effects(output),
     }

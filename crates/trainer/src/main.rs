@@ -14,13 +14,16 @@ mod fit;
 mod input;
 mod interrupt;
 mod list;
+mod list_runs;
 mod method;
 mod predict;
 mod progress;
 mod rerender;
 mod run;
+mod side_by_side;
 mod simulate;
 mod summary;
+mod sweep;
 mod trials;
 
 use clap::Parser;
@@ -61,7 +64,9 @@ impl Outcome {
 
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
-        Some(Command::List { what, output }) => list::list(what, output),
+        Some(Command::List { what, folder, output }) => list::list(what, folder.as_deref(), output),
+        Some(Command::Sweep(arguments)) => sweep::command(&arguments),
+        Some(Command::Compare(arguments)) => side_by_side::command(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),

@@ -28,6 +28,11 @@ impl Progress {
         Self::new(fits, "fits", false, quiet)
     }
 
+    /// Over the runs of a sweep.
+    pub(crate) fn over_runs(runs: u64, quiet: bool) -> Self {
+        Self::new(runs, "runs", false, quiet)
+    }
+
     /// Over the records of a simulation.
     pub(crate) fn over_records(records: u64, quiet: bool) -> Self {
         Self::new(records, "records", false, quiet)
@@ -80,6 +85,16 @@ impl Progress {
             self.bar.inc(1);
             self.bar.set_message(line);
         }
+    }
+
+    /// A run that came to its end, and what became of it.
+    pub(crate) fn run_done(&self, said: &str) {
+        self.bar.inc(1);
+        if self.lines {
+            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            console::remark(&format!("{done} of {all}: {said}"));
+        }
+        self.bar.set_message(said.to_owned());
     }
 
     /// One more of very many is done: a line for every tenth part of them.

@@ -15,6 +15,7 @@ use crate::predict::predict;
 use crate::simulate::{is_simulation, simulate};
 use crate::trials::{self, is_trials};
 use estimator::Cancel;
+use experiment::sweep::apply_override;
 use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
 use rayon::ThreadPool;
@@ -25,6 +26,7 @@ use serde::Serialize;
 use serde_json::json;
 use settings::Document;
 use simulator::Plan;
+use std::path::Path;
 
 /// An experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
@@ -54,15 +56,8 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     let input = Input::read(&experiment)?;
     let folder = new_folder(arguments, &experiment.name)?;
     let pool = thread_pool(arguments)?;
-    folder.write("config.toml", experiment.resolved.to_toml().as_bytes())?;
-    let environment = Environment::new(pool.current_num_threads(), &input.source.digest);
-    folder.write_json("environment.json", &environment)?;
-    folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
     let run = Run { experiment: &experiment, input, folder, pool, cancel, output: arguments.output };
-    match &run.experiment.task {
-        Task::Estimate(single) => estimate(&run, &Method::of(single)?),
-        Task::Compare(comparison) => compare(&run, comparison),
-    }
+    run.perform(&experiment.resolved.to_toml())
 }
 
 /// The folder that the arguments name, or a new one below the default root.
@@ -82,6 +77,19 @@ pub(crate) fn thread_pool(arguments: &ExperimentArguments) -> Result<ThreadPool,
 }
 
 impl Run<'_> {
+    /// Fits, compares, writes and prints; `config` is kept as the run's `config.toml`.
+    pub(crate) fn perform(&self, config: &str) -> Result<Outcome, TrainerError> {
+        let (experiment, folder) = (self.experiment, &self.folder);
+        folder.write("config.toml", config.as_bytes())?;
+        let environment = Environment::new(self.pool.current_num_threads(), &self.input.source.digest);
+        folder.write_json("environment.json", &environment)?;
+        folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
+        match &experiment.task {
+            Task::Estimate(single) => estimate(self, &Method::of(single)?),
+            Task::Compare(comparison) => compare(self, comparison),
+        }
+    }
+
     /// A fit as a row, beside the oracle's decay rate.
     pub(crate) fn row(&self, fit: &SeedFit) -> SeedRow {
         fit.row(&self.input.extraction.envelope, self.input.oracle.decay_rate)
@@ -122,18 +130,23 @@ impl Output {
 
 /// Reads the configuration that the arguments name, overrides applied.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
-    let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
-        file: file.clone(),
-        problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
-    })?;
-    let mut document = Document::parse(&file, &text)?;
+    let (_, mut document) = read_document(arguments.config.as_ref().ok_or(TrainerError::NoConfig)?)?;
     for argument in &arguments.overrides {
-        document.apply_override(argument)?;
+        apply_override(&mut document, argument)?;
     }
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
     Ok(document)
+}
+
+/// Reads a configuration file: its text, and what that says.
+pub(crate) fn read_document(path: &Path) -> Result<(String, Document), TrainerError> {
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
+        file: file.clone(),
+        problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
+    })?;
+    let document = Document::parse(&file, &text)?;
+    Ok((text, document))
 }

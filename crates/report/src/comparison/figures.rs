@@ -126,6 +126,7 @@ fn dot_row(row: &MethodRow) -> DotRow {
         },
         value: estimate(row).map(|found| drawn(found.error_percent)),
         extreme: estimate(row).map(|found| drawn(found.worst_error_percent)),
+        interval: None,
     }
 }
 

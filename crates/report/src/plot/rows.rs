@@ -46,11 +46,13 @@ pub struct DotRow {
     pub value: Option<f64>,
     /// Drawn as a ring, joined to the dot.
     pub extreme: Option<f64>,
+    /// Drawn as a bar behind the dot; not at all where the axis cannot show both ends.
+    pub interval: Option<[f64; 2]>,
 }
 
 impl DotRow {
     fn values(&self) -> impl Iterator<Item = f64> + '_ {
-        [self.value, self.extreme].into_iter().flatten()
+        [self.value, self.extreme].into_iter().flatten().chain(self.interval.into_iter().flatten())
     }
 }
 
@@ -167,6 +169,18 @@ impl DotRows {
             value.filter(|v| self.x.can_show(*v)).map(|v| computed.map_x(ticks.place(v)))
         };
         let (value, extreme) = (at(row.value), at(row.extreme));
+        let ends = row.interval.map(|[low, high]| (at(Some(low)), at(Some(high))));
+        if let Some((Some(x1), Some(x2))) = ends {
+            scene.add(Primitive::Line {
+                x1,
+                y1: marks,
+                x2,
+                y2: marks,
+                stroke: Color::from(Hue::Estimate.light()),
+                stroke_width: form.canvas.line_width,
+                stroke_dasharray: None,
+            });
+        }
         let radius = form.canvas.dot_radius;
         if let (Some(x1), Some(x2)) = (value, extreme) {
             scene.add(Primitive::Line {
@@ -217,7 +231,10 @@ impl DotRows {
         );
         let entry =
             |label: &str, shape: &str| LegendEntry { label: label.to_owned(), swatch: svg::swatch_of(shape) };
-        let mut entries = vec![entry(&self.value_label, &dot), entry(&self.extreme_label, &ring)];
+        let mut entries = vec![entry(&self.value_label, &dot)];
+        if self.rows.iter().any(|row| row.extreme.is_some()) {
+            entries.push(entry(&self.extreme_label, &ring));
+        }
         let drawn = self.level.iter().filter(|(_, value)| self.x.can_show(*value));
         entries.extend(drawn.map(|(label, _)| entry(label, &level)));
         entries
@@ -238,7 +255,8 @@ impl Form {
     /// Left of the axis.
     fn left(&self, rows: &[DotRow]) -> f64 {
         if self.above {
-            return 18.0;
+            // Half of the first tick's label.
+            return 24.0;
         }
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
         let names = letters as f64 * LETTER * f64::from(self.canvas.tick_size);
@@ -275,6 +293,7 @@ mod tests {
                     name: format!("method <{index}>"),
                     value: *value,
                     extreme: *extreme,
+                    interval: None,
                 })
                 .collect(),
             value_label: "first seed".into(),
@@ -296,6 +315,23 @@ mod tests {
         }
         assert_eq!(drawing.legend.len(), 3);
         assert_eq!(drawing.left_out, 0);
+    }
+
+    #[test]
+    fn an_interval_is_a_bar_behind_its_dot() {
+        let mut plot = rows(&[(Some(1e-3), None), (Some(1e-2), None)]);
+        let bar = format!("stroke=\"{}\"", Hue::Estimate.light());
+        let bars = |plot: &DotRows| plot.draw("").unwrap().wide.matches(&bar).count();
+        assert_eq!(bars(&plot), 0);
+        plot.rows[0].interval = Some([1e-4, 1e-2]);
+        assert_eq!(bars(&plot), 1);
+        // No ring anywhere, no word about rings.
+        assert_eq!(plot.draw("").unwrap().legend.len(), 2);
+        // One end that a logarithm does not have: the dot alone.
+        plot.rows[0].interval = Some([0.0, 1e-2]);
+        let drawing = plot.draw("").unwrap();
+        assert_eq!(drawing.left_out, 1);
+        assert_eq!((bars(&plot), drawing.wide.matches("<circle").count()), (0, 2));
     }
 
     #[test]

@@ -206,7 +206,12 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
         rows: study
             .methods
             .iter()
-            .map(|row| DotRow { name: row.title.clone(), value: inside(row), extreme: beyond(row) })
+            .map(|row| DotRow {
+                name: row.title.clone(),
+                value: inside(row),
+                extreme: beyond(row),
+                interval: None,
+            })
             .collect(),
         value_label: "inside".into(),
         extreme_label: "beyond".into(),

@@ -8,6 +8,7 @@ mod comparison;
 mod diagnosis;
 mod prediction;
 mod simulation;
+mod sweep;
 mod trials;
 
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
@@ -23,6 +24,10 @@ pub use prediction::{
     SplitSummary,
 };
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
+pub use sweep::{
+    RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,
+    SweepRecord, SweepState,
+};
 pub use trials::{
     AreaRow, BankRow, BarRow, BaselineRow, ClosureStudy, Confusion, FailureRow, LeftOutBank, NuisanceRow,
     ProbabilityMap, Proportion, Quantiles, Reliability, ReliabilityBin, SizeRow, TRIALS_MANIFEST_SCHEMA,

@@ -1,0 +1,74 @@
+//! A share of a sweep's runs.
+
+use super::SweepError;
+use std::fmt;
+use std::str::FromStr;
+
+/// Most shards of one sweep.
+const MOST_SHARDS: usize = 10_000;
+
+/// The `index`-th of `of` shares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    index: usize,
+    of: usize,
+}
+
+impl Shard {
+    /// All there is: the one share of one.
+    pub const ALL: Self = Self { index: 1, of: 1 };
+
+    /// Whether the run at a position of the frozen list, from 0, belongs to this share. Every run belongs to exactly
+    /// one; neighbors belong to different ones, so that each share gets some of every part of the list.
+    #[must_use]
+    pub fn takes(self, position: usize) -> bool {
+        position % self.of == self.index - 1
+    }
+}
+
+impl FromStr for Shard {
+    type Err = SweepError;
+
+    /// Reads `I/N` with I from 1 to N.
+    ///
+    /// # Errors
+    /// [`SweepError::BadShard`] for everything else, and beyond ten thousand shares.
+    fn from_str(text: &str) -> Result<Self, SweepError> {
+        let ends = text.split_once('/').map(|(index, of)| (index.trim().parse(), of.trim().parse()));
+        match ends {
+            Some((Ok(index), Ok(of))) if 1 <= index && index <= of && of <= MOST_SHARDS => {
+                Ok(Self { index, of })
+            }
+            _ => Err(SweepError::BadShard { found: text.to_owned() }),
+        }
+    }
+}
+
+impl fmt::Display for Shard {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}/{}", self.index, self.of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Shard;
+
+    #[test]
+    fn every_run_belongs_to_one_share() {
+        let shards: Vec<Shard> = (1..=3).map(|index| format!("{index}/3").parse().unwrap()).collect();
+        for position in 0..10 {
+            assert_eq!(shards.iter().filter(|shard| shard.takes(position)).count(), 1);
+        }
+        assert!((0..10).all(|position| Shard::ALL.takes(position)));
+        assert_eq!(shards[1].to_string(), "2/3");
+    }
+
+    #[test]
+    fn what_is_no_share_is_refused() {
+        for text in ["", "1", "0/3", "4/3", "1/0", "-1/3", "a/b", "1/20000"] {
+            let refused = text.parse::<Shard>().unwrap_err().to_string();
+            assert!(refused.contains("with I from 1 to N"), "{text}: {refused}");
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Of the page and the texts on many runs.
+
+use runs::result::{RunState, RunTable, RunTableRow, SweepAxis};
+use serde_json::{Value, json};
+
+use super::{csv, markdown, text_cells};
+use crate::{RunTexts, render};
+
+fn row(run: &str, estimator: &str, seed: u64, error: f64) -> RunTableRow {
+    let settings = json!({ "seed": seed });
+    RunTableRow {
+        task: "estimate".into(),
+        estimator: estimator.into(),
+        settings: settings.as_object().unwrap().clone(),
+        origin: "simulated".into(),
+        zeta: Some(0.01 * (1.0 + error / 100.0)),
+        zeta_std_error: Some(1e-4),
+        zeta_interval_95: Some([0.0098, 0.0102]),
+        decay_rate: Some(0.2),
+        oracle_zeta: Some(0.01),
+        error_percent: Some(error),
+        worst_error_percent: Some(2.0 * error),
+        tolerance_percent: Some(0.1),
+        reached: "converged".into(),
+        steps: Some(12),
+        parameters: Some(30),
+        seconds: Some(0.25),
+        pass: Some(error < 0.1),
+        ..RunTableRow::without_numbers(run, RunState::Done, "")
+    }
+}
+
+fn table() -> RunTable {
+    let axes = vec![SweepAxis { key: "seed".into(), values: vec!["0".into(), "1".into()] }];
+    let broken = RunTableRow::without_numbers("0005-<b>", RunState::Corrupt, "result.json: EOF | <script>");
+    let rows = vec![
+        row("runs/0001-pinn-seed-0", "pinn", 0, 1e-7),
+        row("runs/0002-pinn-seed-1", "pinn", 1, 3e-7),
+        row("runs/0003-lstm-seed-0", "lstm", 0, 0.0),
+        row("runs/0004-lstm-seed-1", "lstm", 1, 0.5),
+        broken,
+    ];
+    RunTable::new("sweep", "a sweep", axes, vec!["seed".into()], rows)
+}
+
+fn page(table: &RunTable) -> String {
+    let result = serde_json::to_string(table).unwrap();
+    let texts = RunTexts {
+        name: "a",
+        config: "",
+        result: &result,
+        trace: "",
+        envelope: "",
+        predictions: "",
+        series: "",
+        environment: "",
+    };
+    render(&texts).unwrap()
+}
+
+#[test]
+fn the_table_counts_what_became_of_its_runs() {
+    let table = table();
+    assert_eq!((table.done, table.failed, table.open, table.pass), (4, 1, 0, false));
+    let good =
+        RunTable::new("runs", "", vec![], vec![], vec![row("a", "pinn", 0, 1e-7), row("a", "ols", 0, 0.0)]);
+    // Two methods of one run are one run.
+    assert_eq!((good.done, good.failed, good.pass), (1, 0, true));
+}
+
+#[test]
+fn every_run_has_its_row_and_a_bad_one_its_reason() {
+    let html = page(&table());
+    assert_eq!(html.matches("<tr").count(), 1 + 5);
+    assert!(html.contains("result.json: EOF | &#60;script&#62;") && !html.contains("<script"));
+    assert!(html.contains("Simulated record") && html.contains("Some runs gave no result"));
+    assert_eq!(html.matches("class=\"fails\"").count(), 2);
+    // Both seeds of a method share a row of the first plot: two dots and two rings, drawn twice.
+    let gaps = html.split("id=\"gaps\"").nth(1).unwrap().split("</figure>").next().unwrap();
+    assert_eq!(gaps.split("<ul").next().unwrap().matches("<circle").count(), 2 * 4);
+    assert!(gaps.contains("pinn,") || gaps.contains("pinn"));
+    let ratios = html.split("id=\"ratios\"").nth(1).unwrap().split("</figure>").next().unwrap();
+    assert_eq!(ratios.split("<ul").next().unwrap().matches("<circle").count(), 2 * 4);
+    assert_eq!(page(&table()), html);
+}
+
+#[test]
+fn records_of_different_origins_are_loud() {
+    let mut table = table();
+    table.rows[0].origin = "measured".into();
+    assert!(page(&table).contains("Records of different origins"));
+}
+
+#[test]
+fn the_csv_holds_every_digit_and_quotes_what_it_has_to() {
+    let mut table = table();
+    table.rows[0].zeta = Some(0.1 + 0.2);
+    table.rows[4].reason = "a, \"b\"".into();
+    let text = csv(&table);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|column| column == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    assert_eq!(rows.len(), 5);
+    assert_eq!(rows[0][at("zeta")].parse::<f64>().unwrap(), 0.1 + 0.2);
+    assert_eq!((&rows[0][at("seed")], &rows[1][at("seed")]), ("0", "1"));
+    assert_eq!((&rows[4][at("state")], &rows[4][at("zeta")]), ("corrupt", ""));
+    assert_eq!(&rows[4][at("reason")], "a, \"b\"");
+}
+
+#[test]
+fn every_line_of_the_markdown_has_its_columns() {
+    let text = markdown(&table());
+    let widths: Vec<usize> = text
+        .lines()
+        .filter(|line| line.starts_with('|'))
+        .map(|line| line.replace("\\|", "").matches('|').count())
+        .collect();
+    assert_eq!(widths, [widths[0]; 7]);
+    assert!(text.contains("**CORRUPT**") && text.contains("**FAIL**"));
+    assert!(!text.contains("<script"));
+}
+
+#[test]
+fn a_terminal_gets_the_number_of_a_run_and_its_reason() {
+    let (header, rows) = text_cells(&table());
+    assert!(rows.iter().all(|row| row.len() == header.len()));
+    assert_eq!(rows[1][..3], ["0002", "pinn", "1"]);
+    assert!(rows[3].last().unwrap().contains("FAILS"));
+    assert!(rows[4].last().unwrap().starts_with("CORRUPT: result.json"));
+}
+
+#[test]
+fn numbers_that_are_none_survive_the_file() {
+    let mut before = table();
+    before.rows[0].error_percent = Some(f64::NAN);
+    let text = serde_json::to_string(&before).unwrap();
+    let value: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(value["rows"][0]["error_percent"], Value::Null);
+    assert!(page(&before).contains("The runs"));
+}

@@ -1,0 +1,430 @@
+//! Reading run folders that others have left: whatever is in them, one answer each.
+
+use crate::error::RunError;
+use crate::result::{
+    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA, RunState,
+    RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
+};
+use crate::sweep::SweepFolder;
+use jiff::Timestamp;
+use serde::Deserialize;
+use serde_json::Value;
+use settings::Document;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+/// Files of which every run has at least one.
+const FILES: [&str; 5] = ["config.toml", "events.jsonl", "result.json", "diagnosis.json", "environment.json"];
+
+/// A run folder as it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeptRun {
+    /// The folder.
+    pub path: PathBuf,
+    /// Its own name.
+    pub name: String,
+    /// Whether it is done.
+    pub state: RunState,
+    /// Why it has no result; empty where it has one.
+    pub reason: String,
+    /// When it began: by its first event, else when the folder was last changed.
+    pub started: Option<Timestamp>,
+    /// What was asked for; empty where that is not known.
+    pub task: String,
+    /// The estimator, or how many methods there are; empty where there is none.
+    pub estimator: String,
+    /// What came out, of tasks that have no estimate; else empty.
+    pub summary: String,
+    /// The resolved configuration, where there is one.
+    pub config: Option<Document>,
+    /// A row for each method that was fitted, without settings; one without numbers where there is no estimate.
+    pub rows: Vec<RunTableRow>,
+}
+
+impl KeptRun {
+    /// When it began, in UTC, to the second; empty where that is not known.
+    #[must_use]
+    pub fn began(&self) -> String {
+        self.started.map_or_else(String::new, |time| time.strftime("%Y-%m-%d %H:%M:%S").to_string())
+    }
+}
+
+/// What every result says of itself.
+#[derive(Deserialize)]
+struct Tag {
+    schema: String,
+    #[serde(default)]
+    task: String,
+}
+
+/// What is read of a diagnosis.
+#[derive(Deserialize)]
+struct Diagnosed {
+    verdict: Verdict,
+}
+
+#[derive(Deserialize)]
+struct Verdict {
+    status: String,
+    effects: Vec<String>,
+}
+
+/// A line of `events.jsonl`.
+#[derive(Deserialize)]
+struct Event {
+    time: String,
+    event: String,
+    #[serde(default)]
+    details: Value,
+}
+
+/// What a result was found to say.
+struct Content {
+    task: String,
+    estimator: String,
+    summary: String,
+    is_interrupted: bool,
+    rows: Vec<RunTableRow>,
+}
+
+/// Every run folder below a folder, newest first. Hidden folders and files are passed over.
+///
+/// # Errors
+/// [`RunError::Io`] where the folder itself cannot be listed; a run that cannot be read is an entry of its own.
+pub fn list_runs(root: &Path) -> Result<Vec<KeptRun>, RunError> {
+    let entries = std::fs::read_dir(root).map_err(RunError::io(root, "list"))?;
+    let mut runs = Vec::new();
+    for entry in entries {
+        let path = entry.map_err(RunError::io(root, "list"))?.path();
+        let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
+        if path.is_dir() && !is_hidden {
+            runs.push(read_run(&path));
+        }
+    }
+    runs.sort_by(|one, other| other.started.cmp(&one.started).then_with(|| one.name.cmp(&other.name)));
+    Ok(runs)
+}
+
+/// Whether a folder holds any file that a run has.
+#[must_use]
+pub fn has_run_files(path: &Path) -> bool {
+    FILES.iter().any(|name| path.join(name).exists())
+}
+
+/// Reads a run's folder. What cannot be read is [`RunState::Corrupt`], with the reason.
+#[must_use]
+pub fn read_run(path: &Path) -> KeptRun {
+    let events = events(path);
+    let mut run = KeptRun {
+        path: path.to_owned(),
+        name: name(path),
+        state: RunState::Corrupt,
+        reason: String::new(),
+        started: events.as_ref().and_then(|(first, _)| first.time.parse().ok()).or_else(|| changed(path)),
+        task: String::new(),
+        estimator: String::new(),
+        summary: String::new(),
+        config: None,
+        rows: Vec::new(),
+    };
+    if SweepFolder::is_one(path) {
+        sweep(&mut run);
+    } else if let Err(reason) = fill(&mut run, events.map(|(_, last)| last)) {
+        run.reason = reason;
+    }
+    if run.rows.is_empty() {
+        let row = RunTableRow::without_numbers(&run.path.display().to_string(), run.state, &run.reason);
+        let (task, estimator) = (run.task.clone(), run.estimator.clone());
+        run.rows.push(RunTableRow { task, estimator, ..row });
+    }
+    for row in &mut run.rows {
+        row.run = run.path.display().to_string();
+        row.state = run.state;
+    }
+    run
+}
+
+/// Reads result and configuration; an error is the reason why the folder is corrupt.
+fn fill(run: &mut KeptRun, last: Option<Event>) -> Result<(), String> {
+    if !has_run_files(&run.path) {
+        return Err("no file of a run is in it".to_owned());
+    }
+    let config = text(&run.path, "config.toml")?;
+    if let Some(text) = &config {
+        let document = Document::parse("config.toml", text).map_err(|error| error.to_string())?;
+        let word =
+            |key| document.get(key).and_then(|leaf| leaf.value.as_str()).unwrap_or_default().to_owned();
+        (run.task, run.estimator) = (word("task"), word("estimator.name"));
+        run.config = Some(document);
+    }
+    let diagnosis = text(&run.path, "diagnosis.json")?;
+    let (file, result) = match diagnosis {
+        Some(text) => ("diagnosis.json", Some(text)),
+        None => ("result.json", text(&run.path, "result.json")?),
+    };
+    let Some(result) = result else {
+        (run.state, run.reason) = without_result(last);
+        return Ok(());
+    };
+    let content = content(&result).map_err(|problem| format!("{file}: {problem}"))?;
+    if config.is_none() && file == "result.json" {
+        return Err("config.toml is missing".to_owned());
+    }
+    run.state = if content.is_interrupted { RunState::Interrupted } else { RunState::Done };
+    (run.task, run.estimator) = (content.task, content.estimator);
+    (run.summary, run.rows) = (content.summary, content.rows);
+    Ok(())
+}
+
+fn without_result(last: Option<Event>) -> (RunState, String) {
+    match last {
+        Some(last) if last.event == "failed" => {
+            let message = last.details.get("message").and_then(Value::as_str).unwrap_or("no reason was kept");
+            (RunState::Failed, message.to_owned())
+        }
+        Some(last) if last.event == "interrupted" => {
+            (RunState::Interrupted, "stopped before it had a result".to_owned())
+        }
+        _ => (RunState::Unfinished, "no result yet: it runs, or ended before it had one".to_owned()),
+    }
+}
+
+fn content(text: &str) -> Result<Content, String> {
+    let tag: Tag = parse(text)?;
+    match (tag.schema.as_str(), tag.task.as_str()) {
+        (DIAGNOSIS_SCHEMA, _) => {
+            let Verdict { status, effects } = parse::<Diagnosed>(text)?.verdict;
+            let effects =
+                if effects.is_empty() { String::new() } else { format!(": {}", effects.join(", ")) };
+            Ok(Content::in_words("diagnose", format!("{status}{effects}")))
+        }
+        (TRIALS_SCHEMA, _) => Ok(Content::in_words("trials", String::new())),
+        (RESULT_SCHEMA, "estimate") => Ok(estimation(&parse(text)?)),
+        (RESULT_SCHEMA, "compare") => Ok(comparison(&parse(text)?)),
+        (RESULT_SCHEMA, "") => Err("field `task` is missing".to_owned()),
+        (RESULT_SCHEMA, other) => Ok(Content::in_words(other, String::new())),
+        (other, _) => Err(format!("its schema is \"{other}\", which this program does not read")),
+    }
+}
+
+impl Content {
+    fn in_words(task: &str, summary: String) -> Self {
+        Self {
+            task: task.to_owned(),
+            estimator: String::new(),
+            summary,
+            is_interrupted: false,
+            rows: Vec::new(),
+        }
+    }
+}
+
+fn estimation(result: &EstimationResult) -> Content {
+    let estimate = &result.estimate;
+    let row = RunTableRow {
+        task: result.task.clone(),
+        estimator: result.estimator.clone(),
+        origin: result.data.origin.clone(),
+        zeta: Some(estimate.zeta),
+        zeta_std_error: estimate.zeta_std_error,
+        zeta_interval_95: estimate.zeta_interval_95,
+        decay_rate: Some(estimate.decay_rate),
+        oracle_zeta: Some(result.oracle.zeta),
+        error_percent: Some(result.error_percent),
+        worst_error_percent: Some(result.worst_error_percent),
+        tolerance_percent: Some(result.tolerance_percent),
+        reached: estimate.reached.clone(),
+        steps: Some(result.steps),
+        parameters: Some(result.parameters),
+        seconds: Some(result.seconds),
+        pass: Some(result.pass),
+        ..RunTableRow::without_numbers("", RunState::Done, "")
+    };
+    let is_interrupted =
+        estimate.reached == "interrupted" || result.seeds.iter().any(|seed| seed.reached == "interrupted");
+    Content {
+        task: result.task.clone(),
+        estimator: result.estimator.clone(),
+        summary: String::new(),
+        is_interrupted,
+        rows: vec![row],
+    }
+}
+
+fn comparison(result: &ComparisonResult) -> Content {
+    // A method whose turn never came says so in its reason.
+    let is_interrupted = |row: &MethodRow| match &row.outcome {
+        MethodOutcome::Estimate(estimate) => estimate.reached == "interrupted",
+        MethodOutcome::Failed { reason } => reason.starts_with("interrupted"),
+    };
+    Content {
+        task: result.task.clone(),
+        estimator: format!("{} methods", result.results.len()),
+        summary: String::new(),
+        is_interrupted: result.results.iter().any(is_interrupted),
+        rows: result.results.iter().map(|row| method(result, row)).collect(),
+    }
+}
+
+fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
+    let shared = RunTableRow {
+        task: result.task.clone(),
+        estimator: row.id.clone(),
+        origin: result.data.origin.clone(),
+        oracle_zeta: Some(result.oracle.zeta),
+        tolerance_percent: Some(result.tolerance_percent),
+        pass: Some(false),
+        ..RunTableRow::without_numbers("", RunState::Done, "")
+    };
+    match &row.outcome {
+        MethodOutcome::Failed { reason } => RunTableRow { reason: reason.clone(), ..shared },
+        MethodOutcome::Estimate(found) => RunTableRow {
+            zeta: Some(found.zeta),
+            zeta_std_error: found.zeta_std_error,
+            decay_rate: Some(found.decay_rate),
+            error_percent: Some(found.error_percent),
+            worst_error_percent: Some(found.worst_error_percent),
+            reached: found.reached.clone(),
+            steps: Some(found.steps),
+            parameters: Some(found.parameters),
+            seconds: Some(found.seconds),
+            pass: Some(found.pass),
+            ..shared
+        },
+    }
+}
+
+/// A sweep is one entry: how many of its runs are done.
+fn sweep(run: &mut KeptRun) {
+    run.task = "sweep".to_owned();
+    match SweepFolder::open(&run.path).manifest() {
+        Ok(Some(SweepManifest { runs, axes, .. })) => {
+            let count = |state| runs.iter().filter(|line| line.state == state).count();
+            let (done, failed) = (count(SweepState::Done), count(SweepState::Failed));
+            let keys: Vec<&str> = axes.iter().map(|axis| axis.key.as_str()).collect();
+            run.estimator = format!("over {}", keys.join(", "));
+            run.summary = format!("{done} of {} done, {failed} failed", runs.len());
+            run.state = match done + failed == runs.len() {
+                true => RunState::Done,
+                false if count(SweepState::Interrupted) > 0 => RunState::Interrupted,
+                false => RunState::Unfinished,
+            };
+        }
+        Ok(None) => run.reason = "no file of a run is in it".to_owned(),
+        Err(error) => run.reason = error.to_string(),
+    }
+}
+
+fn name(path: &Path) -> String {
+    // `.` and `..` have a name only once resolved.
+    let resolved = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    resolved.file_name().unwrap_or_default().to_string_lossy().into_owned()
+}
+
+/// The text of a file that a run may have; an error where it is there and cannot be read.
+fn text(path: &Path, name: &str) -> Result<Option<String>, String> {
+    match std::fs::read_to_string(path.join(name)) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(format!("{name}: {error}")),
+    }
+}
+
+/// The first and the last event. A crash may have cut the last line short; it is passed over then.
+fn events(path: &Path) -> Option<(Event, Event)> {
+    let text = std::fs::read_to_string(path.join("events.jsonl")).ok()?;
+    let read = |line: &str| serde_json::from_str::<Event>(line).ok();
+    Some((text.lines().find_map(read)?, text.lines().rev().find_map(read)?))
+}
+
+fn changed(path: &Path) -> Option<Timestamp> {
+    Timestamp::try_from(path.metadata().ok()?.modified().ok()?).ok()
+}
+
+fn parse<'a, T: Deserialize<'a>>(text: &'a str) -> Result<T, String> {
+    serde_json::from_str(text).map_err(|error| error.to_string())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{list_runs, read_run};
+    use crate::folder::RunFolder;
+    use crate::result::RunState;
+    use serde_json::json;
+    use std::path::Path;
+
+    /// A run folder with these files.
+    fn run(root: &Path, name: &str, files: &[(&str, &str)]) -> RunFolder {
+        let folder = RunFolder::create_at(&root.join(name)).unwrap();
+        for (file, text) in files {
+            folder.write(file, text.as_bytes()).unwrap();
+        }
+        folder
+    }
+
+    #[test]
+    fn every_state_is_told_from_the_others() {
+        let root = tempfile::tempdir().unwrap();
+        let simulated = "{\"schema\":\"ringdown.result/1\",\"task\":\"simulate\"}";
+        let diagnosed = "{\"schema\":\"ringdown.diagnosis/1\",\"verdict\":{\"status\":\"effect\",\"effects\":[\"gravity\"]}}";
+        let config = ("config.toml", "task = \"estimate\"\n[estimator]\nname = \"pinn\"\n");
+        run(root.path(), "done", &[config, ("result.json", simulated)]);
+        run(root.path(), "diagnosed", &[("diagnosis.json", diagnosed)]);
+        run(root.path(), "unfinished", &[config]);
+        run(root.path(), "failed", &[config])
+            .record_event("failed", &json!({ "message": "too few" }))
+            .unwrap();
+        run(root.path(), "empty", &[]);
+        run(root.path(), "cut", &[config, ("result.json", &simulated[..20])]);
+        run(root.path(), "foreign", &[config, ("result.json", "{\"schema\":\"other/1\"}")]);
+        run(root.path(), "bare", &[("result.json", simulated)]);
+        run(root.path(), "garbled", &[("config.toml", "a = ["), ("result.json", simulated)]);
+        run(root.path(), "torn", &[config]);
+        std::fs::write(root.path().join("torn/result.json"), [0xff, 0xfe]).unwrap();
+        run(root.path(), ".hidden", &[]);
+        std::fs::write(root.path().join("a file"), "").unwrap();
+        let expected = [
+            ("bare", RunState::Corrupt, "config.toml is missing"),
+            ("cut", RunState::Corrupt, "result.json: EOF"),
+            ("diagnosed", RunState::Done, ""),
+            ("done", RunState::Done, ""),
+            ("empty", RunState::Corrupt, "no file of a run"),
+            ("failed", RunState::Failed, "too few"),
+            ("foreign", RunState::Corrupt, "\"other/1\""),
+            ("garbled", RunState::Corrupt, "config.toml:1:"),
+            ("torn", RunState::Corrupt, "result.json: "),
+            ("unfinished", RunState::Unfinished, "no result yet"),
+        ];
+        let mut runs = list_runs(root.path()).unwrap();
+        runs.sort_by(|one, other| one.name.cmp(&other.name));
+        assert_eq!(runs.len(), expected.len());
+        for (run, (name, state, reason)) in runs.iter().zip(expected) {
+            assert_eq!((run.name.as_str(), run.state), (name, state), "{run:?}");
+            assert!(run.reason.contains(reason), "{run:?}");
+            assert!(run.started.is_some());
+        }
+        assert_eq!(runs[2].summary, "effect: gravity");
+        assert_eq!((runs[9].estimator.as_str(), runs[9].task.as_str()), ("pinn", "estimate"));
+    }
+
+    #[test]
+    fn the_newest_comes_first() {
+        let root = tempfile::tempdir().unwrap();
+        for (name, year) in [("b", 2024), ("a", 2025), ("c", 2023)] {
+            let line = format!(
+                "{{\"time\":\"{year}-01-01T00:00:00Z\",\"event\":\"start\",\"details\":{{}}}}\n{{\"ti"
+            );
+            run(root.path(), name, &[("events.jsonl", &line)]);
+        }
+        let names: Vec<String> = list_runs(root.path()).unwrap().into_iter().map(|run| run.name).collect();
+        assert_eq!(names, ["a", "b", "c"]);
+    }
+
+    #[test]
+    fn a_folder_that_cannot_be_listed_is_an_error_with_its_name() {
+        let root = tempfile::tempdir().unwrap();
+        let message = list_runs(&root.path().join("absent")).unwrap_err().to_string();
+        assert!(message.contains("absent: cannot list"), "{message}");
+        assert_eq!(read_run(&root.path().join("absent")).state, RunState::Corrupt);
+    }
+}

@@ -1,0 +1,341 @@
+//! The folder of a sweep.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `sweep.json` | the frozen list of runs ([`SweepManifest`]); what became of each, as of its last writing |
+//! | `configs/NNNN.toml` | each run's resolved configuration |
+//! | `config.toml`, `environment.json` | the configuration that every run starts from; what it was frozen with |
+//! | `state/<digest>.json` | one file for each run that came to its end ([`SweepEnd`]) |
+//! | `runs/NNNN-…/` | ordinary run folders |
+//!
+//! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
+//! was not begun or one that goes on where it was. A run killed between its result and its state file is made again,
+//! in another folder. Several processes may work on one sweep: only the files of `state/` say what is done.
+
+use crate::atomic;
+use crate::error::RunError;
+use crate::folder::RunFolder;
+use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
+use std::collections::BTreeMap;
+use std::io::{ErrorKind, Write};
+use std::path::{Path, PathBuf};
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+/// Name of the manifest.
+const MANIFEST: &str = "sweep.json";
+const STATE: &str = "state";
+const RUNS: &str = "runs";
+/// Most folders that one run is tried in.
+const MOST_ATTEMPTS: u32 = 10_000;
+
+/// Why a sweep's folder cannot be used.
+#[derive(Debug, Error)]
+pub enum SweepFolderError {
+    /// The system refused, or the folder holds something else.
+    #[error(transparent)]
+    Run(#[from] RunError),
+    /// The manifest is not one.
+    #[error(
+        "{}: cannot be read as a sweep's manifest: {problem}; restore it, or begin the sweep in another folder",
+        path.display()
+    )]
+    Unreadable {
+        /// The manifest.
+        path: PathBuf,
+        /// What is wrong with it.
+        problem: String,
+    },
+}
+
+/// The folder of a sweep.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct SweepFolder {
+    folder: RunFolder,
+}
+
+impl SweepFolder {
+    /// A folder that is there already.
+    #[must_use]
+    pub fn open(path: &Path) -> Self {
+        Self { folder: RunFolder::open(path) }
+    }
+
+    /// Whether a folder holds a sweep that was frozen.
+    #[must_use]
+    pub fn is_one(path: &Path) -> bool {
+        path.join(MANIFEST).is_file()
+    }
+
+    /// The folder for what belongs to the sweep as a whole.
+    #[must_use]
+    pub fn folder(&self) -> &RunFolder {
+        &self.folder
+    }
+
+    /// Its path.
+    #[must_use]
+    pub fn path(&self) -> &Path {
+        self.folder.path()
+    }
+
+    /// The frozen list, with what `state/` says became of each run; `None` where nothing was frozen yet.
+    ///
+    /// # Errors
+    /// [`SweepFolderError::Unreadable`] where the manifest is none; [`RunError::Io`] where the system refuses.
+    pub fn manifest(&self) -> Result<Option<SweepManifest>, SweepFolderError> {
+        let path = self.path().join(MANIFEST);
+        let text = match std::fs::read_to_string(&path) {
+            Ok(text) => text,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(RunError::io(&path, "read")(error).into()),
+        };
+        let unreadable = |problem: String| SweepFolderError::Unreadable { path: path.clone(), problem };
+        let mut manifest: SweepManifest =
+            serde_json::from_str(&text).map_err(|error| unreadable(error.to_string()))?;
+        if manifest.schema != SWEEP_SCHEMA {
+            return Err(unreadable(format!("its schema is {}, not {SWEEP_SCHEMA}", manifest.schema)));
+        }
+        self.note(&mut manifest)?;
+        Ok(Some(manifest))
+    }
+
+    /// Freezes the list of runs; `configs` are the texts of the runs' configurations, in the list's order, and `beside`
+    /// the files of the sweep as a whole by name. The manifest comes last: where it is, all of these are.
+    ///
+    /// `false` where another process has frozen one meanwhile: its manifest stays.
+    ///
+    /// # Errors
+    /// [`RunError`] where something cannot be written.
+    pub fn freeze(
+        &self,
+        manifest: &SweepManifest,
+        configs: &[String],
+        beside: &[(&str, Vec<u8>)],
+    ) -> Result<bool, RunError> {
+        for (line, config) in manifest.runs.iter().zip(configs) {
+            // Flushing ten thousand files takes minutes; the digests in the manifest tell whether one was lost.
+            self.folder.write_reproducible(&line.config, config.as_bytes())?;
+        }
+        for (name, content) in beside {
+            self.folder.write(name, content)?;
+        }
+        let path = self.path().join(MANIFEST);
+        let mut file = NamedTempFile::new_in(self.path()).map_err(RunError::io(&path, "create"))?;
+        file.write_all(&text_of(manifest)?).map_err(RunError::io(&path, "write"))?;
+        file.as_file().sync_all().map_err(RunError::io(&path, "flush"))?;
+        match file.persist_noclobber(&path) {
+            Ok(_) => (),
+            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => return Ok(false),
+            Err(error) => return Err(RunError::io(&path, "rename into place")(error.error)),
+        }
+        atomic::sync_folder(self.path())?;
+        // Once more as every other file is written, so that everybody may read it.
+        self.folder.write(MANIFEST, &text_of(manifest)?)?;
+        Ok(true)
+    }
+
+    /// A new folder for a run: `runs/<label>`, or with a number behind it where that was begun before. The path is
+    /// from the sweep's folder.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn begin_run(&self, label: &str) -> Result<(String, RunFolder), RunError> {
+        let root = self.path().join(RUNS);
+        std::fs::create_dir_all(&root).map_err(RunError::io(&root, "create"))?;
+        let mut name = label.to_owned();
+        for attempt in 2..MOST_ATTEMPTS {
+            let path = root.join(&name);
+            match std::fs::create_dir(&path) {
+                Ok(()) => {
+                    atomic::sync_folder(&root)?;
+                    return Ok((format!("{RUNS}/{name}"), RunFolder::open(&path)));
+                }
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => name = format!("{label}-{attempt}"),
+                Err(error) => return Err(RunError::io(&path, "create")(error)),
+            }
+        }
+        Err(RunError::Occupied { path: root.join(label) })
+    }
+
+    /// Says what became of a run: one small file, there as a whole or not at all.
+    ///
+    /// # Errors
+    /// [`RunError`] where it cannot be written.
+    pub fn end_run(&self, end: &SweepEnd) -> Result<(), RunError> {
+        self.folder.write_json(&format!("{STATE}/{}", state_name(&end.digest)), end)
+    }
+
+    /// Writes `sweep.json` again with what `state/` says, until nothing has changed meanwhile: whoever of several
+    /// processes comes last leaves it complete.
+    ///
+    /// # Errors
+    /// [`RunError`] where something cannot be read or written.
+    pub fn refresh(&self, manifest: &mut SweepManifest) -> Result<(), RunError> {
+        loop {
+            self.note(manifest)?;
+            self.folder.write(MANIFEST, &text_of(manifest)?)?;
+            let written = manifest.clone();
+            self.note(manifest)?;
+            if *manifest == written {
+                return Ok(());
+            }
+        }
+    }
+
+    /// Brings the states of a manifest up to date. A state file that cannot be read counts as none: its run is made
+    /// again.
+    fn note(&self, manifest: &mut SweepManifest) -> Result<(), RunError> {
+        let mut ends = self.ends()?;
+        for line in &mut manifest.runs {
+            let end = ends.remove(&line.digest);
+            line.state = end.as_ref().map_or(SweepState::Pending, |end| end.state);
+            (line.run, line.message) = end.map_or((None, None), |end| (end.run, end.message));
+        }
+        Ok(())
+    }
+
+    fn ends(&self) -> Result<BTreeMap<String, SweepEnd>, RunError> {
+        let folder = self.path().join(STATE);
+        let entries = match std::fs::read_dir(&folder) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(BTreeMap::new()),
+            Err(error) => return Err(RunError::io(&folder, "list")(error)),
+        };
+        let read = |entry: std::io::Result<std::fs::DirEntry>| -> Option<SweepEnd> {
+            let path = entry.ok()?.path();
+            let end: SweepEnd = serde_json::from_slice(&std::fs::read(&path).ok()?).ok()?;
+            (path.file_name()?.to_str()? == state_name(&end.digest)).then_some(end)
+        };
+        Ok(entries.filter_map(read).map(|end| (end.digest.clone(), end)).collect())
+    }
+}
+
+fn state_name(digest: &str) -> String {
+    format!("{}.json", digest.strip_prefix("sha256:").unwrap_or(digest))
+}
+
+fn text_of(manifest: &SweepManifest) -> Result<Vec<u8>, RunError> {
+    let mut text = serde_json::to_vec_pretty(manifest)
+        .map_err(|error| RunError::Encoding { name: MANIFEST.to_owned(), problem: error.to_string() })?;
+    text.push(b'\n');
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{SweepFolder, SweepFolderError};
+    use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
+    use std::path::Path;
+
+    fn manifest(runs: usize) -> SweepManifest {
+        let line = |number: usize| SweepLine {
+            number,
+            digest: format!("sha256:{number:064}"),
+            overrides: vec![format!("seed={number}")],
+            config: format!("configs/{number:04}.toml"),
+            state: SweepState::Pending,
+            run: None,
+            message: None,
+        };
+        SweepManifest {
+            schema: SWEEP_SCHEMA.into(),
+            name: "a".into(),
+            config: "a.toml".into(),
+            version: "0".into(),
+            axes: vec![],
+            records: vec![],
+            runs: (1..=runs).map(line).collect(),
+        }
+    }
+
+    fn frozen(path: &Path, runs: usize) -> SweepFolder {
+        let sweep = SweepFolder::open(path);
+        assert!(!SweepFolder::is_one(path) && sweep.manifest().unwrap().is_none());
+        let texts: Vec<String> = (1..=runs).map(|number| format!("seed = {number}\n")).collect();
+        assert!(sweep.freeze(&manifest(runs), &texts, &[]).unwrap());
+        sweep
+    }
+
+    fn done(number: usize, run: &str) -> SweepEnd {
+        SweepEnd {
+            digest: format!("sha256:{number:064}"),
+            state: SweepState::Done,
+            run: Some(run.into()),
+            message: None,
+        }
+    }
+
+    #[test]
+    fn a_list_is_frozen_once() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 2);
+        assert_eq!(sweep.manifest().unwrap().unwrap(), manifest(2));
+        assert!(!sweep.freeze(&manifest(3), &[], &[("config.toml", b"x".to_vec())]).unwrap());
+        assert_eq!(sweep.manifest().unwrap().unwrap().runs.len(), 2);
+        let config = std::fs::read_to_string(root.path().join("configs/0002.toml")).unwrap();
+        assert_eq!(config, "seed = 2\n");
+    }
+
+    #[test]
+    fn what_became_of_a_run_is_read_from_its_own_file() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 3);
+        sweep.end_run(&done(2, "runs/x")).unwrap();
+        // The manifest was not written since: its state is not asked.
+        let mut read = sweep.manifest().unwrap().unwrap();
+        let states = |manifest: &SweepManifest| -> Vec<&str> {
+            manifest.runs.iter().map(|line| line.state.name()).collect()
+        };
+        assert_eq!(states(&read), ["pending", "done", "pending"]);
+        assert_eq!(read.runs[1].run.as_deref(), Some("runs/x"));
+        // Another process finishes a run; whoever refreshes next knows.
+        sweep.end_run(&done(3, "runs/y")).unwrap();
+        sweep.refresh(&mut read).unwrap();
+        let text = std::fs::read_to_string(root.path().join("sweep.json")).unwrap();
+        assert_eq!(states(&serde_json::from_str(&text).unwrap()), ["pending", "done", "done"]);
+    }
+
+    #[test]
+    fn a_state_file_that_is_none_leaves_its_run_to_be_made_again() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        for text in [
+            "",
+            "{\"digest\": \"sha256:",
+            "{\"digest\":\"sha256:1\",\"state\":\"done\",\"run\":null,\"message\":null}",
+        ] {
+            std::fs::create_dir_all(root.path().join("state")).unwrap();
+            std::fs::write(root.path().join(format!("state/{:064}.json", 1)), text).unwrap();
+            assert_eq!(sweep.manifest().unwrap().unwrap().runs[0].state, SweepState::Pending);
+        }
+    }
+
+    #[test]
+    fn a_run_begun_again_gets_another_folder() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        let names: Vec<String> = (0..3).map(|_| sweep.begin_run("0001-seed-1").unwrap().0).collect();
+        assert_eq!(names, ["runs/0001-seed-1", "runs/0001-seed-1-2", "runs/0001-seed-1-3"]);
+    }
+
+    #[test]
+    fn a_manifest_that_is_none_is_named() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        let path = root.path().join("sweep.json");
+        for (text, says) in [
+            ("{\"schema\"", "EOF"),
+            (
+                "{\"schema\":\"other/1\",\"name\":\"\",\"config\":\"\",\"version\":\"\",\"axes\":[],\"records\":[],\"runs\":[]}",
+                "other/1",
+            ),
+        ] {
+            std::fs::write(&path, text).unwrap();
+            let refused = sweep.manifest().unwrap_err();
+            assert!(matches!(refused, SweepFolderError::Unreadable { .. }));
+            let message = refused.to_string();
+            assert!(message.contains("sweep.json") && message.contains(says), "{message}");
+        }
+    }
+}

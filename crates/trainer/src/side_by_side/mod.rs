@@ -1,0 +1,151 @@
+//! `trainer compare`: finished runs in one table.
+
+pub(crate) mod arguments;
+mod build;
+mod error;
+
+use crate::Outcome;
+use crate::console;
+use crate::error::TrainerError;
+use crate::summary::table as aligned;
+use crate::sweep::{SweepCommandError, entries};
+use arguments::{CompareArguments, Format};
+use report::{RunTexts, render_run_table, run_table_csv, run_table_markdown, run_table_text};
+use runs::result::RunTable;
+use runs::{RunFolder, SweepFolder, has_run_files, list_runs, read_run};
+use std::path::{Path, PathBuf};
+
+pub(crate) use build::{Entry, build};
+pub(crate) use error::TableError;
+
+/// Rows that a terminal is shown; files and `--json` have all.
+const MOST_LINES: usize = 100;
+
+/// Words that only rows have which somebody has to look after.
+pub(crate) const RED: [&str; 3] = ["FAIL", "CORRUPT", "corrupt"];
+
+/// Reads the runs, puts the table together, writes and prints it.
+pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerError> {
+    if let Some(path) = &arguments.out {
+        RunFolder::check_free(path)?;
+    }
+    let mut found = Vec::new();
+    for argument in &arguments.runs {
+        for path in paths(argument)? {
+            found.extend(at(&path)?);
+        }
+    }
+    let mut table = build("runs", "", Vec::new(), found);
+    if let Some(key) = &arguments.sort {
+        build::sort(&mut table, key, arguments.reverse)?;
+    }
+    let page = || page(&table);
+    if let Some(path) = &arguments.out {
+        let folder = RunFolder::create_at(path)?;
+        folder.write_json("result.json", &table)?;
+        folder.write("table.csv", run_table_csv(&table).as_bytes())?;
+        folder.write("table.md", run_table_markdown(&table).as_bytes())?;
+        folder.write("report.html", page()?.as_bytes())?;
+    }
+    if arguments.output.json {
+        arguments.output.print(&table, String::new)?;
+    } else if !arguments.output.quiet {
+        match arguments.format {
+            Some(Format::Csv) => console::result(run_table_csv(&table).trim_end()),
+            Some(Format::Markdown) => console::result(run_table_markdown(&table).trim_end()),
+            Some(Format::Html) => console::result(&page()?),
+            Some(Format::Text) | None => print_table(&table),
+        }
+    }
+    Ok(Outcome::Done)
+}
+
+/// Prints a table, the first rows of a long one.
+pub(crate) fn print_table(table: &RunTable) {
+    let (header, mut rows) = run_table_text(table);
+    let left_out = rows.len().saturating_sub(MOST_LINES);
+    rows.truncate(MOST_LINES);
+    let header: Vec<&str> = header.iter().map(String::as_str).collect();
+    let mut text = aligned(&header, rows);
+    if left_out > 0 {
+        text.push_str(&format!("\n… and {left_out} rows more; table.csv, --json and --format csv have all"));
+    }
+    text.push_str(&format!("\n\n{} done, {} failed, {} open", table.done, table.failed, table.open));
+    console::table(&text, &RED);
+}
+
+/// The page on a table that is no sweep's.
+fn page(table: &RunTable) -> Result<String, TrainerError> {
+    let result = serde_json::to_string_pretty(table)
+        .map_err(|error| TrainerError::System { what: "the table", problem: error.to_string() })?;
+    Ok(render_run_table(&RunTexts {
+        name: "Runs side by side",
+        config: "",
+        result: &result,
+        trace: "",
+        envelope: "",
+        predictions: "",
+        series: "",
+        environment: "",
+    })?)
+}
+
+/// The folders that an argument names, in the order of their names where it is a pattern.
+fn paths(argument: &str) -> Result<Vec<PathBuf>, TableError> {
+    let path = PathBuf::from(argument);
+    if path.exists() {
+        return Ok(vec![path]);
+    }
+    if !argument.contains(['*', '?', '[']) {
+        return Err(TableError::Absent { path: argument.to_owned() });
+    }
+    let bad = |problem: String| TableError::BadPattern { pattern: argument.to_owned(), problem };
+    let matches = glob::glob(argument).map_err(|error| bad(error.to_string()))?;
+    // What cannot be looked into is no match.
+    let found: Vec<PathBuf> = matches.flatten().filter(|path| path.is_dir()).collect();
+    if found.is_empty() { Err(TableError::NoMatch { pattern: argument.to_owned() }) } else { Ok(found) }
+}
+
+/// What lies at a path: the runs of a sweep, a run, or the runs in a folder.
+fn at(path: &Path) -> Result<Vec<Entry>, TrainerError> {
+    if SweepFolder::is_one(path) {
+        let folder = SweepFolder::open(path);
+        return Ok(match folder.manifest() {
+            Ok(Some(manifest)) => entries(&folder, &manifest),
+            // Its one row says what is wrong.
+            Ok(None) | Err(_) => vec![run(path)],
+        });
+    }
+    if !path.is_dir() {
+        return Err(TableError::Absent { path: path.display().to_string() }.into());
+    }
+    let holds_runs = |path: &Path| has_run_files(path) || SweepFolder::is_one(path);
+    if has_run_files(path) {
+        return Ok(vec![run(path)]);
+    }
+    let inside = list_runs(path)?;
+    if !inside.iter().any(|run| holds_runs(&run.path)) {
+        // A folder that was meant to be a run.
+        return Ok(vec![run(path)]);
+    }
+    let mut all = Vec::new();
+    for kept in inside {
+        if SweepFolder::is_one(&kept.path) {
+            all.extend(at(&kept.path)?);
+        } else {
+            all.push(Entry { rows: kept.rows, config: kept.config });
+        }
+    }
+    Ok(all)
+}
+
+fn run(path: &Path) -> Entry {
+    let kept = read_run(path);
+    Entry { rows: kept.rows, config: kept.config }
+}
+
+impl From<runs::SweepFolderError> for TrainerError {
+    fn from(error: runs::SweepFolderError) -> Self {
+        Self::Sweep(SweepCommandError::Folder(error))
+    }
+}

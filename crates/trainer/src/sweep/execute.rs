@@ -1,0 +1,226 @@
+//! Making the runs of a sweep, several at a time.
+
+use super::frozen::{FrozenSweep, classical};
+use crate::Outcome;
+use crate::cli::Output;
+use crate::console;
+use crate::error::TrainerError;
+use crate::input::Input;
+use crate::progress::Progress;
+use crate::run::Run;
+use estimator::Cancel;
+use experiment::resolve;
+use registry::ESTIMATORS;
+use runs::result::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
+use runs::{RunError, read_run};
+use serde_json::json;
+use settings::Document;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// `sweep.json` is written again when this many times its own writing time has passed.
+const REST: u32 = 20;
+
+/// A run to be made: its line and its configuration.
+pub(super) type Job<'a> = (&'a SweepLine, &'a str);
+
+/// What a run of a sweep prints: the sweep speaks for it.
+const SILENT: Output = Output { quiet: true, json: false };
+
+/// Makes the runs on so many threads. Each run is fitted on a single one, so that its bits do not depend on them. A
+/// run that fails is reported and the others go on; a request to stop lets none begin.
+///
+/// An error is one of the sweep's folder: what became of a run could not be kept.
+pub(super) fn execute(
+    sweep: &FrozenSweep,
+    jobs: &[Job<'_>],
+    threads: usize,
+    output: Output,
+    cancel: &'static Cancel,
+) -> Result<(), RunError> {
+    let progress = Progress::over_runs(jobs.len() as u64, output.quiet || output.json);
+    let next = AtomicUsize::new(0);
+    let fault: Mutex<Option<RunError>> = Mutex::new(None);
+    let clerk = Mutex::new(Clerk::new(sweep));
+    let work = || {
+        while !cancel.is_requested() && !is_some(&fault) {
+            let Some(&(line, config)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let end = make(sweep, line, config, cancel);
+            if let Err(error) = sweep.folder.end_run(&end) {
+                *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                break;
+            }
+            report(sweep, line, &end, &progress, output);
+            clerk.lock().unwrap_or_else(PoisonError::into_inner).note(sweep);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(jobs.len()) {
+            scope.spawn(work);
+        }
+    });
+    progress.finish();
+    match fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}
+
+fn is_some<T>(shared: &Mutex<Option<T>>) -> bool {
+    shared.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+}
+
+/// Makes one run and says what became of it.
+fn make(sweep: &FrozenSweep, line: &SweepLine, config: &str, cancel: &'static Cancel) -> SweepEnd {
+    let mut run = None;
+    // A panic would be a fault of the program; even so the other runs go on.
+    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, line, config, cancel, &mut run)));
+    let (state, message) = match made {
+        Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
+        Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
+        // A request to stop may also end training that has nothing to show yet.
+        Ok(Err(_)) if cancel.is_requested() => (SweepState::Interrupted, None),
+        Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
+        Err(_) => {
+            let message = "the program panicked; what it said stands above (a fault, please report it)";
+            (SweepState::Failed, Some(message.to_owned()))
+        }
+    };
+    if let (Some(folder), Some(message)) = (&run, &message) {
+        // The sweep's own state file says so too; that this one cannot be written is no failure of its own.
+        let folder = runs::RunFolder::open(&sweep.folder.path().join(folder));
+        let _ = folder.record_event("failed", &json!({ "message": message }));
+    }
+    SweepEnd { digest: line.digest.clone(), state, run, message }
+}
+
+/// Reads, fits and keeps; the run's folder is made once its record is read.
+fn attempt(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    config: &str,
+    cancel: &'static Cancel,
+    run: &mut Option<String>,
+) -> Result<Outcome, TrainerError> {
+    let experiment = resolve(&Document::parse(&line.config, config)?, ESTIMATORS, &classical())?;
+    let input = Input::read(&experiment)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    let (name, folder) = sweep.folder.begin_run(&label(&sweep.manifest, line))?;
+    *run = Some(name);
+    Run { experiment: &experiment, input, folder, pool, cancel, output: SILENT }.perform(config)
+}
+
+/// What a run's folder is called: its number and what is special about it. What all runs share is left out.
+pub(super) fn label(manifest: &SweepManifest, line: &SweepLine) -> String {
+    let safe = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
+    let mut label = format!("{:04}", line.number);
+    let varied = manifest.axes.iter().zip(&line.overrides).filter(|(axis, _)| axis.values.len() > 1);
+    for (_, argument) in varied {
+        let (key, value) = argument.split_once('=').unwrap_or((argument, ""));
+        let short = key.rsplit('.').next().unwrap_or(key);
+        let words: String = format!("{short}-{value}").chars().map(safe).collect();
+        let words: Vec<&str> = words.split('-').filter(|word| !word.is_empty()).collect();
+        label = format!("{label}-{}", words.join("-"));
+    }
+    label.chars().take(80).collect()
+}
+
+/// Says at once what became of a run.
+fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Progress, output: Output) {
+    let name = format!("{:04} ({})", line.number, line.overrides.join(" "));
+    if let Some(message) = &end.message {
+        let said = format!("run {name} FAILED: {message}");
+        if !output.quiet {
+            progress.aside(|| console::failure(&said));
+        }
+        progress.run_done(&format!("{name}: FAILED"));
+        return;
+    }
+    let rows = end.run.as_ref().map(|run| read_run(&sweep.folder.path().join(run)).rows).unwrap_or_default();
+    progress.run_done(&format!("{name}: {}", said(&rows)));
+}
+
+/// One line on the rows of a run.
+fn said(rows: &[RunTableRow]) -> String {
+    let bad = rows.iter().filter(|row| row.pass == Some(false)).count();
+    match rows {
+        [RunTableRow { zeta: Some(zeta), error_percent, reached, steps, seconds, .. }] => format!(
+            "{} after {} steps, {:.2} s, ζ {zeta:.8}, gap {:.1e} %{}",
+            reached.replace('_', " "),
+            steps.unwrap_or_default(),
+            seconds.unwrap_or_default(),
+            error_percent.unwrap_or(f64::NAN),
+            if bad > 0 { ", FAILS its tolerance" } else { "" },
+        ),
+        rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
+    }
+}
+
+/// Keeps `sweep.json` nearly up to date while runs are made.
+struct Clerk {
+    manifest: SweepManifest,
+    last: Instant,
+    rest: Duration,
+}
+
+impl Clerk {
+    fn new(sweep: &FrozenSweep) -> Self {
+        Self { manifest: sweep.manifest.clone(), last: Instant::now(), rest: Duration::ZERO }
+    }
+
+    /// Writes it, unless that was done just now: with thousands of runs it would take longer than these. That it
+    /// cannot be written is found out at the end, when it has to be.
+    fn note(&mut self, sweep: &FrozenSweep) {
+        if self.last.elapsed() < self.rest {
+            return;
+        }
+        let begun = Instant::now();
+        let _ = sweep.folder.refresh(&mut self.manifest);
+        (self.last, self.rest) = (Instant::now(), begun.elapsed() * REST);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::label;
+    use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepState};
+
+    #[test]
+    fn a_label_is_a_file_name_that_tells_runs_apart() {
+        let named = |overrides: &[(&str, usize)]| {
+            let axis = |&(text, values): &(&str, usize)| SweepAxis {
+                key: text.to_owned(),
+                values: vec![String::new(); values],
+            };
+            let line = SweepLine {
+                number: 7,
+                digest: String::new(),
+                overrides: overrides.iter().map(|(text, _)| (*text).to_owned()).collect(),
+                config: String::new(),
+                state: SweepState::Pending,
+                run: None,
+                message: None,
+            };
+            let manifest = SweepManifest {
+                schema: SWEEP_SCHEMA.into(),
+                name: String::new(),
+                config: String::new(),
+                version: String::new(),
+                axes: overrides.iter().map(axis).collect(),
+                records: vec![],
+                runs: vec![],
+            };
+            label(&manifest, &line)
+        };
+        assert_eq!(named(&[("estimator=pinn", 2), ("seed=3", 5)]), "0007-estimator-pinn-seed-3");
+        assert_eq!(named(&[("estimator.hidden=[32, 16]", 2)]), "0007-hidden-32-16");
+        assert_eq!(named(&[("data.path=../a/b c.csv", 2), ("fit.seeds=3", 1)]), "0007-path-..-a-b-c.csv");
+        assert_eq!(named(&[]), "0007");
+        assert_eq!(named(&[(&format!("name={}", "x".repeat(500)), 2)]).len(), 80);
+    }
+}

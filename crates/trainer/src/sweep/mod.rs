@@ -1,0 +1,122 @@
+//! `trainer sweep`: every combination of some keys' values, resumable.
+
+pub(crate) mod arguments;
+mod error;
+mod execute;
+mod frozen;
+mod slurm;
+mod table;
+
+use crate::Outcome;
+use crate::console;
+use crate::error::TrainerError;
+use crate::interrupt;
+use crate::rerender::write_report;
+use crate::side_by_side::print_table;
+use arguments::{Launcher, SweepArguments};
+use execute::Job;
+use experiment::sweep::Shard;
+use frozen::FrozenSweep;
+use report::{run_table_csv, run_table_markdown};
+use runs::result::{RunTable, SweepLine, SweepManifest, SweepState};
+use serde::Serialize;
+use serde_json::json;
+
+pub(crate) use error::SweepCommandError;
+pub(crate) use table::entries;
+
+/// What a script is told: the table, and where everything is.
+#[derive(Serialize)]
+struct Answer<'a> {
+    folder: String,
+    #[serde(flatten)]
+    table: &'a RunTable,
+}
+
+/// Freezes or takes up, runs what is missing, puts the table together.
+pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
+    let cancel = interrupt::watch()?;
+    let mut sweep = frozen::settle(arguments)?;
+    if let Some(Launcher::Slurm) = arguments.launcher {
+        return slurm::launch(arguments, &sweep);
+    }
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    let output = arguments.output;
+    let jobs: Vec<Job<'_>> = sweep
+        .manifest
+        .runs
+        .iter()
+        .zip(&sweep.configs)
+        .enumerate()
+        .filter(|(position, (line, _))| shard.takes(*position) && is_missing(line, arguments.failed))
+        .map(|(_, (line, config))| (line, config.as_str()))
+        .collect();
+    if !output.quiet && !output.json {
+        let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
+        console::remark(&format!("sweep of {all} runs in {path}, {} of them now", jobs.len()));
+    }
+    let made = jobs.len();
+    execute::execute(&sweep, &jobs, threads(arguments), output, cancel)?;
+    let table = finish(&mut sweep)?;
+    let event = if cancel.is_requested() { "interrupted" } else { "end" };
+    sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
+    let path = sweep.folder.path().display().to_string();
+    if output.json {
+        output.print(&Answer { folder: path.clone(), table: &table }, String::new)?;
+    } else if !output.quiet {
+        print_table(&table);
+        console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
+    }
+    if cancel.is_requested() {
+        if !output.quiet {
+            console::remark(&format!("interrupted; trainer sweep --out {path} --resume goes on"));
+        }
+        return Ok(Outcome::Interrupted);
+    }
+    let own = sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
+    let is_fine = own.map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
+    Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
+}
+
+/// As many threads as asked for, or one for each core.
+fn threads(arguments: &SweepArguments) -> usize {
+    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+    arguments.threads.map_or_else(cores, usize::from)
+}
+
+fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
+    match line.state {
+        SweepState::Pending | SweepState::Interrupted => true,
+        SweepState::Failed => failed_too,
+        SweepState::Done => false,
+    }
+}
+
+/// Whether a run is done and every row of it within its tolerance.
+fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
+    let name = table::run_name(manifest, line);
+    line.state == SweepState::Done
+        && table
+            .rows
+            .iter()
+            .filter(|row| row.run == name)
+            .all(|row| !row.state.is_bad() && row.pass != Some(false))
+}
+
+/// Writes the manifest, the table and the page until nothing has changed meanwhile: of several shares that end at
+/// the same time the last leaves them complete.
+fn finish(sweep: &mut FrozenSweep) -> Result<RunTable, TrainerError> {
+    loop {
+        sweep.folder.refresh(&mut sweep.manifest)?;
+        let table = table::table(&sweep.folder, &sweep.manifest);
+        let folder = sweep.folder.folder();
+        folder.write_json("result.json", &table)?;
+        folder.write("table.csv", run_table_csv(&table).as_bytes())?;
+        folder.write("table.md", run_table_markdown(&table).as_bytes())?;
+        write_report(folder)?;
+        let now = sweep.folder.manifest().map_err(SweepCommandError::Folder)?;
+        if now.is_none_or(|now| now.runs == sweep.manifest.runs) {
+            return Ok(table);
+        }
+    }
+}

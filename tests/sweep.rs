@@ -1,0 +1,445 @@
+//! `trainer sweep`: every combination, frozen beforehand, resumable, the same bits however it is run.
+
+use crate::support::{result, root, trainer};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant, SystemTime};
+use tempfile::TempDir;
+
+/// Runs that take a moment each: a few steps of a network that have no tolerance to meet.
+const SLOW: &[&str] = &[
+    "sweep",
+    "configs/pinn.toml",
+    "seed=0..5",
+    "fit.max_steps=25",
+    "fit.tolerance_percent=1e6",
+    "estimator.hidden=[16,16]",
+];
+
+fn scratch() -> (TempDir, String) {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("sweep").to_str().unwrap().to_owned();
+    (folder, out)
+}
+
+/// Runs a sweep into a folder.
+fn sweep(arguments: &[&str], out: &str, options: &[&str]) -> Output {
+    trainer(&[arguments, &["--out", out], options].concat())
+}
+
+fn code(output: &Output) -> i32 {
+    output.status.code().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+fn json(path: &Path) -> Value {
+    serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
+}
+
+fn lines(out: &str) -> Vec<Value> {
+    json(&Path::new(out).join("sweep.json"))["runs"].as_array().unwrap().clone()
+}
+
+fn states(out: &str) -> Vec<String> {
+    lines(out).iter().map(|line| line["state"].as_str().unwrap().to_owned()).collect()
+}
+
+/// A value without its wall times.
+fn timeless(mut value: Value) -> Value {
+    fn forget(value: &mut Value) {
+        match value {
+            Value::Object(fields) => {
+                fields.remove("seconds");
+                fields.values_mut().for_each(forget);
+            }
+            Value::Array(entries) => entries.iter_mut().for_each(forget),
+            _ => (),
+        }
+    }
+    forget(&mut value);
+    value
+}
+
+/// Every run's result by digest, wall times taken away.
+fn results(out: &str) -> BTreeMap<String, Value> {
+    let of = |line: &Value| {
+        let run = Path::new(out).join(line["run"].as_str().unwrap());
+        (line["digest"].as_str().unwrap().to_owned(), timeless(json(&run.join("result.json"))))
+    };
+    lines(out).iter().map(of).collect()
+}
+
+/// When each run that came to its end did so.
+fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
+    let entries = std::fs::read_dir(Path::new(out).join("state")).into_iter().flatten();
+    entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
+        .map(|path| (path.clone(), path.metadata().unwrap().modified().unwrap()))
+        .collect()
+}
+
+fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
+    Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args([arguments, &["--out", out], options].concat())
+        .current_dir(root())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+/// Waits until so many runs came to their end, or the sweep did.
+fn wait_for(child: &mut Child, out: &str, runs: usize) {
+    let since = Instant::now();
+    while ends(out).len() < runs && child.try_wait().unwrap().is_none() {
+        assert!(since.elapsed() < Duration::from_secs(120), "no run came to its end");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+fn every_combination_becomes_an_ordinary_run() {
+    let (_folder, out) = scratch();
+    let arguments = ["sweep", "configs/pinn.toml", "estimator=ols,lstm", "seed=0..2"];
+    let output = sweep(&arguments, &out, &["--json"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let table: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!((&table["done"], &table["failed"], &table["pass"]), (&6.into(), &0.into(), &true.into()));
+    assert_eq!(json(&Path::new(&out).join("sweep.json"))["schema"], "ringdown.sweep/1");
+    assert_eq!(states(&out), ["done"; 6]);
+    let overrides: Vec<&str> =
+        table["rows"].as_array().unwrap().iter().map(|row| row["estimator"].as_str().unwrap()).collect();
+    assert_eq!(overrides, ["ols", "ols", "ols", "lstm", "lstm", "lstm"]);
+    for name in ["report.html", "table.md", "config.toml", "environment.json", "result.json"] {
+        assert!(Path::new(&out).join(name).is_file(), "{name}");
+    }
+    let csv = std::fs::read_to_string(Path::new(&out).join("table.csv")).unwrap();
+    assert_eq!(csv.lines().count(), 7, "{csv}");
+
+    // The run of a combination is the run of its overrides alone.
+    let last = &lines(&out)[5];
+    assert_eq!(last["overrides"], serde_json::json!(["estimator=lstm", "seed=2"]));
+    let (_, alone, _) = result(&["configs/pinn.toml", "estimator=lstm", "seed=2"]);
+    assert_eq!(results(&out)[last["digest"].as_str().unwrap()], timeless(alone));
+
+    // Its folder is one that `trainer report` reads, and so is the sweep's; the pages come out the same.
+    let run = Path::new(&out).join(last["run"].as_str().unwrap());
+    for folder in [run.as_path(), Path::new(&out)] {
+        let page = folder.join("report.html");
+        let before = std::fs::read(&page).unwrap();
+        std::fs::remove_file(&page).unwrap();
+        assert_eq!(code(&trainer(&["report", folder.to_str().unwrap()])), 0);
+        assert_eq!(std::fs::read(&page).unwrap(), before);
+    }
+    let frozen = std::fs::read(Path::new(&out).join(last["config"].as_str().unwrap())).unwrap();
+    assert_eq!(std::fs::read(run.join("config.toml")).unwrap(), frozen);
+}
+
+#[test]
+fn threads_and_shares_do_not_change_a_bit() {
+    let arguments = ["sweep", "configs/lstm.toml", "seed=0..6", "fit.seeds=2"];
+    let (_one, one) = scratch();
+    assert_eq!(code(&sweep(&arguments, &one, &["--threads", "1", "--quiet"])), 0);
+    let (_two, two) = scratch();
+    assert_eq!(code(&sweep(&arguments, &two, &["--threads", "2", "--quiet"])), 0);
+    // Three shares at the same time on one folder, each of which may be the one that freezes it.
+    let (_shares, shares) = scratch();
+    let children: Vec<Child> =
+        (1..=3).map(|index| start(&arguments, &shares, &["--shard", &format!("{index}/3")])).collect();
+    for mut child in children {
+        assert!(child.wait().unwrap().success());
+    }
+    assert_eq!(results(&one), results(&two));
+    assert_eq!(results(&one), results(&shares));
+    assert_eq!(results(&one).len(), 7);
+    // Whoever came last left the table complete.
+    let table = |out: &str| {
+        let mut table = timeless(json(&Path::new(out).join("result.json")));
+        table.as_object_mut().unwrap().remove("folder");
+        table
+    };
+    assert_eq!(table(&one), table(&shares));
+    // Nobody made a run twice.
+    assert_eq!(std::fs::read_dir(Path::new(&shares).join("runs")).unwrap().count(), 7);
+}
+
+#[test]
+fn a_share_runs_its_own_part_only() {
+    let (_folder, out) = scratch();
+    let arguments = ["sweep", "configs/ols.toml", "seed=0..4"];
+    assert_eq!(code(&sweep(&arguments, &out, &["--shard", "2/2", "--quiet"])), 0);
+    assert_eq!(states(&out), ["pending", "done", "pending", "done", "pending"]);
+    // The rest later, from the frozen list alone.
+    assert_eq!(code(&sweep(&["sweep"], &out, &["--resume", "--shard", "1/2", "--quiet"])), 0);
+    assert_eq!(states(&out), ["done"; 5]);
+    let refused = sweep(&arguments, &out, &["--shard", "3/2"]);
+    assert!(code(&refused) == 2 && said(&refused).contains("I from 1 to N"), "{}", said(&refused));
+}
+
+#[test]
+fn a_bad_combination_is_named_before_anything_is_written() {
+    for (axis, says) in [
+        ("fit.tolerance_percent=0.1,-1", "combination 2 (seed=1 fit.tolerance_percent=-1)"),
+        ("estimator=ols,lsmt", "did you mean `lstm`"),
+        ("estimator.layers=1,2", "combination 1 (seed=1 estimator.layers=1)"),
+        ("data.path=experiments/default-record/record.csv,absent.csv", "absent.csv: cannot be read"),
+        ("fit.seeds=2,2", "are the same experiment"),
+        ("fit.seeds=9..1", "ends before it begins"),
+        ("seed=1", "`seed` is given twice"),
+        ("task=predict", "cannot be swept"),
+        ("fit.seeds", "is no axis"),
+    ] {
+        let (_folder, out) = scratch();
+        let output = sweep(&["sweep", "configs/ols.toml", "seed=1", axis], &out, &[]);
+        let message = said(&output);
+        assert_eq!(code(&output), 2, "{axis}: {message}");
+        assert!(message.contains(says), "{axis}: {message}");
+        assert!(!Path::new(&out).exists(), "{axis}");
+    }
+}
+
+#[test]
+fn one_failing_run_is_one_row_and_the_others_go_on() {
+    let (folder, out) = scratch();
+    let bad = folder.path().join("bad.csv");
+    std::fs::write(&bad, "time_s,angle_rad\n0,1\n0.1,x\n").unwrap();
+    let paths = format!("data.path={},experiments/default-record/record.csv", bad.display());
+    let arguments = ["sweep", "configs/lstm.toml", &paths, "seed=0,1"];
+    let output = sweep(&arguments, &out, &["--threads", "1"]);
+    assert_eq!(code(&output), 1);
+    assert_eq!(states(&out), ["failed", "failed", "done", "done"]);
+    // At once, not at the end: before the runs that follow.
+    let message = said(&output);
+    let failed = message.find("run 0001").unwrap_or_else(|| panic!("{message}"));
+    assert!(failed < message.find("0003 (").unwrap(), "{message}");
+    assert!(message.contains("bad.csv:3: `x` in column `angle_rad` is not a number"), "{message}");
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(shown.contains("FAILED: ") && shown.contains("2 done, 2 failed, 0 open"), "{shown}");
+    assert!(!shown.contains('\u{1b}'), "colors are for terminals");
+    let page = std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap();
+    assert!(page.contains("bad.csv:3:") && page.matches("class=\"fails\"").count() == 2);
+
+    // Going on makes neither what is done nor what failed; asked for, what failed is made again.
+    let before = ends(&out);
+    assert_eq!(code(&sweep(&arguments, &out, &["--resume", "--quiet"])), 1);
+    assert_eq!(ends(&out), before);
+    let again = sweep(&arguments, &out, &["--resume", "--failed"]);
+    assert!(code(&again) == 1 && said(&again).contains("2 of them now"), "{}", said(&again));
+    assert_eq!(ends(&out).iter().filter(|(path, time)| before[*path] == **time).count(), 2);
+    // A record that is another one by now is not swept into the same table.
+    std::fs::write(&bad, "time_s,angle_rad\n0,1\n0.1,2\n").unwrap();
+    let refused = sweep(&arguments, &out, &["--resume", "--failed"]);
+    assert_eq!(code(&refused), 2);
+    assert!(
+        said(&refused).contains("the record has changed since the sweep was frozen"),
+        "{}",
+        said(&refused)
+    );
+}
+
+#[test]
+fn a_run_outside_its_tolerance_is_exit_code_1() {
+    let (_folder, out) = scratch();
+    let output = sweep(&["sweep", "configs/pinn.toml", "estimator=ols,baseline"], &out, &[]);
+    assert_eq!((code(&output), states(&out)), (1, vec!["done".to_owned(); 2]));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("FAILS"));
+}
+
+#[test]
+fn killed_at_any_moment_it_goes_on_where_it_was() {
+    let (_whole, whole) = scratch();
+    assert_eq!(code(&sweep(SLOW, &whole, &["--quiet"])), 0);
+    let (_folder, out) = scratch();
+    let mut kept: BTreeMap<PathBuf, SystemTime> = BTreeMap::new();
+    // Killed while it freezes, after the first runs, and in the middle of others.
+    for (runs, pause) in [(0, 10), (1, 0), (2, 40), (4, 90)] {
+        let mut child = start(SLOW, &out, &["--resume", "--threads", "1"]);
+        wait_for(&mut child, &out, runs);
+        std::thread::sleep(Duration::from_millis(pause));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        let now = ends(&out);
+        // What was done stays as it was.
+        for (path, time) in &kept {
+            assert_eq!(now.get(path), Some(time), "{}", path.display());
+        }
+        kept = now;
+        assert!(kept.len() >= runs);
+        if Path::new(&out).join("sweep.json").exists() {
+            assert_eq!(lines(&out).len(), 6);
+        }
+    }
+    let before = ends(&out);
+    let output = sweep(SLOW, &out, &["--resume"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let missing = format!("{} of them now", 6 - before.len());
+    assert!(said(&output).contains(&missing), "{missing}: {}", said(&output));
+    assert!(before.iter().all(|(path, time)| ends(&out)[path] == *time));
+    assert_eq!(results(&out), results(&whole));
+    assert_eq!(states(&out), ["done"; 6]);
+}
+
+/// Killed before its manifest was written, a sweep was not begun; the files that come first are no obstacle.
+#[test]
+fn killed_while_it_froze_it_begins_again() {
+    let (_folder, out) = scratch();
+    let arguments = ["sweep", "configs/ols.toml", "seed=0,1"];
+    assert_eq!(code(&sweep(&arguments, &out, &["--quiet"])), 0);
+    for left in [&["configs", "config.toml", "environment.json"][..], &["configs"]] {
+        for entry in std::fs::read_dir(&out).unwrap() {
+            let path = entry.unwrap().path();
+            match path.file_name().is_some_and(|name| left.iter().any(|kept| name == *kept)) {
+                true => continue,
+                false if path.is_dir() => std::fs::remove_dir_all(&path).unwrap(),
+                false => std::fs::remove_file(&path).unwrap(),
+            }
+        }
+        assert_eq!(code(&sweep(&arguments, &out, &["--quiet"])), 2, "it holds something");
+        assert_eq!(code(&sweep(&arguments, &out, &["--quiet", "--resume"])), 0);
+        assert_eq!(states(&out), ["done"; 2]);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn interrupted_it_keeps_what_is_done_and_exits_with_130() {
+    let (_folder, out) = scratch();
+    let mut child = start(SLOW, &out, &["--threads", "1"]);
+    wait_for(&mut child, &out, 1);
+    let kill = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    let done = states(&out).iter().filter(|state| *state == "done").count();
+    assert!((1..6).contains(&done), "{:?}", states(&out));
+    assert!(states(&out).iter().all(|state| state != "failed"), "{:?}", states(&out));
+    assert!(Path::new(&out).join("report.html").is_file());
+    assert_eq!(code(&sweep(SLOW, &out, &["--resume", "--quiet"])), 0);
+    assert_eq!(states(&out), ["done"; 6]);
+}
+
+#[test]
+fn another_configuration_is_refused_with_the_difference() {
+    let (folder, out) = scratch();
+    let config = folder.path().join("own.toml");
+    let text = std::fs::read_to_string(root().join("configs/lstm.toml")).unwrap();
+    std::fs::write(&config, &text).unwrap();
+    let own = config.to_str().unwrap();
+    assert_eq!(code(&sweep(&["sweep", own, "seed=0,1"], &out, &["--quiet"])), 0);
+    let refused = |arguments: &[&str], options: &[&str]| {
+        let output = sweep(arguments, &out, options);
+        assert_eq!(code(&output), 2);
+        said(&output)
+    };
+    let begun = refused(&["sweep", own, "seed=0,1"], &[]);
+    assert!(begun.contains("a sweep was begun there already; --resume goes on with it"), "{begun}");
+    let longer = refused(&["sweep", own, "seed=0..2"], &["--resume"]);
+    assert!(longer.contains("2 runs then, 3 now"), "{longer}");
+    let other = refused(&["sweep", own, "seed=0,2"], &["--resume"]);
+    assert!(other.contains("run 2 (seed=1): `seed = 1` then, `seed = 2` now"), "{other}");
+    std::fs::write(&config, format!("{text}\n[envelope.recommended]\nfloor_in_noise = 9.0\n")).unwrap();
+    let edited = refused(&["sweep", own, "seed=0,1"], &["--resume"]);
+    assert!(edited.contains("`envelope.recommended.floor_in_noise = 8.0` then, "), "{edited}");
+    // Where values are written does not matter, only what they are.
+    std::fs::write(&config, text.replacen("seed", "# moved\nseed", 1)).unwrap();
+    assert_eq!(code(&sweep(&["sweep", own, "seed=0..1"], &out, &["--resume", "--quiet"])), 0);
+    // The frozen list needs no configuration, but it has to be what was frozen.
+    assert_eq!(code(&sweep(&["sweep"], &out, &["--resume", "--quiet"])), 0);
+    let frozen = Path::new(&out).join("configs/0002.toml");
+    let text = std::fs::read_to_string(&frozen).unwrap();
+    std::fs::write(&frozen, text.replace("tolerance_percent = 0.1", "tolerance_percent = 5.0")).unwrap();
+    let changed = refused(&["sweep"], &["--resume"]);
+    assert!(changed.contains("0002.toml: the frozen configuration is missing or was changed"), "{changed}");
+    // A folder with something else in it is nobody's sweep.
+    let occupied = refused_in(folder.path(), own);
+    assert!(occupied.contains("is not empty"), "{occupied}");
+}
+
+/// What is said where the folder for a sweep holds other files.
+fn refused_in(folder: &Path, config: &str) -> String {
+    let output = sweep(&["sweep", config, "seed=0,1"], folder.to_str().unwrap(), &["--resume"]);
+    assert_eq!(code(&output), 2);
+    said(&output)
+}
+
+/// Hands a sweep of five runs to Slurm in three shares, with these folders to look for programs in.
+fn launch(out: &str, path: &str, options: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", out, "--launcher", "slurm"])
+        .args([&["--shards", "3"], options].concat())
+        .env("PATH", path)
+        .current_dir(root())
+        .output()
+        .unwrap()
+}
+
+/// A machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
+#[cfg(unix)]
+#[test]
+fn a_slurm_array_has_one_task_for_each_share() {
+    use std::os::unix::fs::PermissionsExt;
+    let (folder, out) = scratch();
+    let tools = folder.path().join("tools");
+    std::fs::create_dir(&tools).unwrap();
+    let path = tools.to_str().unwrap();
+    let sbatch = |text: &str| {
+        let program = tools.join("sbatch");
+        std::fs::write(&program, text).unwrap();
+        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+    };
+    let absent = launch(&out, path, &[]);
+    assert_eq!(code(&absent), 2);
+    assert!(said(&absent).contains("there is no sbatch on this machine"), "{}", said(&absent));
+    let script = Path::new(&out).join("slurm.sh");
+    assert!(script.is_file() && states(&out) == ["pending"; 5]);
+
+    sbatch("#!/bin/sh\necho 'invalid partition' >&2\nexit 1\n");
+    let refused = launch(&out, path, &["--resume"]);
+    assert_eq!(code(&refused), 2);
+    assert!(said(&refused).contains("sbatch refused it: invalid partition"), "{}", said(&refused));
+
+    sbatch(
+        "#!/bin/sh\nfor task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task /bin/sh \"$1\" >/dev/null 2>&1 || exit 1; done\n\
+         echo 'Submitted batch job 7'\n",
+    );
+    let submitted = launch(&out, path, &["--resume"]);
+    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
+    assert!(String::from_utf8_lossy(&submitted.stdout).contains("Submitted batch job 7"));
+    assert!(std::fs::read_to_string(&script).unwrap().contains("#SBATCH --array=1-3\n"));
+    assert_eq!(states(&out), ["done"; 5]);
+}
+
+/// Where a Slurm controller answers, the tasks go through it.
+#[test]
+fn slurm_itself_runs_the_shares() {
+    let path = std::env::var("PATH").unwrap();
+    let answer = Command::new("sinfo").args(["--noheader", "--states=idle"]).output();
+    if !answer.is_ok_and(|answer| answer.status.success() && !answer.stdout.is_empty()) {
+        let line =
+            b"SKIPPED: no Slurm with an idle node answers here; job arrays were run by a stand-in only\n";
+        std::io::stderr().write_all(line).unwrap();
+        return;
+    }
+    let (_folder, out) = scratch();
+    let submitted = launch(&out, &path, &[]);
+    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
+    let since = Instant::now();
+    while ends(&out).len() < 5 {
+        assert!(since.elapsed() < Duration::from_secs(120), "the queue does not move");
+        std::thread::sleep(Duration::from_millis(200));
+    }
+    // The last task writes the manifest a moment after its last run.
+    while states(&out) != ["done"; 5] {
+        assert!(since.elapsed() < Duration::from_secs(150), "{:?}", states(&out));
+        std::thread::sleep(Duration::from_millis(100));
+    }
+    let alone = scratch();
+    assert_eq!(code(&sweep(&["sweep", "configs/ols.toml", "seed=0..4"], &alone.1, &["--quiet"])), 0);
+    assert_eq!(results(&out), results(&alone.1));
+}
