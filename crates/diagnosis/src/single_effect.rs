@@ -1,0 +1,57 @@
+//! One effect at a time: what a diagnosis is held against.
+
+use crate::calibrate::better_hold;
+use crate::candidate::Candidate;
+use crate::chain_statistics;
+use crate::dictionary::Dictionary;
+use crate::error::DiagnosisError;
+use crate::fit::{Effort, Fit};
+use crate::observations::Observations;
+use crate::search::{alone, fit_all, vanished};
+use crate::segments::{MOST_SEARCHED, cut};
+use dynamics::Nominal;
+use record::Quantity;
+
+/// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with squares SS and p
+/// parameters.
+fn criterion(fit: &Fit) -> f64 {
+    let samples = fit.samples() as f64;
+    let starts = fit.point.starts.iter().map(Vec::len).sum::<usize>();
+    let parameters = (fit.globals() + starts) as f64;
+    samples * (fit.squares / samples).max(f64::MIN_POSITIVE).ln() + parameters * samples.ln()
+}
+
+/// The effect that the Bayesian information criterion for white noise prefers, if each effect of the vocabulary is fitted alone
+/// beside the calibration, in segments of six periods; `None` where it prefers the recalibrated simulator.
+///
+/// The usual way to choose a model, here for comparison: no sets, no horizon, no held-out parts, residuals taken to be
+/// white, and no answer but an effect of the vocabulary. It fits with the same derivatives as [`crate::diagnose`].
+///
+/// # Errors
+/// As [`crate::diagnose`].
+///
+/// # Reference
+/// Schwarz, Annals of Statistics 6 (1978) 461.
+pub fn single_effect(
+    records: &[Observations],
+    nominal: &Nominal,
+) -> Result<Option<&'static str>, DiagnosisError> {
+    let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
+    let all = cut(records, &kept, nominal)?;
+    let data = all.sparser(MOST_SEARCHED).thinned(MOST_SEARCHED);
+    let (data, base) = better_hold(&data, nominal)?;
+    let (position, spring) = (data.quantity == Quantity::Position, nominal.stiffness() > 0.0);
+    let candidates: Vec<Candidate> = Candidate::ALL
+        .iter()
+        .copied()
+        .filter(|candidate| candidate.applies(&data.facts, position, spring))
+        .collect();
+    let dictionary = Dictionary::at(&data, &base.calibrated, &candidates)?;
+    let proposals = alone(&data, &base.calibrated, &dictionary);
+    let fits = fit_all(&data, &proposals, Effort::SEARCH);
+    let there = fits.iter().filter(|fit| !vanished(&data, fit));
+    let best = std::iter::once(&base.calibrated)
+        .chain(there)
+        .min_by(|one, other| criterion(one).total_cmp(&criterion(other)));
+    Ok(best.and_then(|best| best.hypothesis.candidates.first()).map(|candidate| candidate.id()))
+}
