@@ -13,7 +13,7 @@ mod error;
 mod estimate;
 mod scaling;
 
-pub use context::{Cancel, FitContext, Observer, Silent, Step};
+pub use context::{Cancel, Checkpoints, FitContext, Observer, Silent, Step};
 pub use entry::{Entry, Estimator, Tag};
 pub use error::FitError;
 pub use estimate::{Estimate, ModelFile, Prediction, Reached, Stop, Uncertainty};

@@ -8,7 +8,8 @@ mod prediction;
 mod schema;
 
 pub use experiment::{
-    Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,
+    CheckpointSettings, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline,
+    Single, Task, resolve,
 };
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,

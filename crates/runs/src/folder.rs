@@ -210,6 +210,14 @@ impl RunFolder {
         EventLog::read(&self.path.join(EVENTS))
     }
 
+    /// Whether the folder holds no more than some of these files, and a lock.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where it cannot be listed.
+    pub fn holds_only(&self, expected: &[&str]) -> Result<bool, RunError> {
+        Ok(names(&self.path)?.iter().all(|name| name == LOCK || expected.contains(&name.as_str())))
+    }
+
     /// Reads a file of the run.
     ///
     /// # Errors

@@ -3,6 +3,7 @@
 use crate::diagnose::arguments::DiagnoseArguments;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use runs::Disk;
 use std::path::PathBuf;
 
 /// Estimates the damping of oscillators from records, compared with closed-form least squares, and
@@ -19,6 +20,8 @@ Examples:
   trainer configs/paper.toml                      all of the paper's methods
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
+  trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
+                                                  begins, or goes on where it was stopped or killed
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
@@ -53,11 +56,17 @@ pub(crate) struct ExperimentArguments {
     /// Overrides the configuration's seed
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+    /// Goes on with the run in --out where it stopped; begins it where there is none
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
     /// Threads over seeds or records; results do not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
+    /// Where folders are made: the system's disk, and in tests one that fails.
+    #[arg(skip)]
+    pub(crate) disk: Disk,
 }
 
 /// What is printed.

@@ -1,6 +1,7 @@
 //! What a run was made with: versions, machine, digests.
 
 use serde::Serialize;
+use serde_json::Value;
 use std::process::Command;
 
 /// The content of `environment.json`.
@@ -47,6 +48,26 @@ impl Environment {
             data_digest: data_digest.to_owned(),
         }
     }
+}
+
+/// In what a run's `environment.json` differs from an environment, of what digits can depend on: a sentence for each.
+pub(crate) fn changes(begun: &[u8], now: &Environment) -> Vec<String> {
+    let begun: Value = serde_json::from_slice(begun).unwrap_or_default();
+    let now = serde_json::to_value(now).unwrap_or_default();
+    ["/profile", "/libraries", "/git/commit", "/system", "/cpu"]
+        .into_iter()
+        .map(|path| (path, begun.pointer(path), now.pointer(path)))
+        .filter(|(_, begun, now)| begun != now)
+        .map(|(path, begun, now)| {
+            let shown = |value: Option<&Value>| value.map_or_else(|| "unknown".to_owned(), Value::to_string);
+            format!(
+                "{} was {}, now {}",
+                path.trim_start_matches('/').replace('/', "."),
+                shown(begun),
+                shown(now)
+            )
+        })
+        .collect()
 }
 
 /// The version of a package in the text of a lock file.

@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::resume::ResumeError;
 use crate::trials::TrialsError;
 use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
@@ -78,6 +79,8 @@ pub(crate) enum TrainerError {
     #[error(transparent)]
     Trials(#[from] TrialsError),
     #[error(transparent)]
+    Resume(#[from] ResumeError),
+    #[error(transparent)]
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -110,6 +113,7 @@ impl TrainerError {
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
+            | Self::Resume(_)
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

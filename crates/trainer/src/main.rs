@@ -18,10 +18,12 @@ mod method;
 mod predict;
 mod progress;
 mod rerender;
+mod resume;
 mod run;
 mod simulate;
 mod summary;
 mod trials;
+mod watcher;
 
 use clap::Parser;
 use cli::{Arguments, Command};

@@ -4,7 +4,6 @@ use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::compare::compare;
 use crate::console;
-use crate::environment::Environment;
 use crate::error::TrainerError;
 use crate::estimate::estimate;
 use crate::fit::SeedFit;
@@ -12,6 +11,7 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::method::Method;
 use crate::predict::predict;
+use crate::resume::{Beginning, Begun, DataFile, Ledger, begin};
 use crate::simulate::{is_simulation, simulate};
 use crate::trials::{self, is_trials};
 use estimator::Cancel;
@@ -22,7 +22,6 @@ use registry::ESTIMATORS;
 use runs::result::SeedRow;
 use runs::{RunFolder, default_root};
 use serde::Serialize;
-use serde_json::json;
 use settings::Document;
 use simulator::Plan;
 
@@ -31,6 +30,7 @@ pub(crate) struct Run<'a> {
     pub(crate) experiment: &'a Experiment,
     pub(crate) input: Input,
     pub(crate) folder: RunFolder,
+    pub(crate) ledger: Ledger,
     pub(crate) pool: ThreadPool,
     pub(crate) cancel: &'static Cancel,
     pub(crate) output: Output,
@@ -38,7 +38,14 @@ pub(crate) struct Run<'a> {
 
 /// Reads, fits, compares, writes and prints.
 pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
-    let cancel = interrupt::watch()?;
+    run_until(arguments, interrupt::watch()?)
+}
+
+/// As [`run`], where who stops it is known already.
+pub(crate) fn run_until(
+    arguments: &ExperimentArguments,
+    cancel: &'static Cancel,
+) -> Result<Outcome, TrainerError> {
     let document = read_config(arguments)?;
     if is_simulation(&document) {
         return simulate(arguments, &Plan::resolve(&document)?, cancel);
@@ -52,13 +59,20 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     }
     let experiment = resolve(&document, ESTIMATORS, &classical)?;
     let input = Input::read(&experiment)?;
-    let folder = new_folder(arguments, &experiment.name)?;
     let pool = thread_pool(arguments)?;
-    folder.write("config.toml", experiment.resolved.to_toml().as_bytes())?;
-    let environment = Environment::new(pool.current_num_threads(), &input.source.digest);
-    folder.write_json("environment.json", &environment)?;
-    folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
-    let run = Run { experiment: &experiment, input, folder, pool, cancel, output: arguments.output };
+    let beginning = Beginning {
+        name: &experiment.name,
+        seed: experiment.seed,
+        resolved: &experiment.resolved,
+        data: vec![DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() }],
+        threads: pool.current_num_threads(),
+    };
+    let folder = match begin(arguments, &beginning)? {
+        Begun::Open(folder) => folder,
+        Begun::Finished(outcome) => return Ok(outcome),
+    };
+    let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    let run = Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: arguments.output };
     match &run.experiment.task {
         Task::Estimate(single) => estimate(&run, &Method::of(single)?),
         Task::Compare(comparison) => compare(&run, comparison),
@@ -68,8 +82,8 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
 /// The folder that the arguments name, or a new one below the default root.
 pub(crate) fn new_folder(arguments: &ExperimentArguments, name: &str) -> Result<RunFolder, TrainerError> {
     Ok(match &arguments.out {
-        Some(path) => RunFolder::create_at(path)?,
-        None => RunFolder::create(&default_root(), name)?,
+        Some(path) => RunFolder::create_at_on(&arguments.disk, path)?,
+        None => RunFolder::create_on(&arguments.disk, &default_root(), name)?,
     })
 }
 
