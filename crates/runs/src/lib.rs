@@ -25,6 +25,7 @@ pub mod faults;
 mod folder;
 mod lock;
 pub mod result;
+mod scratch;
 mod sealed;
 mod table;
 
@@ -33,4 +34,5 @@ pub use disk::Disk;
 pub use error::RunError;
 pub use events::{Event, EventLog};
 pub use folder::{RunFolder, Texts, default_root};
+pub use scratch::Scratch;
 pub use table::to_csv;

@@ -29,9 +29,11 @@ Examples:
   trainer list estimators
   trainer list effects
   trainer report reports/runs/RUN
+  trainer verify reports/runs/RUN                 runs it again: identical, or where it differs
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
-usage; 130 interrupted, the best so far is saved."
+usage; 130 interrupted (Ctrl-C, SIGTERM, q and Enter), the best so far is
+saved and --resume goes on."
 )]
 pub(crate) struct Arguments {
     /// A command other than running a configuration.
@@ -96,6 +98,16 @@ pub(crate) enum Command {
     Simulate(ExperimentArguments),
     /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
     Trials(Box<TrialsArguments>),
+    /// Runs a finished run again from its folder alone, and says `identical` or where the two differ
+    Verify {
+        /// The run's folder
+        run: PathBuf,
+        /// Threads over seeds or records; results do not depend on it [default: one for each core]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
+        #[command(flatten)]
+        output: Output,
+    },
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder

@@ -17,12 +17,14 @@ mod list;
 mod method;
 mod predict;
 mod progress;
+mod quit;
 mod rerender;
 mod resume;
 mod run;
 mod simulate;
 mod summary;
 mod trials;
+mod verify;
 mod watcher;
 
 use clap::Parser;
@@ -67,6 +69,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
+        Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

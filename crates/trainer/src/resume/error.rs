@@ -6,8 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum ResumeError {
     #[error(
-        "{folder}: there is no run in it that could be gone on with: its events.jsonl does not tell of a start; name the \
-         folder of a run"
+        "{folder}: there is no run in it to go on with or to run again: its events.jsonl does not tell how one began; name \
+         the folder of a run"
     )]
     NoRun { folder: String },
     #[error(
@@ -34,6 +34,4 @@ pub(crate) enum ResumeError {
     ForeignCheckpoint { file: String },
     #[error("{folder}: this run is not finished, so there is nothing to verify; finish it with --resume")]
     Unfinished { folder: String },
-    #[error("{folder}: holds a run with task = \"{task}\", which cannot be verified by running it again")]
-    NotVerifiable { folder: String, task: String },
 }

@@ -3,6 +3,8 @@
 mod difference;
 mod error;
 mod ledger;
+#[cfg(test)]
+mod tests;
 
 use crate::Outcome;
 use crate::cli::ExperimentArguments;
