@@ -47,7 +47,11 @@ pub(crate) fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {path}"))
 }
 
-/// Every file of a run as text or digest, but those that tell the time, durations taken out of the others.
+/// Files that tell the time or the machine.
+const OF_THE_MOMENT: &[&str] =
+    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
+
+/// Every file of a run as text or digest, but those that tell the time or the machine, durations taken out of the others.
 pub(crate) fn timeless_files(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];
@@ -57,13 +61,16 @@ pub(crate) fn timeless_files(folder: &Path) -> BTreeMap<String, String> {
             let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
             if path.is_dir() {
                 folders.push(path);
-            } else if name.ends_with(".json") {
+                continue;
+            }
+            if OF_THE_MOMENT.contains(&name.as_str()) {
+                continue;
+            }
+            if name.ends_with(".json") {
                 let mut value: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
                 forget_durations(&mut value);
                 found.insert(name, value.to_string());
-            } else if !["events.jsonl", "report.html", "tables.md", ".lock", "config.toml"]
-                .contains(&name.as_str())
-            {
+            } else {
                 found.insert(name, runs::digest(&std::fs::read(&path).unwrap()));
             }
         }

@@ -20,6 +20,9 @@ use runs::to_csv;
 use serde_json::json;
 use std::time::Instant;
 
+/// A method's place, and its fit or why there is none.
+type Fitted = (usize, Result<SeedFit, String>);
+
 /// What stands in place of a fit that was not begun.
 const NOT_BEGUN: &str = "interrupted before it began";
 
@@ -88,7 +91,7 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
         progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
         Ok(fit)
     };
-    let fitted: Result<Vec<(usize, Result<SeedFit, String>)>, TrainerError> = run.pool.install(|| {
+    let fitted: Result<Vec<Fitted>, TrainerError> = run.pool.install(|| {
         jobs.into_par_iter()
             .filter_map(|(at, seed)| Some(fit_one(methods.get(at)?, seed).map(|fit| (at, fit))))
             .collect()

@@ -172,8 +172,9 @@ pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeE
     Ok(())
 }
 
-/// A finished run is shown as it is.
+/// A finished run is shown as it is; checkpoints that a kill left after its last event are taken away.
 fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
+    folder.remove_checkpoints()?;
     if arguments.output.json {
         console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
     } else if !arguments.output.quiet {
