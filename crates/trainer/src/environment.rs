@@ -83,7 +83,10 @@ fn git() -> Option<Git> {
         let output = Command::new("git").args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
-    Some(Git { commit: ask(&["rev-parse", "HEAD"])?, dirty: !ask(&["status", "--porcelain"])?.is_empty() })
+    Some(Git {
+        commit: ask(&["rev-parse", "HEAD"])?,
+        dirty: !ask(&["--no-optional-locks", "status", "--porcelain"])?.is_empty(),
+    })
 }
 
 fn cpu_model() -> Option<String> {
