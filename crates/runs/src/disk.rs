@@ -42,13 +42,20 @@ impl Disk {
         self.permit(0).1
     }
 
-    /// Makes a folder and those above it.
+    /// Makes a folder and those above it, each flushed in the one that holds it.
     pub(crate) fn make_folders(&self, path: &Path) -> Result<()> {
-        if path.is_dir() {
+        let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.is_dir();
+        let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
+        if missing.is_empty() {
             return Ok(());
         }
         self.allow()?;
-        std::fs::create_dir_all(path)
+        std::fs::create_dir_all(path)?;
+        for made in missing {
+            let above = made.parent().filter(|above| !above.as_os_str().is_empty());
+            self.flush_folder(above.unwrap_or_else(|| Path::new(".")))?;
+        }
+        Ok(())
     }
 
     /// Makes a folder of a name that nobody else has.

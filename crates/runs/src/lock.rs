@@ -25,7 +25,15 @@ pub(crate) struct Holder {
 /// The lock, while it lives.
 #[derive(Debug)]
 pub(crate) struct Lock {
-    _file: File,
+    file: File,
+}
+
+/// Closing the file is not enough: a process that another thread is just about to start holds a copy of it.
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Where this fails the file is closed all the same.
+        let _ = self.file.unlock();
+    }
 }
 
 impl Lock {
@@ -42,7 +50,7 @@ impl Lock {
             .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
         disk.empty(&file).map_err(RunError::io(&path, "empty"))?;
         disk.write(&mut file, text.as_bytes()).map_err(RunError::io(&path, "write"))?;
-        Ok(Self { _file: file })
+        Ok(Self { file })
     }
 
     /// Whether nobody has the folder; it is left as it is.
