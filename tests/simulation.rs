@@ -23,7 +23,7 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if !path.ends_with("events.jsonl") && !path.ends_with("result.json") {
+            } else if !OF_THE_MOMENT.iter().any(|name| path.ends_with(name)) {
                 let name = path.strip_prefix(folder).unwrap().to_owned();
                 found.insert(name, std::fs::read(&path).unwrap());
             }
@@ -31,6 +31,9 @@ fn contents(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     }
     found
 }
+
+/// Files that tell the time or the machine.
+const OF_THE_MOMENT: &[&str] = &[".lock", "environment.json", "events.jsonl", "result.json"];
 
 const SMALL: &[&str] = &["configs/simulate.toml", "simulate.systems=3", "record.seconds=2"];
 

@@ -1,6 +1,7 @@
 //! What the tests share: the program, scratch folders, the measured records.
 
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -44,4 +45,46 @@ pub(crate) fn measured(name: &str) -> Option<String> {
 /// A JSON number by path, such as `/envelope/peaks`.
 pub(crate) fn number(value: &Value, path: &str) -> f64 {
     value.pointer(path).and_then(Value::as_f64).unwrap_or_else(|| panic!("no number at {path}"))
+}
+
+/// Files that tell the time or the machine.
+const OF_THE_MOMENT: &[&str] =
+    &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
+
+/// Every file of a run as text or digest, but those that tell the time or the machine, durations taken out of the others.
+pub(crate) fn timeless_files(folder: &Path) -> BTreeMap<String, String> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(place) = folders.pop() {
+        for entry in std::fs::read_dir(place).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(folder).unwrap().to_str().unwrap().to_owned();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            if OF_THE_MOMENT.contains(&name.as_str()) {
+                continue;
+            }
+            if name.ends_with(".json") {
+                let mut value: Value = serde_json::from_slice(&std::fs::read(&path).unwrap()).unwrap();
+                forget_durations(&mut value);
+                found.insert(name, value.to_string());
+            } else {
+                found.insert(name, runs::digest(&std::fs::read(&path).unwrap()));
+            }
+        }
+    }
+    found
+}
+
+fn forget_durations(value: &mut Value) {
+    match value {
+        Value::Object(entries) => {
+            entries.remove("seconds");
+            entries.values_mut().for_each(forget_durations);
+        }
+        Value::Array(entries) => entries.iter_mut().for_each(forget_durations),
+        _ => {}
+    }
 }

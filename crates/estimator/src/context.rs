@@ -1,6 +1,9 @@
 //! What an estimator is given besides the envelope.
 
+use crate::error::FitError;
 use seed::Seed;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// One step of a training, for the trace and the progress bar.
@@ -55,14 +58,34 @@ impl Cancel {
     }
 }
 
-/// What an estimator is given besides the envelope: seeds by name, a budget, whoever watches, and the
-/// request to stop.
+/// Where a fit keeps its state, so that it can go on where it was after a crash or a request to stop.
+pub trait Checkpoints {
+    /// The state kept last, where there is one.
+    fn latest(&self) -> Option<Vec<u8>>;
+
+    /// Whether it is time to keep the state again.
+    fn is_due(&self) -> bool;
+
+    /// Keeps a state, that before `step` is observed, in place of the one before.
+    ///
+    /// # Errors
+    /// A sentence that says why it could not be kept; the one before is then still there.
+    fn keep(&self, step: u64, state: &[u8]) -> Result<(), String>;
+}
+
+/// What an estimator is given besides the envelope: seeds by name, a budget, whoever watches, the
+/// request to stop, and a place for its state.
+///
+/// An estimator that takes more than a second keeps its state: it begins from [`resumed`](Self::resumed) where that has
+/// something, and calls [`checkpoint`](Self::checkpoint) before every step. It then gives to the bit what it would
+/// have given in one go. Others call neither, and begin anew.
 pub struct FitContext<'a> {
     seed: Seed,
     max_steps: Option<u64>,
     observer: &'a dyn Observer,
     cancel: &'a Cancel,
     query_times: &'a [f64],
+    checkpoints: Option<&'a dyn Checkpoints>,
 }
 
 impl<'a> FitContext<'a> {
@@ -72,7 +95,7 @@ impl<'a> FitContext<'a> {
     /// for the untrained estimate.
     #[must_use]
     pub fn new(seed: Seed, max_steps: Option<u64>, observer: &'a dyn Observer, cancel: &'a Cancel) -> Self {
-        Self { seed, max_steps, observer, cancel, query_times: &[] }
+        Self { seed, max_steps, observer, cancel, query_times: &[], checkpoints: None }
     }
 
     /// The same context, asking for the fitted function at `times` as well: seconds after the envelope's
@@ -80,6 +103,41 @@ impl<'a> FitContext<'a> {
     #[must_use]
     pub fn predicting_at(self, times: &'a [f64]) -> Self {
         Self { query_times: times, ..self }
+    }
+
+    /// The same context, with a place where the fit's state is kept.
+    #[must_use]
+    pub fn checkpointing_to(self, checkpoints: &'a dyn Checkpoints) -> Self {
+        Self { checkpoints: Some(checkpoints), ..self }
+    }
+
+    /// The state to begin from, where one was kept.
+    ///
+    /// # Errors
+    /// [`FitError::Checkpoint`] where it is none of this kind.
+    pub fn resumed<T: DeserializeOwned>(&self) -> Result<Option<T>, FitError> {
+        let Some(bytes) = self.checkpoints.and_then(Checkpoints::latest) else { return Ok(None) };
+        let refused =
+            |problem: &str| FitError::Checkpoint { problem: format!("what was kept is none: {problem}") };
+        match postcard::take_from_bytes(&bytes) {
+            Ok((state, [])) => Ok(Some(state)),
+            Ok((_, rest)) => Err(refused(&format!("{} bytes too many", rest.len()))),
+            Err(error) => Err(refused(&error.to_string())),
+        }
+    }
+
+    /// Keeps a state where it is time to, or where the fit is about to stop on request; called before `step` is
+    /// observed.
+    ///
+    /// # Errors
+    /// [`FitError::Checkpoint`] where it cannot be kept.
+    pub fn checkpoint<T: Serialize>(&self, step: u64, state: impl FnOnce() -> T) -> Result<(), FitError> {
+        let Some(checkpoints) = self.checkpoints.filter(|place| place.is_due() || self.is_cancelled()) else {
+            return Ok(());
+        };
+        let refused = |problem| FitError::Checkpoint { problem };
+        let bytes = postcard::to_allocvec(&state()).map_err(|error| refused(error.to_string()))?;
+        checkpoints.keep(step, &bytes).map_err(refused)
     }
 
     /// Times at which [`Estimate::predictions`](crate::Estimate::predictions) are asked for, in seconds
@@ -110,5 +168,71 @@ impl<'a> FitContext<'a> {
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.cancel.is_requested()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Cancel, Checkpoints, FitContext, Silent};
+    use crate::error::FitError;
+    use seed::Seed;
+    use std::cell::RefCell;
+
+    /// Keeps at every other step.
+    #[derive(Default)]
+    struct Place(RefCell<Vec<(u64, Vec<u8>)>>, RefCell<u64>);
+
+    impl Checkpoints for Place {
+        fn latest(&self) -> Option<Vec<u8>> {
+            self.0.borrow().last().map(|(_, state)| state.clone())
+        }
+
+        fn is_due(&self) -> bool {
+            *self.1.borrow_mut() += 1;
+            self.1.borrow().is_multiple_of(2)
+        }
+
+        fn keep(&self, step: u64, state: &[u8]) -> Result<(), String> {
+            self.0.borrow_mut().push((step, state.to_vec()));
+            if step == 9 { Err("the disk is full".to_owned()) } else { Ok(()) }
+        }
+    }
+
+    type State = (f64, Vec<f64>, u128);
+
+    #[test]
+    fn a_state_comes_back_to_the_bit() {
+        let (place, cancel) = (Place::default(), Cancel::new());
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&place);
+        assert_eq!(context.resumed::<State>().unwrap(), None);
+        let state: State = (f64::INFINITY, vec![0.1, -0.0, f64::MIN_POSITIVE / 8.0], u128::MAX - 1);
+        for step in 0..4 {
+            context.checkpoint(step, || state.clone()).unwrap();
+        }
+        assert_eq!(place.0.borrow().iter().map(|(step, _)| *step).collect::<Vec<_>>(), [1, 3]);
+        let kept = context.resumed::<State>().unwrap().unwrap();
+        let bits = |state: &State| state.1.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+        assert_eq!((kept.0, bits(&kept), kept.2), (state.0, bits(&state), state.2));
+        // Asked to stop it keeps at once.
+        cancel.request();
+        context.checkpoint(4, || state.clone()).unwrap();
+        context.checkpoint(5, || state.clone()).unwrap();
+        assert_eq!(place.0.borrow().len(), 4);
+    }
+
+    #[test]
+    fn what_cannot_be_kept_or_is_no_state_is_an_error() {
+        let (place, cancel) = (Place::default(), Cancel::new());
+        cancel.request();
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&place);
+        let refused = context.checkpoint(9, || 1.0_f64).unwrap_err();
+        assert_eq!(refused.to_string(), "the state of the fit: the disk is full");
+        // Eight bytes are no three numbers, and more than four.
+        assert!(matches!(context.resumed::<State>(), Err(FitError::Checkpoint { .. })));
+        assert!(context.resumed::<[u8; 4]>().unwrap_err().to_string().contains("4 bytes too many"));
+        // Without a place nothing is kept.
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel);
+        context.checkpoint(9, || 1.0_f64).unwrap();
+        assert_eq!(context.resumed::<f64>().unwrap(), None);
     }
 }

@@ -43,6 +43,12 @@ pub enum FitError {
         /// The loss.
         loss: f64,
     },
+    /// The fit's state could not be kept, or one that was kept is not a state of this fit.
+    #[error("the state of the fit: {problem}")]
+    Checkpoint {
+        /// What went wrong.
+        problem: String,
+    },
     /// The tensor library refused.
     #[error("the tensor library: {problem}")]
     Backend {

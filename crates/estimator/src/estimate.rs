@@ -1,9 +1,10 @@
 //! What an estimator gives.
 
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// What a fit reached.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reached {
     /// The method's own condition for a solution holds.
     Converged,
@@ -32,7 +33,7 @@ impl Reached {
 }
 
 /// What a fit reached, and why it stopped there.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
     /// What it reached.
     pub reached: Reached,
@@ -41,7 +42,7 @@ pub struct Stop {
 }
 
 /// How well a decay rate is known, as the method itself states it.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Standard error of λ, in 1/s.
     pub std_error: f64,
@@ -65,7 +66,7 @@ impl Uncertainty {
 }
 
 /// What a fitted estimator says of a peak it may not have seen.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Prediction {
     /// ln A at the time asked about, the amplitude in the record's unit: the fitted function's own value.
     ///
@@ -90,7 +91,7 @@ impl Prediction {
 }
 
 /// A trained model as a file.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ModelFile {
     /// Name of the file, such as `weights.safetensors`.
     pub name: String,
@@ -99,7 +100,7 @@ pub struct ModelFile {
 }
 
 /// What an estimator found.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Decay rate λ, in 1/s: finite, of either sign (an envelope may grow).
     pub decay_rate: f64,

@@ -7,13 +7,15 @@
 //!
 //! A new estimator is one crate with one [`Entry`]; `crates/estimators/baseline` is the one to copy.
 
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
 mod context;
 mod entry;
 mod error;
 mod estimate;
 mod scaling;
 
-pub use context::{Cancel, FitContext, Observer, Silent, Step};
+pub use context::{Cancel, Checkpoints, FitContext, Observer, Silent, Step};
 pub use entry::{Entry, Estimator, Tag};
 pub use error::FitError;
 pub use estimate::{Estimate, ModelFile, Prediction, Reached, Stop, Uncertainty};

@@ -23,6 +23,8 @@ pub struct Experiment {
     pub envelope: EnvelopeSettings,
     /// The fits.
     pub fit: FitSettings,
+    /// How often what was computed is kept.
+    pub checkpoint: CheckpointSettings,
     /// What to do.
     pub task: Task,
     /// Every value in force.
@@ -176,6 +178,16 @@ pub struct FitSettings {
     pub tolerance_percent: f64,
 }
 
+/// The section `checkpoint`.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CheckpointSettings {
+    /// Seconds between two checkpoints.
+    pub interval_s: f64,
+    /// Steps between two checkpoints, in place of the time.
+    pub interval_steps: Option<u64>,
+}
+
 #[derive(Deserialize)]
 struct PipelineName {
     pipeline: Pipeline,
@@ -224,6 +236,7 @@ pub fn resolve(
         data: resolved.section("data")?,
         envelope: pipelines(&resolved, pipeline.pipeline)?,
         fit: resolved.section("fit")?,
+        checkpoint: resolved.section("checkpoint")?,
         task,
         resolved,
     })

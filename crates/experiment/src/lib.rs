@@ -11,7 +11,8 @@ mod schema;
 pub mod sweep;
 
 pub use experiment::{
-    Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,
+    CheckpointSettings, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline,
+    Single, Task, resolve,
 };
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,

@@ -1,7 +1,7 @@
 //! `task = "predict"`: many methods on several problems, scored on peaks that they did not see.
 
-use crate::experiment::{DataSettings, EnvelopeSettings, Pipeline, Top, pipelines};
-use crate::schema::{DATA, PAPER, PLAIN, RECOMMENDED, TOP};
+use crate::experiment::{CheckpointSettings, DataSettings, EnvelopeSettings, Pipeline, Top, pipelines};
+use crate::schema::{CHECKPOINT, DATA, PAPER, PLAIN, RECOMMENDED, TOP};
 use estimator::Entry;
 use serde::Deserialize;
 use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
@@ -17,6 +17,8 @@ pub struct PredictionStudy {
     pub seed: u64,
     /// How peaks are held out and how often.
     pub settings: PredictionSettings,
+    /// How often what was computed is kept.
+    pub checkpoint: CheckpointSettings,
     /// The problems to study, in the order written.
     pub problems: Vec<Problem>,
     /// Settings of the pipelines.
@@ -309,6 +311,7 @@ pub fn resolve_prediction(
     let sections: Vec<Section<'_>> = [
         Section { name: "", fields: TOP },
         Section { name: "predict", fields: PREDICT },
+        Section { name: "checkpoint", fields: CHECKPOINT },
         Section { name: "envelope.paper", fields: PAPER },
         Section { name: "envelope.recommended", fields: RECOMMENDED },
     ]
@@ -336,6 +339,7 @@ pub fn resolve_prediction(
         seed: top.seed,
         envelope: pipelines(&resolved, Pipeline::Recommended)?,
         settings,
+        checkpoint: resolved.section("checkpoint")?,
         problems,
         resolved,
     })

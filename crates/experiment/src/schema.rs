@@ -15,6 +15,7 @@ pub const SECTIONS: &[Section<'static>] = &[
     Section { name: "envelope.paper", fields: PAPER },
     Section { name: "envelope.recommended", fields: RECOMMENDED },
     Section { name: "fit", fields: FIT },
+    Section { name: "checkpoint", fields: CHECKPOINT },
 ];
 
 /// The key that names the estimator, within the section `estimator`.
@@ -226,6 +227,25 @@ pub(crate) const RECOMMENDED: &[Field] = &[
         unit: "noise standard deviations",
         meaning: "Smallest amplitude that is used.",
         source: "the logarithm of a height known to 1/8 is known to 0.13 at worst",
+    },
+];
+
+/// How often a run keeps what it would lose: the section `checkpoint`.
+pub(crate) const CHECKPOINT: &[Field] = &[
+    Field {
+        key: "interval_s",
+        kind: Kind::Float { min: 0.0, max: 1e9 },
+        default: Default::Float(5.0),
+        unit: "s",
+        meaning: "Time between two checkpoints of a fit, and time spent on finished fits before they are kept: what a crash costs at most; 0 keeps the state before every step.",
+        source: "a checkpoint of 100 kB takes 0.6 to 12 ms, the machine idle or busy: 0.2 % of a fit at most",
+    },
+    Field {
+        key: "interval_steps",
+        kind: Kind::Integer { min: 1, max: i64::MAX },
+        unit: "steps",
+        meaning: "Steps between two checkpoints of a fit, in place of the time.",
+        ..PLAIN
     },
 ];
 

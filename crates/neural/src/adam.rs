@@ -5,6 +5,8 @@
 //!
 //! Reference: Kingma, Ba, Adam: a method for stochastic optimization, ICLR 2015, algorithm 1.
 
+use serde::{Deserialize, Serialize};
+
 /// Share of the mean gradient that a step keeps, and of the mean square: the paper's.
 const KEPT: f64 = 0.9;
 const KEPT_SQUARE: f64 = 0.999;
@@ -12,7 +14,7 @@ const KEPT_SQUARE: f64 = 0.999;
 const FLOOR: f64 = 1e-8;
 
 /// The method's state: mean gradient and mean squared gradient of every parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Adam {
     means: Vec<f64>,
     squares: Vec<f64>,

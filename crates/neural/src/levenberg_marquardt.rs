@@ -4,8 +4,9 @@
 //! IMM-REP-1999-05 (DTU 1999); the stopping test of MINPACK: Moré, Garbow, Hillstrom, report ANL-80-74 (1980).
 
 use crate::minimum::{Iteration, Minimum, StopReason};
-use estimator::{Reached, Stop};
+use estimator::{FitContext, FitError, Reached, Stop};
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// Residuals and their Jacobian at a point.
@@ -58,6 +59,31 @@ struct Point {
     loss: f64,
 }
 
+/// What the method goes on from, but for what follows from the parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct State {
+    parameters: Vec<f64>,
+    steps: u64,
+    /// `None` before the first step: it follows from the Jacobian.
+    damping: Option<f64>,
+    growth: f64,
+    rejections: u32,
+    last_gain: f64,
+}
+
+impl State {
+    fn at(start: DVector<f64>) -> Self {
+        Self {
+            parameters: start.as_slice().to_vec(),
+            steps: 0,
+            damping: None,
+            growth: 2.0,
+            rejections: 0,
+            last_gain: f64::INFINITY,
+        }
+    }
+}
+
 /// A step that was taken.
 struct Accepted {
     next: Point,
@@ -90,16 +116,54 @@ impl LevenbergMarquardt {
         &self,
         problem: &P,
         start: DVector<f64>,
+        observe: impl FnMut(Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<Minimum, P::Error> {
+        self.go_on(problem, State::at(start), |_, _| Ok(()), observe)
+    }
+
+    /// As [`minimize`](Self::minimize), keeping its state where the context says, and going on from one that was
+    /// kept: to the bit as if it had never stopped.
+    ///
+    /// # Errors
+    /// What the problem's evaluation gives; [`FitError::Checkpoint`] where a state cannot be kept, or the one that was
+    /// is of another number of parameters.
+    pub fn minimize_resumably<P: LeastSquares<Error = FitError>>(
+        &self,
+        problem: &P,
+        start: DVector<f64>,
+        context: &FitContext<'_>,
+        observe: impl FnMut(Iteration<'_>) -> ControlFlow<()>,
+    ) -> Result<Minimum, FitError> {
+        let fresh = State::at(start);
+        let state = context.resumed::<State>()?.unwrap_or_else(|| fresh.clone());
+        let (found, expected) = (state.parameters.len(), fresh.parameters.len());
+        if found != expected {
+            let problem = format!("what was kept has {found} parameters, expected {expected}");
+            return Err(FitError::Checkpoint { problem });
+        }
+        self.go_on(problem, state, |step, state| context.checkpoint(step, state), observe)
+    }
+
+    fn go_on<P: LeastSquares>(
+        &self,
+        problem: &P,
+        from: State,
+        keep: impl Fn(u64, &dyn Fn() -> State) -> Result<(), P::Error>,
         mut observe: impl FnMut(Iteration<'_>) -> ControlFlow<()>,
     ) -> Result<Minimum, P::Error> {
-        let mut point = Point::new(problem, start)?;
-        let mut steps = 0;
+        let State { parameters, mut steps, damping, mut growth, mut rejections, mut last_gain } = from;
+        let mut point = Point::new(problem, DVector::from_vec(parameters))?;
         let mut normal = Normal::new(&point.linearized.jacobian);
-        let mut damping = 1e-3 * normal.largest_diagonal();
-        let mut growth = 2.0;
-        let mut rejections = 0;
-        let mut last_gain = f64::INFINITY;
+        let mut damping = damping.unwrap_or_else(|| 1e-3 * normal.largest_diagonal());
         let reason = loop {
+            keep(steps, &|| State {
+                parameters: point.parameters.as_slice().to_vec(),
+                steps,
+                damping: Some(damping),
+                growth,
+                rejections,
+                last_gain,
+            })?;
             let state = Iteration { step: steps, parameters: &point.parameters, loss: point.loss };
             if observe(state).is_break() {
                 break StopReason::Interrupted;
@@ -234,7 +298,10 @@ impl Normal {
 #[cfg(test)]
 mod tests {
     use super::{LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason};
+    use crate::kept::Kept;
+    use estimator::{Cancel, FitContext, FitError, Silent};
     use nalgebra::{DMatrix, DVector};
+    use seed::Seed;
     use std::convert::Infallible;
     use std::ops::ControlFlow;
 
@@ -301,6 +368,56 @@ mod tests {
         }
         let minimum = METHOD.minimize(&Line, DVector::zeros(3), |_| ControlFlow::Continue(())).unwrap();
         assert!(minimum.loss < 1e-20, "{minimum:?}");
+    }
+
+    /// [`Decay`] where an evaluation may fail.
+    struct Fallible;
+
+    impl LeastSquares for Fallible {
+        type Error = FitError;
+
+        fn residuals(&self, p: &DVector<f64>) -> Result<DVector<f64>, FitError> {
+            let Ok(residuals) = Decay.residuals(p);
+            Ok(residuals)
+        }
+
+        fn linearize(&self, p: &DVector<f64>) -> Result<Linearized, FitError> {
+            let Ok(linearized) = Decay.linearize(p);
+            Ok(linearized)
+        }
+    }
+
+    #[test]
+    fn stopped_before_any_step_it_goes_on_to_the_same_bits() {
+        let cancel = Cancel::new();
+        let minimize = |kept: &Kept, most: u64| {
+            let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(kept);
+            let mut told = Vec::new();
+            let start = DVector::from_vec(vec![10.0, -0.5]);
+            let minimum = METHOD.minimize_resumably(&Fallible, start, &context, |state| {
+                told.push((state.step, state.loss.to_bits()));
+                if state.step >= most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            });
+            (minimum.unwrap(), told)
+        };
+        let (whole, told) = minimize(&Kept::default(), u64::MAX);
+        assert!(whole.steps > 15, "{whole:?}");
+        for most in 0..whole.steps {
+            let kept = Kept::default();
+            let (stopped, before) = minimize(&kept, most);
+            assert_eq!((stopped.reason, stopped.steps), (StopReason::Interrupted, most));
+            let (resumed, after) = minimize(&kept, u64::MAX);
+            assert_eq!(resumed, whole);
+            // The step before which the state was kept is told again.
+            assert_eq!([&before[..before.len() - 1], &after].concat(), told);
+        }
+        // A state of another problem is refused.
+        let kept = Kept::default();
+        minimize(&kept, 3);
+        let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&kept);
+        let other =
+            METHOD.minimize_resumably(&Fallible, DVector::zeros(3), &context, |_| ControlFlow::Continue(()));
+        assert!(other.unwrap_err().to_string().contains("has 2 parameters, expected 3"));
     }
 
     #[test]

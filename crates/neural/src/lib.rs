@@ -15,6 +15,8 @@ pub mod amortized;
 mod decay;
 mod device;
 mod flat;
+#[cfg(test)]
+mod kept;
 mod laplace;
 mod lbfgs;
 mod levenberg_marquardt;

@@ -25,6 +25,43 @@ pub enum RunError {
         /// The folder.
         path: PathBuf,
     },
+    /// Another program works in the folder.
+    #[error(
+        "{}: {holder} is working in it; wait until it is done, stop it, or name another folder",
+        path.display()
+    )]
+    Locked {
+        /// The folder.
+        path: PathBuf,
+        /// Process, machine and time, where they are known.
+        holder: String,
+    },
+    /// A checkpoint is not what was written.
+    #[error(
+        "{}: the checkpoint is damaged: {problem}; nothing of it is used. Take the file away and resume again: \
+         what it held is computed anew",
+        path.display()
+    )]
+    Damaged {
+        /// The file.
+        path: PathBuf,
+        /// What does not add up.
+        problem: String,
+    },
+    /// The log of events is not what was written.
+    #[error(
+        "{}:{line}: the line has been changed since it was written: {problem}; bring the file back as it was, or \
+         begin anew in another folder",
+        path.display()
+    )]
+    Log {
+        /// The file.
+        path: PathBuf,
+        /// The line, from 1.
+        line: usize,
+        /// What does not add up.
+        problem: String,
+    },
     /// A table or result could not be put into text.
     #[error("{name}: {problem} (a fault of the program, please report it)")]
     Encoding {

@@ -1,12 +1,22 @@
 //! The folder of a run.
 
-use crate::atomic;
+use crate::atomic::{self, TEMPORARY};
+use crate::disk::Disk;
 use crate::error::RunError;
+use crate::events::{Event, EventLog};
+use crate::lock::{LOCK, Lock};
+use crate::sealed;
 use jiff::Timestamp;
 use serde::Serialize;
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Name of the log of events.
+const EVENTS: &str = "events.jsonl";
+
+/// Folder of the checkpoints; a finished run has none.
+const CHECKPOINTS: &str = "checkpoints";
 
 /// Where run folders go unless another place is named, from the current folder.
 #[must_use]
@@ -15,9 +25,12 @@ pub fn default_root() -> PathBuf {
 }
 
 /// The folder of one run.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct RunFolder {
     path: PathBuf,
+    disk: Disk,
+    /// Held by whoever made or resumed the run, and by the copies of its folder.
+    _lock: Option<Arc<Lock>>,
 }
 
 /// The texts of a finished run that a report is made of.
@@ -42,57 +55,95 @@ pub struct Texts {
 }
 
 impl RunFolder {
-    /// Makes a new folder `<root>/<name>-<UTC time>-<short random>`.
+    /// Makes a new folder `<root>/<name>-<UTC time>-<short random>`, and locks it as long as this or a copy lives.
     ///
     /// Characters of `name` that a file name should not have become `-`.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.
     pub fn create(root: &Path, name: &str) -> Result<Self, RunError> {
-        std::fs::create_dir_all(root).map_err(RunError::io(root, "create"))?;
+        Self::create_on(&Disk::default(), root, name)
+    }
+
+    /// As [`RunFolder::create`], on a given disk.
+    ///
+    /// # Errors
+    /// As [`RunFolder::create`].
+    pub fn create_on(disk: &Disk, root: &Path, name: &str) -> Result<Self, RunError> {
+        disk.make_folders(root).map_err(RunError::io(root, "create"))?;
         let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '-' };
         let name: String = name.chars().map(safe).take(60).collect();
         let time = Timestamp::now().strftime("%Y%m%dT%H%M%SZ");
-        let folder = tempfile::Builder::new()
-            .prefix(&format!("{name}-{time}-"))
-            .rand_bytes(6)
-            .tempdir_in(root)
+        let path = disk
+            .make_unique_folder(root, &format!("{name}-{time}-"))
             .map_err(RunError::io(root, "create a folder in"))?;
-        let path = folder.keep();
-        share(&path)?;
-        atomic::sync_folder(root)?;
-        Ok(Self { path })
+        disk.share(&path, 0o755).map_err(RunError::io(&path, "set permissions of"))?;
+        disk.flush_folder(root).map_err(RunError::io(root, "flush"))?;
+        Self::locked(disk, path)
     }
 
-    /// Makes exactly this folder, or takes it where it is there and empty.
+    /// Makes exactly this folder, or takes it where it is there and empty, and locks it as long as this or a copy
+    /// lives.
     ///
     /// # Errors
-    /// [`RunError::Occupied`] where it holds something; [`RunError::Io`] where the system refuses.
+    /// [`RunError::Occupied`] where it holds something; [`RunError::Locked`] where another program works in it;
+    /// [`RunError::Io`] where the system refuses.
     pub fn create_at(path: &Path) -> Result<Self, RunError> {
-        std::fs::create_dir_all(path).map_err(RunError::io(path, "create"))?;
-        let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
-        if entries.next().is_some() {
-            return Err(RunError::Occupied { path: path.to_owned() });
+        Self::create_at_on(&Disk::default(), path)
+    }
+
+    /// As [`RunFolder::create_at`], on a given disk.
+    ///
+    /// # Errors
+    /// As [`RunFolder::create_at`].
+    pub fn create_at_on(disk: &Disk, path: &Path) -> Result<Self, RunError> {
+        disk.make_folders(path).map_err(RunError::io(path, "create"))?;
+        Self::check_free(path)?;
+        let folder = Self::locked(disk, path.to_owned())?;
+        // Another program may have come and gone between the two lines above.
+        if is_empty(path)? { Ok(folder) } else { Err(RunError::Occupied { path: path.to_owned() }) }
+    }
+
+    /// Takes the folder of a run that was begun, to go on with it, or makes it where there is none; locks it as long
+    /// as this or a copy lives, and takes away what a killed program was about to write.
+    ///
+    /// # Errors
+    /// [`RunError::Locked`] where another program works in it; [`RunError::Io`] where the system refuses.
+    pub fn resume_on(disk: &Disk, path: &Path) -> Result<Self, RunError> {
+        disk.make_folders(path).map_err(RunError::io(path, "create"))?;
+        let folder = Self::locked(disk, path.to_owned())?;
+        for place in ["", CHECKPOINTS, "model"] {
+            let place = if place.is_empty() { path.to_owned() } else { path.join(place) };
+            for name in names(&place)?.iter().filter(|name| name.starts_with(TEMPORARY)) {
+                let path = place.join(name);
+                disk.remove_file(&path).map_err(RunError::io(&path, "take away"))?;
+            }
         }
-        Ok(Self { path: path.to_owned() })
+        Ok(folder)
+    }
+
+    fn locked(disk: &Disk, path: PathBuf) -> Result<Self, RunError> {
+        let lock = Lock::take(disk, &path)?;
+        Ok(Self { path, disk: disk.clone(), _lock: Some(Arc::new(lock)) })
     }
 
     /// Whether [`RunFolder::create_at`] would take this folder, before there is anything to put in it.
     ///
     /// # Errors
-    /// [`RunError::Occupied`] where it holds something; [`RunError::Io`] where it is no folder.
+    /// [`RunError::Occupied`] where it holds something; [`RunError::Locked`] where another program works in it;
+    /// [`RunError::Io`] where it is no folder.
     pub fn check_free(path: &Path) -> Result<(), RunError> {
         if !path.exists() {
             return Ok(());
         }
-        let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
-        if entries.next().is_some() { Err(RunError::Occupied { path: path.to_owned() }) } else { Ok(()) }
+        Lock::check(path)?;
+        if is_empty(path)? { Ok(()) } else { Err(RunError::Occupied { path: path.to_owned() }) }
     }
 
-    /// A folder that is there already.
+    /// A folder that is there already, not locked.
     #[must_use]
     pub fn open(path: &Path) -> Self {
-        Self { path: path.to_owned() }
+        Self { path: path.to_owned(), disk: Disk::default(), _lock: None }
     }
 
     /// Its path.
@@ -106,7 +157,7 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Io`] with the file and what was tried.
     pub fn write(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
-        atomic::write(&self.place(name)?, content)
+        atomic::write(&self.disk, &self.place(name)?, content)
     }
 
     /// As [`RunFolder::write`], for one of very many files that a seed gives again: whole or absent after a crash
@@ -115,14 +166,14 @@ impl RunFolder {
     /// # Errors
     /// As [`RunFolder::write`].
     pub fn write_reproducible(&self, name: &str, content: &[u8]) -> Result<(), RunError> {
-        atomic::write_unflushed(&self.place(name)?, content)
+        atomic::write_unflushed(&self.disk, &self.place(name)?, content)
     }
 
     /// The path of a file of the run, its subfolder made.
     fn place(&self, name: &str) -> Result<PathBuf, RunError> {
         let path = self.path.join(name);
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(RunError::io(folder, "create"))?;
+            self.disk.make_folders(folder).map_err(RunError::io(folder, "create"))?;
         }
         Ok(path)
     }
@@ -140,26 +191,97 @@ impl RunFolder {
 
     /// Adds a line to `events.jsonl`: the time, the event's name, and what belongs to it.
     ///
-    /// One write of one line; a crash can cut the last line short, never an earlier one.
+    /// One write of one line, flushed to the disk; a crash can cut the last line short, never an earlier one.
     ///
     /// # Errors
-    /// As [`RunFolder::write_json`].
+    /// As [`RunFolder::write_json`]; [`RunError::Log`] where the lines before are not what was written.
     pub fn record_event(&self, event: &str, details: &impl Serialize) -> Result<(), RunError> {
-        #[derive(Serialize)]
-        struct Line<'a, T> {
-            time: String,
-            event: &'a str,
-            details: &'a T,
-        }
-        let name = "events.jsonl";
-        let line = Line { time: Timestamp::now().to_string(), event, details };
-        let mut text = serde_json::to_string(&line)
-            .map_err(|error| RunError::Encoding { name: name.to_owned(), problem: error.to_string() })?;
-        text.push('\n');
+        let details = serde_json::to_value(details)
+            .map_err(|error| RunError::Encoding { name: EVENTS.to_owned(), problem: error.to_string() })?;
+        let event = Event { time: Timestamp::now().to_string(), event: event.to_owned(), details };
+        EventLog::append(&self.path.join(EVENTS), &self.disk, &event)
+    }
+
+    /// What happened so far; nothing where there is no log.
+    ///
+    /// # Errors
+    /// [`RunError::Log`] where a line is not what was written; [`RunError::Io`] where it cannot be read.
+    pub fn events(&self) -> Result<EventLog, RunError> {
+        EventLog::read(&self.path.join(EVENTS))
+    }
+
+    /// Whether the folder holds no more than some of these files, and a lock.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where it cannot be listed.
+    pub fn holds_only(&self, expected: &[&str]) -> Result<bool, RunError> {
+        Ok(names(&self.path)?.iter().all(|name| name == LOCK || expected.contains(&name.as_str())))
+    }
+
+    /// Reads a file of the run.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] with the file.
+    pub fn read(&self, name: &str) -> Result<Vec<u8>, RunError> {
         let path = self.path.join(name);
-        let mut file =
-            OpenOptions::new().create(true).append(true).open(&path).map_err(RunError::io(&path, "open"))?;
-        file.write_all(text.as_bytes()).map_err(RunError::io(&path, "write"))
+        std::fs::read(&path).map_err(RunError::io(&path, "read"))
+    }
+
+    /// Writes a checkpoint, as [`RunFolder::write`] any file, under its digest.
+    ///
+    /// # Errors
+    /// As [`RunFolder::write`].
+    pub fn write_checkpoint(&self, name: &str, bytes: &[u8]) -> Result<(), RunError> {
+        sealed::write(&self.disk, &self.place(&format!("{CHECKPOINTS}/{name}"))?, bytes)
+    }
+
+    /// The checkpoint of a name; `None` where there is none.
+    ///
+    /// # Errors
+    /// [`RunError::Damaged`] where it is not what was written; [`RunError::Io`] where it cannot be read.
+    pub fn read_checkpoint(&self, name: &str) -> Result<Option<Vec<u8>>, RunError> {
+        match sealed::read(&self.checkpoint_path(name)) {
+            Err(RunError::Io { source, .. }) if source.kind() == ErrorKind::NotFound => Ok(None),
+            other => other.map(Some),
+        }
+    }
+
+    /// Where the checkpoint of a name is kept.
+    #[must_use]
+    pub fn checkpoint_path(&self, name: &str) -> PathBuf {
+        self.path.join(CHECKPOINTS).join(name)
+    }
+
+    /// Names of the checkpoints there are, sorted.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where they cannot be listed.
+    pub fn checkpoints(&self) -> Result<Vec<String>, RunError> {
+        names(&self.path.join(CHECKPOINTS))
+    }
+
+    /// Takes a checkpoint away that another one supersedes; one that is not there is no error.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn remove_checkpoint(&self, name: &str) -> Result<(), RunError> {
+        let path = self.checkpoint_path(name);
+        if !path.exists() {
+            return Ok(());
+        }
+        self.disk.remove_file(&path).map_err(RunError::io(&path, "take away"))
+    }
+
+    /// Takes all checkpoints away: the run is finished.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn remove_checkpoints(&self) -> Result<(), RunError> {
+        let path = self.path.join(CHECKPOINTS);
+        if !path.exists() {
+            return Ok(());
+        }
+        self.disk.remove_folder(&path).map_err(RunError::io(&path, "take away"))
     }
 
     /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
@@ -198,30 +320,40 @@ impl RunFolder {
     }
 }
 
-/// Temporary folders are made for their owner only; runs are for everybody.
-#[cfg(unix)]
-fn share(path: &Path) -> Result<(), RunError> {
-    use std::os::unix::fs::PermissionsExt;
-    std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755))
-        .map_err(RunError::io(path, "set permissions of"))
+/// Whether a folder holds nothing but perhaps a lock.
+fn is_empty(path: &Path) -> Result<bool, RunError> {
+    let mut entries = std::fs::read_dir(path).map_err(RunError::io(path, "list"))?;
+    Ok(entries.all(|entry| entry.is_ok_and(|entry| entry.file_name() == LOCK)))
 }
 
-#[cfg(not(unix))]
-fn share(_path: &Path) -> Result<(), RunError> {
-    Ok(())
+/// Names of what a folder holds, sorted; none where there is no such folder.
+fn names(path: &Path) -> Result<Vec<String>, RunError> {
+    if !path.exists() {
+        return Ok(Vec::new());
+    }
+    let mut names = Vec::new();
+    for entry in std::fs::read_dir(path).map_err(RunError::io(path, "list"))? {
+        let entry = entry.map_err(RunError::io(path, "list"))?;
+        names.push(entry.file_name().to_string_lossy().into_owned());
+    }
+    names.sort();
+    Ok(names)
 }
 
 #[cfg(test)]
 mod tests {
     use super::RunFolder;
+    use crate::disk::Disk;
     use crate::error::RunError;
+    use crate::faults::{Faults, Lasts, Refusal};
+    use std::sync::Arc;
 
     #[test]
     fn two_runs_never_share_a_folder() {
         let root = tempfile::tempdir().unwrap();
         let one = RunFolder::create(root.path(), "a/b c").unwrap();
         let other = RunFolder::create(root.path(), "a/b c").unwrap();
-        assert_ne!(one, other);
+        assert_ne!(one.path(), other.path());
         let name = one.path().file_name().unwrap().to_string_lossy().into_owned();
         assert!(name.starts_with("a-b-c-2"), "{name}");
     }
@@ -231,11 +363,13 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let folder = RunFolder::create_at(&root.path().join("new")).unwrap();
         folder.write("model/x.bin", b"1").unwrap();
-        let again = RunFolder::create_at(folder.path());
+        let path = folder.path().to_owned();
+        drop(folder);
+        let again = RunFolder::create_at(&path);
         assert!(matches!(again, Err(RunError::Occupied { .. })));
-        assert!(matches!(RunFolder::check_free(folder.path()), Err(RunError::Occupied { .. })));
+        assert!(matches!(RunFolder::check_free(&path), Err(RunError::Occupied { .. })));
         assert!(RunFolder::check_free(&root.path().join("absent")).is_ok());
-        assert_eq!(std::fs::read(folder.path().join("model/x.bin")).unwrap(), b"1");
+        assert_eq!(std::fs::read(path.join("model/x.bin")).unwrap(), b"1");
     }
 
     #[test]
@@ -255,5 +389,75 @@ mod tests {
         folder.record_event("two", &"a\nb").unwrap();
         let text = std::fs::read_to_string(root.path().join("events.jsonl")).unwrap();
         assert_eq!(text.lines().count(), 2);
+    }
+
+    /// Every operation of a write fails in turn: the old content stays, or the new one is there whole.
+    #[test]
+    fn a_write_that_fails_anywhere_leaves_the_old_file_or_the_new_one() {
+        for refusal in [Refusal::Device, Refusal::Full] {
+            let mut met = Vec::new();
+            for first in 0.. {
+                let root = tempfile::tempdir().unwrap();
+                let path = root.path().join("result.json");
+                std::fs::write(&path, "old").unwrap();
+                let faults = Arc::new(Faults::new(first, refusal, Lasts::Once));
+                let mut folder = RunFolder::open(root.path());
+                folder.disk = Disk::failing(Arc::clone(&faults));
+                let outcome = folder.write("result.json", b"the new content");
+                let content = std::fs::read_to_string(&path).unwrap();
+                let Err(error) = outcome else {
+                    assert_eq!(content, "the new content");
+                    assert_eq!(faults.asked(), first);
+                    break;
+                };
+                let message = error.to_string();
+                assert!(message.contains("result.json: cannot "), "{message}");
+                let expected = if message.contains("folder of") { "the new content" } else { "old" };
+                assert_eq!(content, expected, "{message}");
+                assert_eq!(std::fs::read_dir(root.path()).unwrap().count(), 1, "{message}");
+                met.push(message);
+            }
+            for action in ["create:", "write:", "permissions of:", "flush:", "into place:", "the folder of:"]
+            {
+                assert!(met.iter().any(|message| message.contains(action)), "{action} {met:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_a_killed_program_was_writing_is_taken_away_and_nothing_else() {
+        let root = tempfile::tempdir().unwrap();
+        let path = root.path().join("run");
+        let folder = RunFolder::create_at(&path).unwrap();
+        folder.write_checkpoint("pinn-0.state", b"half way").unwrap();
+        for name in [".tmpX1", "checkpoints/.tmpX2", "checkpoints/tmp"] {
+            std::fs::write(path.join(name), "x").unwrap();
+        }
+        assert!(matches!(RunFolder::resume_on(&Disk::default(), &path), Err(RunError::Locked { .. })));
+        drop(folder);
+        let folder = RunFolder::resume_on(&Disk::default(), &path).unwrap();
+        assert_eq!(folder.checkpoints().unwrap(), ["pinn-0.state", "tmp"]);
+        assert!(!path.join(".tmpX1").exists());
+        assert_eq!(folder.read_checkpoint("pinn-0.state").unwrap().unwrap(), b"half way");
+        assert_eq!(folder.read_checkpoint("other").unwrap(), None);
+        let message = folder.read_checkpoint("tmp").unwrap_err().to_string();
+        assert!(message.contains("checkpoints/tmp: the checkpoint is damaged"), "{message}");
+        folder.remove_checkpoint("tmp").unwrap();
+        folder.remove_checkpoint("tmp").unwrap();
+        folder.remove_checkpoints().unwrap();
+        assert!(folder.checkpoints().unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_folder_at_work_is_named_before_it_is_called_occupied() {
+        let root = tempfile::tempdir().unwrap();
+        let first = RunFolder::create_at(root.path()).unwrap();
+        for _ in 0..2 {
+            let message = RunFolder::create_at(root.path()).unwrap_err().to_string();
+            assert!(message.contains("is working in it"), "{message}");
+            first.write("config.toml", b"").unwrap();
+        }
+        drop(first);
+        assert!(matches!(RunFolder::create_at(root.path()), Err(RunError::Occupied { .. })));
     }
 }

@@ -1,7 +1,8 @@
 //! Run folders: the only crate that writes to disk.
 //!
 //! Every file is written whole to a temporary name, flushed to the disk and renamed; a crash leaves the
-//! old file or the new one, never half of one. A folder is made once and never written over.
+//! old file or the new one, never half of one. A folder is made once and never written over; one program at a
+//! time works in it, and one that was killed there can be followed by another that resumes.
 
 #![cfg_attr(
     test,
@@ -16,14 +17,26 @@
 
 mod atomic;
 mod catalog;
+mod digest;
+mod disk;
 mod error;
+mod events;
+#[cfg(any(test, feature = "faults"))]
+pub mod faults;
 mod folder;
+mod lock;
 pub mod result;
+mod scratch;
+mod sealed;
 mod sweep;
 mod table;
 
 pub use catalog::{KeptRun, has_run_files, list_runs, read_run};
+pub use digest::digest;
+pub use disk::Disk;
 pub use error::RunError;
+pub use events::{Event, EventLog};
 pub use folder::{RunFolder, Texts, default_root};
+pub use scratch::Scratch;
 pub use sweep::{SweepFolder, SweepFolderError};
 pub use table::to_csv;

@@ -13,13 +13,13 @@
 //! in another folder. Several processes may work on one sweep: only the files of `state/` say what is done.
 
 use crate::atomic;
+use crate::disk::Disk;
 use crate::error::RunError;
 use crate::folder::RunFolder;
 use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
 use std::collections::BTreeMap;
-use std::io::{ErrorKind, Write};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
-use tempfile::NamedTempFile;
 use thiserror::Error;
 
 /// Name of the manifest.
@@ -49,7 +49,7 @@ pub enum SweepFolderError {
 }
 
 /// The folder of a sweep.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone)]
 pub struct SweepFolder {
     folder: RunFolder,
 }
@@ -121,17 +121,9 @@ impl SweepFolder {
             self.folder.write(name, content)?;
         }
         let path = self.path().join(MANIFEST);
-        let mut file = NamedTempFile::new_in(self.path()).map_err(RunError::io(&path, "create"))?;
-        file.write_all(&text_of(manifest)?).map_err(RunError::io(&path, "write"))?;
-        file.as_file().sync_all().map_err(RunError::io(&path, "flush"))?;
-        match file.persist_noclobber(&path) {
-            Ok(_) => (),
-            Err(error) if error.error.kind() == ErrorKind::AlreadyExists => return Ok(false),
-            Err(error) => return Err(RunError::io(&path, "rename into place")(error.error)),
+        if !atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)? {
+            return Ok(false);
         }
-        atomic::sync_folder(self.path())?;
-        // Once more as every other file is written, so that everybody may read it.
-        self.folder.write(MANIFEST, &text_of(manifest)?)?;
         Ok(true)
     }
 
@@ -148,7 +140,8 @@ impl SweepFolder {
             let path = root.join(&name);
             match std::fs::create_dir(&path) {
                 Ok(()) => {
-                    atomic::sync_folder(&root)?;
+                    let flushed = Disk::default().flush_folder(&root);
+                    flushed.map_err(RunError::io(&root, "flush"))?;
                     return Ok((format!("{RUNS}/{name}"), RunFolder::open(&path)));
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => name = format!("{label}-{attempt}"),

@@ -5,6 +5,7 @@ use crate::side_by_side::arguments::CompareArguments;
 use crate::sweep::arguments::SweepArguments;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use runs::Disk;
 use std::path::PathBuf;
 
 /// Estimates the damping of oscillators from records, compared with closed-form least squares, and
@@ -21,6 +22,8 @@ Examples:
   trainer configs/paper.toml                      all of the paper's methods
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
+  trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
+                                                  begins, or goes on where it was stopped or killed
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
@@ -31,9 +34,11 @@ Examples:
   trainer list effects
   trainer list runs                               what lies below reports/runs
   trainer report reports/runs/RUN
+  trainer verify reports/runs/RUN                 runs it again: identical, or where it differs
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
-usage; 130 interrupted, the best so far is saved."
+usage; 130 interrupted (Ctrl-C, SIGTERM, q and Enter), the best so far is
+saved and --resume goes on."
 )]
 pub(crate) struct Arguments {
     /// A command other than running a configuration.
@@ -58,11 +63,17 @@ pub(crate) struct ExperimentArguments {
     /// Overrides the configuration's seed
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
+    /// Goes on with the run in --out where it stopped; begins it where there is none
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
     /// Threads over seeds or records; results do not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
+    /// Where folders are made: the system's disk, and in tests one that fails.
+    #[arg(skip)]
+    pub(crate) disk: Disk,
 }
 
 /// What is printed.
@@ -99,6 +110,16 @@ pub(crate) enum Command {
     Compare(CompareArguments),
     /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
     Trials(Box<TrialsArguments>),
+    /// Runs a finished run again from its folder alone, and says `identical` or where the two differ
+    Verify {
+        /// The run's folder
+        run: PathBuf,
+        /// Threads over seeds or records; results do not depend on it [default: one for each core]
+        #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        threads: Option<u16>,
+        #[command(flatten)]
+        output: Output,
+    },
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder

@@ -7,6 +7,7 @@ use crate::fit::{FitSetting, SeedFit, seeds};
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
+use crate::resume::end;
 use crate::run::Run;
 use crate::summary;
 use experiment::Comparison;
@@ -19,21 +20,33 @@ use runs::to_csv;
 use serde_json::json;
 use std::time::Instant;
 
+/// A method's place, and its fit or why there is none.
+type Fitted = (usize, Result<SeedFit, String>);
+
+/// What stands in place of a fit that was not begun.
+const NOT_BEGUN: &str = "interrupted before it began";
+
 /// Fits every method on every seed, keeps going where one fails, and puts the table together.
 pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {
     let methods = choose(comparison)?;
     let start = Instant::now();
     let fits = fit_all(run, &methods)?;
+    let interrupted = run.cancel.is_requested() && fits.iter().flatten().any(is_interrupted);
     let result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
-    keep(run, &result)?;
+    keep(run, &result, interrupted)?;
     run.print(&result, || summary::comparison(&result, run.folder.path()))?;
-    Ok(if run.cancel.is_requested() {
+    Ok(if interrupted {
         Outcome::Interrupted
     } else if result.pass {
         Outcome::Done
     } else {
         Outcome::CheckFailed
     })
+}
+
+/// Whether a fit was stopped before its end, or was not begun.
+fn is_interrupted(fit: &Result<SeedFit, String>) -> bool {
+    fit.as_ref().map_or_else(|reason| reason == NOT_BEGUN, SeedFit::is_interrupted)
 }
 
 /// The methods named, or all that the paper has; in the paper's order.
@@ -64,23 +77,28 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
         max_steps: run.experiment.fit.max_steps,
         progress: &progress,
         cancel: run.cancel,
+        ledger: Some(&run.ledger),
     };
-    let fitted: Vec<(usize, Result<SeedFit, String>)> = run.pool.install(|| {
+    let fit_one = |method: &Method, seed: u64| {
+        if run.cancel.is_requested() {
+            return Ok(Err(NOT_BEGUN.to_owned()));
+        }
+        let fit = match setting.fit(method, seed) {
+            // A disk that fails is no fault of the method's.
+            Err(error @ (TrainerError::Run(_) | TrainerError::Resume(_))) => return Err(error),
+            other => other.map_err(|error| error.to_string()),
+        };
+        progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
+        Ok(fit)
+    };
+    let fitted: Result<Vec<Fitted>, TrainerError> = run.pool.install(|| {
         jobs.into_par_iter()
-            .filter_map(|(at, seed)| {
-                let method = methods.get(at)?;
-                if run.cancel.is_requested() {
-                    return Some((at, Err("interrupted before it began".to_owned())));
-                }
-                let fit = setting.fit(method, seed).map_err(|error| error.to_string());
-                progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
-                Some((at, fit))
-            })
+            .filter_map(|(at, seed)| Some(fit_one(methods.get(at)?, seed).map(|fit| (at, fit))))
             .collect()
     });
     progress.finish();
     let mut by_method: Vec<Vec<_>> = methods.iter().map(|_| Vec::new()).collect();
-    for (at, fit) in fitted {
+    for (at, fit) in fitted? {
         if let Some(fits) = by_method.get_mut(at) {
             fits.push(fit);
         }
@@ -191,7 +209,10 @@ fn derived(run: &Run<'_>, inertia: f64) -> Derived {
 }
 
 /// Writes everything that is left to write, the report last.
-fn keep(run: &Run<'_>, result: &ComparisonResult) -> Result<(), TrainerError> {
+fn keep(run: &Run<'_>, result: &ComparisonResult, interrupted: bool) -> Result<(), TrainerError> {
+    if interrupted {
+        run.ledger.flush()?;
+    }
     let folder = &run.folder;
     let envelope = &run.input.extraction.envelope;
     let line: Vec<f64> =
@@ -202,6 +223,5 @@ fn keep(run: &Run<'_>, result: &ComparisonResult) -> Result<(), TrainerError> {
         .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
     folder.write("tables.md", comparison_markdown(&text)?.as_bytes())?;
     write_report(folder)?;
-    folder.record_event("end", &json!({ "pass": result.pass }))?;
-    Ok(())
+    end(folder, interrupted, run.output.quiet, &json!({ "pass": result.pass }))
 }

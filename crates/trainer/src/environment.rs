@@ -1,6 +1,7 @@
 //! What a run was made with: versions, machine, digests.
 
 use serde::Serialize;
+use serde_json::Value;
 use std::process::Command;
 use std::sync::OnceLock;
 
@@ -50,6 +51,26 @@ impl Environment {
     }
 }
 
+/// In what a run's `environment.json` differs from an environment, of what digits can depend on: a sentence for each.
+pub(crate) fn changes(begun: &[u8], now: &Environment) -> Vec<String> {
+    let begun: Value = serde_json::from_slice(begun).unwrap_or_default();
+    let now = serde_json::to_value(now).unwrap_or_default();
+    ["/profile", "/libraries", "/git/commit", "/system", "/cpu"]
+        .into_iter()
+        .map(|path| (path, begun.pointer(path), now.pointer(path)))
+        .filter(|(_, begun, now)| begun != now)
+        .map(|(path, begun, now)| {
+            let shown = |value: Option<&Value>| value.map_or_else(|| "unknown".to_owned(), Value::to_string);
+            format!(
+                "{} was {}, now {}",
+                path.trim_start_matches('/').replace('/', "."),
+                shown(begun),
+                shown(now)
+            )
+        })
+        .collect()
+}
+
 /// The version of a package in the text of a lock file.
 fn locked_version(lock: &str, name: &str) -> Option<String> {
     let quoted = format!("name = \"{name}\"");
@@ -69,7 +90,10 @@ fn ask_git() -> Option<Git> {
         let output = Command::new("git").args(arguments).output().ok()?;
         output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
     };
-    Some(Git { commit: ask(&["rev-parse", "HEAD"])?, dirty: !ask(&["status", "--porcelain"])?.is_empty() })
+    Some(Git {
+        commit: ask(&["rev-parse", "HEAD"])?,
+        dirty: !ask(&["--no-optional-locks", "status", "--porcelain"])?.is_empty(),
+    })
 }
 
 fn cpu_model() -> Option<String> {

@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::resume::ResumeError;
 use crate::side_by_side::TableError;
 use crate::sweep::SweepCommandError;
 use crate::trials::TrialsError;
@@ -80,6 +81,8 @@ pub(crate) enum TrainerError {
     #[error(transparent)]
     Trials(#[from] TrialsError),
     #[error(transparent)]
+    Resume(#[from] ResumeError),
+    #[error(transparent)]
     Sweep(#[from] SweepCommandError),
     #[error(transparent)]
     Table(#[from] TableError),
@@ -118,6 +121,7 @@ impl TrainerError {
             | Self::Trials(_)
             | Self::Sweep(_)
             | Self::Table(_)
+            | Self::Resume(_)
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

@@ -6,9 +6,9 @@ use crate::fit::{FitSetting, SeedFit, seeds};
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
+use crate::resume::end;
 use crate::run::Run;
 use crate::summary;
-use estimator::Reached;
 use rayon::prelude::*;
 use runs::result::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
 use runs::to_csv;
@@ -21,9 +21,12 @@ pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, Traine
         return Err(TrainerError::TooManySeeds { seed: run.experiment.seed });
     };
     let result = result(run, method, first, &fits);
-    keep(run, first, &result)?;
+    // Seeds that were not begun are left out.
+    let interrupted =
+        (fits.len() as u64) < run.experiment.fit.seeds || fits.iter().any(SeedFit::is_interrupted);
+    keep(run, first, &result, interrupted)?;
     run.print(&result, || summary::summary(&result, run.folder.path()))?;
-    Ok(if fits.iter().any(|fit| fit.estimate.stop.reached == Reached::Interrupted) {
+    Ok(if interrupted {
         Outcome::Interrupted
     } else if result.pass {
         Outcome::Done
@@ -42,6 +45,7 @@ fn fit_all(run: &Run<'_>, method: &Method) -> Result<Vec<SeedFit>, TrainerError>
         max_steps: run.experiment.fit.max_steps,
         progress: &progress,
         cancel: run.cancel,
+        ledger: Some(&run.ledger),
     };
     let first = run.experiment.seed;
     let seeds = seeds(first, run.experiment.fit.seeds)?;
@@ -103,7 +107,15 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
 }
 
 /// Writes everything that is left to write, the report last.
-fn keep(run: &Run<'_>, first: &SeedFit, result: &EstimationResult) -> Result<(), TrainerError> {
+fn keep(
+    run: &Run<'_>,
+    first: &SeedFit,
+    result: &EstimationResult,
+    interrupted: bool,
+) -> Result<(), TrainerError> {
+    if interrupted {
+        run.ledger.flush()?;
+    }
     let folder = &run.folder;
     let rows = run.input.envelope_rows(&first.estimate.fitted_log_amplitudes);
     folder.write("envelope.csv", &to_csv("envelope.csv", &rows)?)?;
@@ -115,6 +127,6 @@ fn keep(run: &Run<'_>, first: &SeedFit, result: &EstimationResult) -> Result<(),
     }
     folder.write_json("result.json", result)?;
     write_report(folder)?;
-    folder.record_event("end", &json!({ "reached": result.estimate.reached, "pass": result.pass }))?;
-    Ok(())
+    let details = json!({ "reached": result.estimate.reached, "pass": result.pass });
+    end(folder, interrupted, run.output.quiet, &details)
 }

@@ -2,13 +2,16 @@
 
 use crate::error::TrainerError;
 use crate::method::Method;
-use crate::progress::{Progress, Watcher};
+use crate::progress::Progress;
+use crate::resume::Ledger;
+use crate::watcher::{Place, Watcher};
 use envelope::Envelope;
-use estimator::{Cancel, Estimate};
+use estimator::{Cancel, Estimate, Reached};
 use runs::result::{SeedRow, TraceRow};
-use std::time::Instant;
+use serde::{Deserialize, Serialize};
 
 /// One seed's fit.
+#[derive(Serialize, Deserialize)]
 pub(crate) struct SeedFit {
     pub(crate) seed: u64,
     pub(crate) estimate: Estimate,
@@ -24,20 +27,37 @@ pub(crate) struct FitSetting<'a> {
     pub(crate) max_steps: Option<u64>,
     pub(crate) progress: &'a Progress,
     pub(crate) cancel: &'a Cancel,
+    /// Where finished fits and the state of unfinished ones are kept.
+    pub(crate) ledger: Option<&'a Ledger>,
 }
 
 impl FitSetting<'_> {
-    /// Fits and times.
+    /// Fits and times; goes on with a fit that was kept, finished or not.
     pub(crate) fn fit(&self, method: &Method, seed: u64) -> Result<SeedFit, TrainerError> {
-        let watcher = Watcher::new(self.progress);
-        let start = Instant::now();
-        let estimate = method.fit(self.envelope, seed, self, &watcher)?;
-        let seconds = start.elapsed().as_secs_f64();
-        Ok(SeedFit { seed, estimate, trace: watcher.into_trace(), seconds })
+        let name = format!("{} seed {seed}", method.id());
+        if let Some(done) = self.ledger.map(|ledger| ledger.finished(&name)).transpose()?.flatten() {
+            return Ok(done);
+        }
+        let watcher = Watcher::new(self.progress, self.ledger.map(|ledger| Place { ledger, name: &name }))?;
+        let estimate = method
+            .fit(self.envelope, seed, self, &watcher, Some(&watcher))
+            .map_err(|error| watcher.failure().unwrap_or(error))?;
+        let seconds = watcher.seconds();
+        let fit = SeedFit { seed, estimate, trace: watcher.into_trace(), seconds };
+        match self.ledger {
+            Some(ledger) if !fit.is_interrupted() => ledger.keep(&name, &fit, seconds)?,
+            _ => {}
+        }
+        Ok(fit)
     }
 }
 
 impl SeedFit {
+    /// Whether it was stopped before its end.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.estimate.stop.reached == Reached::Interrupted
+    }
+
     /// The fit as a row, beside the oracle's decay rate.
     pub(crate) fn row(&self, envelope: &Envelope, oracle: f64) -> SeedRow {
         let rate = self.estimate.decay_rate;

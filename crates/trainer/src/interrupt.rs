@@ -1,6 +1,7 @@
-//! Ctrl-C and SIGTERM.
+//! Ctrl-C, SIGTERM, and `q` with Enter.
 
 use crate::error::TrainerError;
+use crate::quit;
 use estimator::Cancel;
 
 static CANCEL: Cancel = Cancel::new();
@@ -8,7 +9,7 @@ static CANCEL: Cancel = Cancel::new();
 /// Exit code of a process that ended on request.
 const INTERRUPTED: i32 = 130;
 
-/// The request to stop that Ctrl-C and SIGTERM make. A second one ends the process at once.
+/// The request to stop that Ctrl-C, SIGTERM and `q` with Enter make. A second signal ends the process at once.
 pub(crate) fn watch() -> Result<&'static Cancel, TrainerError> {
     let handler = || {
         if CANCEL.is_requested() {
@@ -18,5 +19,6 @@ pub(crate) fn watch() -> Result<&'static Cancel, TrainerError> {
     };
     ctrlc::set_handler(handler)
         .map_err(|error| TrainerError::System { what: "Ctrl-C", problem: error.to_string() })?;
+    quit::watch(&CANCEL);
     Ok(&CANCEL)
 }

@@ -1,6 +1,15 @@
 //! The command line: registry and wiring.
 
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::disallowed_methods
+    )
+)]
 
 mod cautions;
 mod cli;
@@ -18,13 +27,17 @@ mod list_runs;
 mod method;
 mod predict;
 mod progress;
+mod quit;
 mod rerender;
+mod resume;
 mod run;
 mod side_by_side;
 mod simulate;
 mod summary;
 mod sweep;
 mod trials;
+mod verify;
+mod watcher;
 
 use clap::Parser;
 use cli::{Arguments, Command};
@@ -70,6 +83,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
+        Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

@@ -4,8 +4,8 @@ use crate::error::TrainerError;
 use crate::fit::FitSetting;
 use envelope::Envelope;
 use estimator::{
-    Cancel, Entry, Estimate, Estimator, FitContext, Observer, Prediction, Reached, Silent, Stop, Tag,
-    Uncertainty,
+    Cancel, Checkpoints, Entry, Estimate, Estimator, FitContext, Observer, Prediction, Reached, Silent, Stop,
+    Tag, Uncertainty,
 };
 use experiment::Single;
 use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
@@ -105,9 +105,11 @@ impl Method {
         seed: u64,
         max_steps: Option<u64>,
         cancel: &Cancel,
+        checkpoints: &dyn Checkpoints,
     ) -> Result<Self, TrainerError> {
         let Self::Learned(entry, estimator) = &self else { return Ok(self) };
-        let context = FitContext::new(Seed::new(seed).child(entry.id), max_steps, &Silent, cancel);
+        let context = FitContext::new(Seed::new(seed).child(entry.id), max_steps, &Silent, cancel)
+            .checkpointing_to(checkpoints);
         let trained = estimator.pretrain(&context).map_err(|source| TrainerError::Fit {
             estimator: entry.id,
             seed,
@@ -129,6 +131,7 @@ impl Method {
         seed: u64,
         setting: &FitSetting<'_>,
         observer: &dyn Observer,
+        checkpoints: Option<&dyn Checkpoints>,
     ) -> Result<Estimate, TrainerError> {
         let branch = Seed::new(seed).child(self.id());
         let estimate = match self {
@@ -141,8 +144,11 @@ impl Method {
                 described(envelope, fit, setting.query_times)
             }
             Self::Learned(entry, estimator) => {
-                let context = FitContext::new(branch, setting.max_steps, observer, setting.cancel)
+                let mut context = FitContext::new(branch, setting.max_steps, observer, setting.cancel)
                     .predicting_at(setting.query_times);
+                if let Some(checkpoints) = checkpoints {
+                    context = context.checkpointing_to(checkpoints);
+                }
                 estimator.fit(envelope, &context).map_err(|source| TrainerError::Fit {
                     estimator: entry.id,
                     seed,

@@ -1,12 +1,11 @@
 //! Progress: bars on a terminal, plain lines elsewhere.
 
 use crate::console;
-use estimator::{Observer, Step};
+use estimator::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use runs::result::{SeedRow, TraceRow};
+use runs::result::SeedRow;
 use std::fmt::Display;
 use std::io::IsTerminal;
-use std::sync::Mutex;
 
 /// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {
@@ -61,7 +60,8 @@ impl Progress {
         Self { bar, unit, counts_steps, lines: !terminal && !quiet }
     }
 
-    fn step(&self, step: &Step) {
+    /// A step of the only fit.
+    pub(crate) fn step(&self, step: &Step) {
         if self.counts_steps {
             self.bar.set_length(step.planned);
             self.bar.set_position(step.step);
@@ -122,34 +122,5 @@ impl Progress {
 
     pub(crate) fn finish(&self) {
         self.bar.finish_and_clear();
-    }
-}
-
-/// Watches one fit: keeps its trace and moves the bar.
-pub(crate) struct Watcher<'a> {
-    progress: &'a Progress,
-    trace: Mutex<Vec<TraceRow>>,
-}
-
-impl<'a> Watcher<'a> {
-    pub(crate) fn new(progress: &'a Progress) -> Self {
-        Self { progress, trace: Mutex::default() }
-    }
-
-    pub(crate) fn into_trace(self) -> Vec<TraceRow> {
-        self.trace.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner)
-    }
-}
-
-impl Observer for Watcher<'_> {
-    fn observe(&self, step: &Step) {
-        self.progress.step(step);
-        let mut trace = self.trace.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        trace.push(TraceRow {
-            step: step.step,
-            phase: step.phase.clone(),
-            loss: step.loss,
-            decay_rate: step.decay_rate,
-        });
     }
 }

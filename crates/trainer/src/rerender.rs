@@ -4,9 +4,9 @@ use crate::Outcome;
 use crate::cli::Output;
 use crate::console;
 use crate::error::TrainerError;
-use report::{RunTexts, render};
+use report::{RunTexts, comparison_markdown, prediction_markdown, render};
 use runs::RunFolder;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// Makes a run's report again and puts it in place of the old one: it is derived from the other files,
@@ -38,4 +38,15 @@ pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
     })?;
     folder.write("report.html", html.as_bytes())?;
     Ok(())
+}
+
+/// The tables that the folder's result makes, where its task has some.
+pub(crate) fn tables(folder: &RunFolder) -> Result<Option<String>, TrainerError> {
+    let result = folder.texts()?.result;
+    let task = serde_json::from_str::<Value>(&result).unwrap_or_default();
+    Ok(match task.get("task").and_then(Value::as_str) {
+        Some("compare") => Some(comparison_markdown(&result)?),
+        Some("predict") => Some(prediction_markdown(&result)?),
+        _ => None,
+    })
 }

@@ -4,7 +4,6 @@ use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::compare::compare;
 use crate::console;
-use crate::environment::Environment;
 use crate::error::TrainerError;
 use crate::estimate::estimate;
 use crate::fit::SeedFit;
@@ -12,6 +11,7 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::method::Method;
 use crate::predict::predict;
+use crate::resume::{Beginning, Begun, DataFile, Ledger, begin};
 use crate::simulate::{is_simulation, simulate};
 use crate::trials::{self, is_trials};
 use estimator::Cancel;
@@ -23,7 +23,6 @@ use registry::ESTIMATORS;
 use runs::result::SeedRow;
 use runs::{RunFolder, default_root};
 use serde::Serialize;
-use serde_json::json;
 use settings::Document;
 use simulator::Plan;
 use std::path::Path;
@@ -33,6 +32,7 @@ pub(crate) struct Run<'a> {
     pub(crate) experiment: &'a Experiment,
     pub(crate) input: Input,
     pub(crate) folder: RunFolder,
+    pub(crate) ledger: Ledger,
     pub(crate) pool: ThreadPool,
     pub(crate) cancel: &'static Cancel,
     pub(crate) output: Output,
@@ -40,7 +40,14 @@ pub(crate) struct Run<'a> {
 
 /// Reads, fits, compares, writes and prints.
 pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
-    let cancel = interrupt::watch()?;
+    run_until(arguments, interrupt::watch()?)
+}
+
+/// As [`run`], where who stops it is known already.
+pub(crate) fn run_until(
+    arguments: &ExperimentArguments,
+    cancel: &'static Cancel,
+) -> Result<Outcome, TrainerError> {
     let document = read_config(arguments)?;
     if is_simulation(&document) {
         return simulate(arguments, &Plan::resolve(&document)?, cancel);
@@ -54,17 +61,28 @@ pub(crate) fn run(arguments: &ExperimentArguments) -> Result<Outcome, TrainerErr
     }
     let experiment = resolve(&document, ESTIMATORS, &classical)?;
     let input = Input::read(&experiment)?;
-    let folder = new_folder(arguments, &experiment.name)?;
     let pool = thread_pool(arguments)?;
-    let run = Run { experiment: &experiment, input, folder, pool, cancel, output: arguments.output };
-    run.perform(&experiment.resolved.to_toml())
+    let beginning = Beginning {
+        name: &experiment.name,
+        seed: experiment.seed,
+        config: experiment.resolved.to_toml(),
+        data: vec![DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() }],
+        threads: pool.current_num_threads(),
+    };
+    let folder = match begin(arguments, &beginning)? {
+        Begun::Open(folder) => folder,
+        Begun::Finished(outcome) => return Ok(outcome),
+    };
+    let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    let run = Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: arguments.output };
+    run.perform()
 }
 
 /// The folder that the arguments name, or a new one below the default root.
 pub(crate) fn new_folder(arguments: &ExperimentArguments, name: &str) -> Result<RunFolder, TrainerError> {
     Ok(match &arguments.out {
-        Some(path) => RunFolder::create_at(path)?,
-        None => RunFolder::create(&default_root(), name)?,
+        Some(path) => RunFolder::create_at_on(&arguments.disk, path)?,
+        None => RunFolder::create_on(&arguments.disk, &default_root(), name)?,
     })
 }
 
@@ -77,14 +95,9 @@ pub(crate) fn thread_pool(arguments: &ExperimentArguments) -> Result<ThreadPool,
 }
 
 impl Run<'_> {
-    /// Fits, compares, writes and prints; `config` is kept as the run's `config.toml`.
-    pub(crate) fn perform(&self, config: &str) -> Result<Outcome, TrainerError> {
-        let (experiment, folder) = (self.experiment, &self.folder);
-        folder.write("config.toml", config.as_bytes())?;
-        let environment = Environment::new(self.pool.current_num_threads(), &self.input.source.digest);
-        folder.write_json("environment.json", &environment)?;
-        folder.record_event("start", &json!({ "name": experiment.name, "seed": experiment.seed }))?;
-        match &experiment.task {
+    /// Fits, compares, writes and prints.
+    pub(crate) fn perform(&self) -> Result<Outcome, TrainerError> {
+        match &self.experiment.task {
             Task::Estimate(single) => estimate(self, &Method::of(single)?),
             Task::Compare(comparison) => compare(self, comparison),
         }

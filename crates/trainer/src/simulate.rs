@@ -5,7 +5,8 @@ use crate::cli::ExperimentArguments;
 use crate::error::TrainerError;
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::run::{new_folder, read_config, thread_pool};
+use crate::resume::{Beginning, Begun, begin, end};
+use crate::run::{read_config, thread_pool};
 use crate::summary::table;
 use estimator::Cancel;
 use rayon::prelude::*;
@@ -57,10 +58,19 @@ pub(crate) fn simulate(
     // What is wrong with the first record is wrong with most: better to know before there is a folder.
     plan.record(0, 0).map_err(failure(0, 0))?;
 
-    let folder = new_folder(arguments, &plan.name)?;
     let pool = thread_pool(arguments)?;
-    folder.write("config.toml", plan.resolved.to_toml().as_bytes())?;
-    folder.record_event("start", &json!({ "name": plan.name, "seed": plan.seed }))?;
+    let beginning = Beginning {
+        name: &plan.name,
+        seed: plan.seed,
+        config: plan.resolved.to_toml(),
+        data: Vec::new(),
+        threads: pool.current_num_threads(),
+    };
+    // What was made before is made again: a seed gives the same records.
+    let folder = match begin(arguments, &beginning)? {
+        Begun::Open(folder) => folder,
+        Begun::Finished(outcome) => return Ok(outcome),
+    };
     let count = plan.systems.saturating_mul(plan.records);
     let progress = Progress::over_records(count as u64, arguments.output.quiet || arguments.output.json);
     let written: Vec<Option<Written>> = pool.install(|| {
@@ -86,7 +96,8 @@ pub(crate) fn simulate(
     };
     folder.write_json("manifest.json", &manifest)?;
     folder.write_json("result.json", &result)?;
-    folder.record_event("end", &json!({ "records": result.records, "complete": result.complete }))?;
+    let details = json!({ "records": result.records, "complete": result.complete });
+    end(&folder, !result.complete, arguments.output.quiet, &details)?;
     arguments.output.print(&result, || summary(plan, &result, &folder))?;
     Ok(if result.complete { Outcome::Done } else { Outcome::Interrupted })
 }

@@ -4,8 +4,7 @@ use super::bank::Prior;
 use super::training::Training;
 use crate::decay::Encoder;
 use burn::tensor::Device;
-use estimator::FitError;
-use rand::Rng;
+use estimator::{FitContext, FitError};
 
 /// The normal distribution's quantile at 97.5 %.
 pub(super) const QUANTILE_975: f64 = 1.959_963_984_540_054;
@@ -27,7 +26,7 @@ impl Calibration {
 
 impl Training {
     /// The factors with which 95 % intervals hold the truth in 95 % of simulated envelopes, which the
-    /// network has not been trained on and reads as it reads any other.
+    /// network has not been trained on and reads as it reads any other. `None` where somebody asked to stop.
     ///
     /// Reference: Papadopoulos, Proedrou, Vovk, Gammerman, Inductive confidence machines for regression,
     /// ECML 2002, normalized by the stated error.
@@ -35,19 +34,23 @@ impl Training {
         &self,
         prior: &Prior,
         encoder: &E,
-        generator: &mut impl Rng,
+        context: &FitContext<'_>,
         device: &Device,
-    ) -> Result<Calibration, FitError> {
+    ) -> Result<Option<Calibration>, FitError> {
+        let mut generator = context.seed("calibration").generator();
         let (mut levels, mut rates) = (Vec::new(), Vec::new());
         while rates.len() < self.calibration {
+            if context.is_cancelled() {
+                return Ok(None);
+            }
             let (sequences, lines): (Vec<_>, Vec<_>) =
-                prior.sequences(self.batch, generator).into_iter().unzip();
+                prior.sequences(self.batch, &mut generator).into_iter().unzip();
             for (reading, [level, rate]) in self.read_all(encoder, &sequences, device)?.iter().zip(lines) {
                 levels.push((reading.level - level).abs() / reading.level_std_error);
                 rates.push((reading.rate - rate).abs() / reading.rate_std_error);
             }
         }
-        Ok(Calibration { level: factor(levels), rate: factor(rates) })
+        Ok(Some(Calibration { level: factor(levels), rate: factor(rates) }))
     }
 }
 

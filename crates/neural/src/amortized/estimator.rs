@@ -206,6 +206,7 @@ mod tests {
     use crate::amortized::bank::Prior;
     use crate::amortized::tiny::{Pupil, estimator};
     use crate::amortized::training::Training;
+    use crate::kept::Kept;
     use crate::weights::from_safetensors;
     use envelope::Envelope;
     use estimator::{Cancel, Estimate, Estimator, FitContext, FitError, Observer, Reached, Silent, Step};
@@ -301,6 +302,40 @@ mod tests {
         let estimate = reader.fit(&envelope(20), &context).unwrap();
         assert_eq!((estimate.stop.reached, estimate.steps), (Reached::Interrupted, 0));
         assert_eq!(steps.0.borrow().len(), 302);
+    }
+
+    /// Stopped at a step, or while it calibrates, it goes on to the same bits, each step told once.
+    #[test]
+    fn stopped_anywhere_it_goes_on_to_the_same_bits() {
+        struct Stopping<'a>(u64, &'a Cancel, RefCell<Vec<Step>>);
+        impl Observer for Stopping<'_> {
+            fn observe(&self, step: &Step) {
+                self.2.borrow_mut().push(step.clone());
+                if step.step == self.0 {
+                    self.1.request();
+                }
+            }
+        }
+        let fit = |kept: &Kept, stop_at: u64| {
+            let cancel = Cancel::new();
+            let observer = Stopping(stop_at, &cancel, RefCell::default());
+            let context = FitContext::new(Seed::new(1), None, &observer, &cancel).checkpointing_to(kept);
+            let estimate = estimator().fit(&envelope(40), &context).unwrap();
+            (estimate, observer.2.into_inner())
+        };
+        let (whole, told) = fit(&Kept::default(), u64::MAX);
+        for stop_at in [0, 1, 7, 150, 299, 300] {
+            let kept = Kept::default();
+            let (stopped, mut steps) = fit(&kept, stop_at);
+            assert_eq!((stopped.stop.reached, stopped.uncertainty), (Reached::Interrupted, None));
+            let from = kept.step().unwrap();
+            assert_eq!(from, stop_at);
+            let (resumed, after) = fit(&kept, u64::MAX);
+            assert_eq!(resumed, whole, "stopped at {stop_at}");
+            steps.retain(|step| step.step < from);
+            steps.extend(after);
+            assert_eq!(steps, told);
+        }
     }
 
     #[test]

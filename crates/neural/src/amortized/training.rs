@@ -9,7 +9,8 @@ use crate::device::{tensor, values};
 use crate::flat::with_parameters;
 use burn::tensor::{Device, Tensor};
 use estimator::{FitContext, FitError, Reached, Step};
-use serde::Deserialize;
+use rand_chacha::ChaCha12Rng;
+use serde::{Deserialize, Serialize};
 
 /// How an amortized network is trained, and how it reads. Ranges and defaults are in
 /// [`fields`](super::fields).
@@ -48,8 +49,39 @@ pub(super) struct Skill {
     pub(super) reached: Reached,
 }
 
+/// What a training goes on from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+struct State {
+    parameters: Vec<f64>,
+    /// The parameters a step before, to go back to where the loss stops being finite.
+    before: Vec<f64>,
+    adam: Adam,
+    steps: u64,
+    /// How far the generator of examples has been read, in words.
+    words: u128,
+}
+
+impl State {
+    fn at(start: Vec<f64>) -> Self {
+        Self { before: start.clone(), adam: Adam::new(start.len()), parameters: start, steps: 0, words: 0 }
+    }
+
+    /// The state that was kept, or that of the start.
+    fn resumed(start: Vec<f64>, context: &FitContext<'_>) -> Result<Self, FitError> {
+        let expected = start.len();
+        let state = context.resumed::<Self>()?.unwrap_or_else(|| Self::at(start));
+        if state.parameters.len() == expected && state.before.len() == expected {
+            return Ok(state);
+        }
+        let found = state.parameters.len();
+        Err(FitError::Checkpoint {
+            problem: format!("what was kept has {found} parameters, expected {expected}"),
+        })
+    }
+}
+
 impl Training {
-    /// Trains an encoder from start values. `rate_of` gives the λ that parameters read from whatever is
+    /// Trains an encoder from start values, or from the state that was kept. `rate_of` gives the λ that parameters read from whatever is
     /// watched.
     pub(super) fn train<E: Encoder>(
         &self,
@@ -61,33 +93,35 @@ impl Training {
         rate_of: impl Fn(&[f64]) -> Result<f64, FitError>,
     ) -> Result<Skill, FitError> {
         let recording = device.clone().autodiff();
-        let mut generator = context.seed("bank").generator();
-        let mut adam = Adam::new(start.len());
-        let (mut parameters, mut before) = (start.clone(), start);
+        let mut generator: ChaCha12Rng = context.seed("bank").generator();
         let limit = context.step_limit(self.max_steps);
-        let mut steps = 0;
-        let reached = loop {
+        let mut state = State::resumed(start, context)?;
+        generator.set_word_pos(state.words);
+        let mut reached = loop {
+            state.words = generator.get_word_pos();
+            context.checkpoint(state.steps, || &state)?;
             let examples = prior.examples(self.batch, self.longest_sequence, &mut generator);
-            let (loss, mut gradient) = loss_and_gradient(encoder, &parameters, &examples, &recording)?;
+            let (loss, mut gradient) = loss_and_gradient(encoder, &state.parameters, &examples, &recording)?;
             let length = gradient.iter().map(|slope| slope * slope).sum::<f64>().sqrt();
             if !(loss.is_finite() && length.is_finite()) {
-                if steps == 0 {
+                if state.steps == 0 {
                     return Err(FitError::NotFinite { loss });
                 }
-                (parameters, steps) = (before, steps - 1);
+                state.parameters.clone_from(&state.before);
+                state.steps -= 1;
                 break Reached::Diverged;
             }
             context.observe(&Step {
-                step: steps,
+                step: state.steps,
                 planned: limit,
                 phase: "Adam, simulated envelopes".to_owned(),
                 loss,
-                decay_rate: rate_of(&parameters)?,
+                decay_rate: rate_of(&state.parameters)?,
             });
             let reached = match () {
                 () if context.is_cancelled() => Some(Reached::Interrupted),
-                () if steps >= self.max_steps && steps > 0 => Some(Reached::Converged),
-                () if steps >= limit => Some(Reached::BudgetSpent),
+                () if state.steps >= self.max_steps && state.steps > 0 => Some(Reached::Converged),
+                () if state.steps >= limit => Some(Reached::BudgetSpent),
                 () => None,
             };
             if let Some(reached) = reached {
@@ -95,19 +129,23 @@ impl Training {
             }
             let cut = (LONGEST_GRADIENT / length).min(1.0);
             gradient.iter_mut().for_each(|slope| *slope *= cut);
-            before.clone_from(&parameters);
-            adam.step(&mut parameters, &gradient, self.rate(steps));
-            steps += 1;
+            state.before.clone_from(&state.parameters);
+            state.adam.step(&mut state.parameters, &gradient, self.rate(state.steps));
+            state.steps += 1;
         };
-        let calibration = match reached {
-            Reached::Converged => {
-                let encoder = with_parameters(encoder.clone(), &parameters, device)?;
-                let mut generator = context.seed("calibration").generator();
-                self.calibrate(prior, &encoder, &mut generator, device)?
+        // Nothing is said of errors but after all of it.
+        let mut calibration = Calibration::NONE;
+        if reached == Reached::Converged {
+            let encoder = with_parameters(encoder.clone(), &state.parameters, device)?;
+            match self.calibrate(prior, &encoder, context, device)? {
+                Some(found) => calibration = found,
+                None => {
+                    context.checkpoint(state.steps, || &state)?;
+                    reached = Reached::Interrupted;
+                }
             }
-            // Nothing is said of errors then.
-            _ => Calibration::NONE,
-        };
+        }
+        let State { parameters, steps, .. } = state;
         Ok(Skill { parameters, calibration, steps, reached })
     }
 

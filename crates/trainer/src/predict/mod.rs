@@ -10,12 +10,13 @@ mod verdict;
 use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::console;
-use crate::environment::Environment;
 use crate::error::TrainerError;
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
-use crate::run::{new_folder, thread_pool};
+use crate::resume::{Beginning, Begun, DataFile, Ledger, begin, end};
+use crate::run::thread_pool;
+use crate::watcher::{Place, Watcher};
 use estimator::Cancel;
 use experiment::PredictionStudy;
 use problem::{Missing, Ready, prepare};
@@ -31,7 +32,7 @@ use serde_json::json;
 use split::SplitKind;
 use std::time::Instant;
 use tally::{Placed, adjust, outcome, score};
-use trial::{Trials, best_exponential};
+use trial::{NOT_BEGUN, Trials, best_exponential};
 
 /// Name of the best exponential in `predictions.csv`.
 const EXPONENTIAL: &str = "best-exponential";
@@ -40,6 +41,14 @@ const EXPONENTIAL: &str = "best-exponential";
 struct ProblemTrials {
     exponential: Vec<Placed>,
     methods: Vec<Vec<Placed>>,
+}
+
+impl ProblemTrials {
+    /// Whether some trial was not begun.
+    fn is_interrupted(&self) -> bool {
+        let not_begun = |placed: &Placed| placed.trial.as_ref().is_err_and(|reason| reason == NOT_BEGUN);
+        self.methods.iter().flatten().any(not_begun)
+    }
 }
 
 /// Prepares every problem, fits every method on every draw and split, keeps going where one fails, and puts
@@ -64,18 +73,27 @@ pub(crate) fn predict(
             console::remark(&format!("ABSENT: problem.{}: {}", missing.id, missing.reason));
         }
     }
-    let folder = new_folder(arguments, &study.name)?;
     let pool = thread_pool(arguments)?;
-    begin(study, &folder, &pool, &problems)?;
+    let folder = match begin(arguments, &beginning(study, &pool, &problems))? {
+        Begun::Open(folder) => folder,
+        Begun::Finished(outcome) => return Ok(outcome),
+    };
+    let ledger = Ledger::open(&folder, study.checkpoint)?;
     let start = Instant::now();
-    let methods = pretrain(study, methods, &pool, cancel)?;
-    let trials = run_all(study, &problems, &methods, &pool, cancel, output)?;
+    let methods = pretrain(study, methods, &pool, cancel, &ledger)?;
+    let trials = run_all(study, &problems, &methods, &pool, cancel, &ledger, output)?;
+    // A request that comes after the last trial interrupts nothing.
+    let interrupted = cancel.is_requested() && trials.iter().any(ProblemTrials::is_interrupted);
+    if interrupted {
+        ledger.flush()?;
+    }
     let seconds = start.elapsed().as_secs_f64();
     let rows = csv_rows(&problems, &methods, &trials);
     let result = result(study, &problems, &methods, &trials, seconds);
     keep(&folder, &result, &rows)?;
+    end(&folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
     output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(if cancel.is_requested() { Outcome::Interrupted } else { Outcome::Done })
+    Ok(if interrupted { Outcome::Interrupted } else { Outcome::Done })
 }
 
 /// The methods named, or all that there are.
@@ -87,21 +105,21 @@ fn choose(study: &PredictionStudy) -> Result<Vec<Method>, TrainerError> {
     Ok(methods)
 }
 
-fn begin(
-    study: &PredictionStudy,
-    folder: &RunFolder,
+/// What the run is made of.
+fn beginning<'a>(
+    study: &'a PredictionStudy,
     pool: &ThreadPool,
     problems: &[Result<Ready, Missing>],
-) -> Result<(), TrainerError> {
-    folder.write("config.toml", study.resolved.to_toml().as_bytes())?;
-    let digests: Vec<&str> = problems
-        .iter()
-        .filter_map(|problem| Some(problem.as_ref().ok()?.data.as_ref()?.digest.as_str()))
-        .collect();
-    folder
-        .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
-    folder.record_event("start", &json!({ "name": study.name, "seed": study.seed }))?;
-    Ok(())
+) -> Beginning<'a> {
+    let data = problems.iter().filter_map(|problem| problem.as_ref().ok()?.data.as_ref());
+    let data = data.map(|data| DataFile { path: data.path.clone(), digest: data.digest.clone() }).collect();
+    Beginning {
+        name: &study.name,
+        seed: study.seed,
+        config: study.resolved.to_toml(),
+        data,
+        threads: pool.current_num_threads(),
+    }
 }
 
 /// Amortized methods are trained once, for all problems.
@@ -110,9 +128,17 @@ fn pretrain(
     methods: Vec<Method>,
     pool: &ThreadPool,
     cancel: &'static Cancel,
+    ledger: &Ledger,
 ) -> Result<Vec<Method>, TrainerError> {
     let (seed, cap) = (study.seed, study.settings.max_steps);
-    pool.install(|| methods.into_par_iter().map(|method| method.pretrained(seed, cap, cancel)).collect())
+    let progress = Progress::over_fits(methods.len() as u64, true);
+    let train = |method: Method| {
+        let name = format!("training of {}", method.id());
+        let watcher = Watcher::new(&progress, Some(Place { ledger, name: &name }))?;
+        let trained = method.pretrained(seed, cap, cancel, &watcher);
+        trained.map_err(|error| watcher.failure().unwrap_or(error))
+    };
+    pool.install(|| methods.into_par_iter().map(train).collect())
 }
 
 /// Every trial there is to make, in the order of problems, methods, draws and splits, whatever the threads.
@@ -122,6 +148,7 @@ fn run_all(
     methods: &[Method],
     pool: &ThreadPool,
     cancel: &'static Cancel,
+    ledger: &Ledger,
     output: Output,
 ) -> Result<Vec<ProblemTrials>, TrainerError> {
     let ready: Vec<&Ready> = problems.iter().filter_map(|problem| problem.as_ref().ok()).collect();
@@ -146,15 +173,16 @@ fn run_all(
         .collect();
     let silent = output.quiet || output.json;
     let progress = Progress::over_fits(jobs.len() as u64, silent);
-    let trials = Trials { max_steps: study.settings.max_steps, progress: &progress, cancel };
-    let done: Vec<(usize, usize, Placed)> = pool.install(|| {
+    let trials = Trials { max_steps: study.settings.max_steps, progress: &progress, cancel, ledger };
+    let done: Result<Vec<(usize, usize, Placed)>, TrainerError> = pool.install(|| {
         jobs.into_par_iter()
             .filter_map(|(at, method_at, draw, split_at)| {
                 let (problem, method) = (ready.get(at)?, methods.get(method_at)?);
                 let (envelope, split) = (problem.envelopes.get(draw)?, problem.splits.get(split_at)?);
-                let trial = trials.run(method, envelope, split, study.seed + draw as u64);
+                let name = format!("{} {}, draw {draw}, split {split_at}", problem.id, method.id());
+                let trial = trials.run(&name, method, envelope, split, study.seed + draw as u64);
                 progress.one_of_many_done();
-                Some((at, method_at, Placed { draw, split: split_at, trial }))
+                Some(trial.map(|trial| (at, method_at, Placed { draw, split: split_at, trial })))
             })
             .collect()
     });
@@ -166,7 +194,7 @@ fn run_all(
             methods: methods.iter().map(|_| Vec::new()).collect(),
         })
         .collect();
-    for (at, method, placed) in done {
+    for (at, method, placed) in done? {
         if let Some(trials) = all.get_mut(at).and_then(|problem| problem.methods.get_mut(method)) {
             trials.push(placed);
         }
@@ -352,6 +380,5 @@ fn keep(
         .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
     folder.write("tables.md", prediction_markdown(&text)?.as_bytes())?;
     write_report(folder)?;
-    folder.record_event("end", &json!({ "problems": result.problems.len() }))?;
     Ok(())
 }

@@ -1,16 +1,20 @@
 //! One method on one draw and one split.
 
+use crate::error::TrainerError;
 use crate::fit::FitSetting;
 use crate::method::Method;
 use crate::predict::problem::{Ready, line};
 use crate::predict::split::Split;
 use crate::progress::Progress;
+use crate::resume::Ledger;
 use envelope::{Envelope, EnvelopeError};
 use estimator::{Cancel, Prediction, Reached, Silent};
 use scoring::HeldOutPeak;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// What a method made of the peaks that it saw.
+#[derive(Serialize, Deserialize)]
 pub(crate) struct Trial {
     /// The fitted function at every peak of the problem; `None` where the method makes no prediction.
     pub(crate) curve: Option<Vec<Prediction>>,
@@ -29,20 +33,39 @@ pub(crate) struct Trials<'a> {
     pub(crate) max_steps: Option<u64>,
     pub(crate) progress: &'a Progress,
     pub(crate) cancel: &'a Cancel,
+    pub(crate) ledger: &'a Ledger,
 }
 
+/// What stands in place of a trial that was not begun, or not ended.
+pub(crate) const NOT_BEGUN: &str = "interrupted before it began";
+
 impl Trials<'_> {
-    /// Fits the peaks that the split leaves and asks for all.
+    /// Fits the peaks that the split leaves and asks for all, unless that was done before and kept under the name.
     pub(crate) fn run(
         &self,
+        name: &str,
         method: &Method,
         envelope: &Envelope,
         split: &Split,
         seed: u64,
-    ) -> Result<Trial, Failure> {
-        if self.cancel.is_requested() {
-            return Err("interrupted before it began".to_owned());
+    ) -> Result<Result<Trial, Failure>, TrainerError> {
+        if let Some(trial) = self.ledger.finished(name)? {
+            return Ok(Ok(trial));
         }
+        if self.cancel.is_requested() {
+            return Ok(Err(NOT_BEGUN.to_owned()));
+        }
+        let trial = self.make(method, envelope, split, seed);
+        match &trial {
+            // It may have been stopped halfway.
+            Ok(_) if self.cancel.is_requested() => return Ok(Err(NOT_BEGUN.to_owned())),
+            Ok(made) => self.ledger.keep(name, made, made.seconds)?,
+            Err(_) => {}
+        }
+        Ok(trial)
+    }
+
+    fn make(&self, method: &Method, envelope: &Envelope, split: &Split, seed: u64) -> Result<Trial, Failure> {
         let seen = seen(envelope, split).map_err(|error| error.to_string())?;
         let setting = FitSetting {
             envelope: &seen,
@@ -50,9 +73,10 @@ impl Trials<'_> {
             max_steps: self.max_steps,
             progress: self.progress,
             cancel: self.cancel,
+            ledger: None,
         };
         let start = Instant::now();
-        let estimate = method.fit(&seen, seed, &setting, &Silent).map_err(|error| error.to_string())?;
+        let estimate = method.fit(&seen, seed, &setting, &Silent, None).map_err(|error| error.to_string())?;
         let seconds = start.elapsed().as_secs_f64();
         let is_complete = estimate.predictions.len() == envelope.len();
         Ok(Trial {

@@ -7,6 +7,7 @@ use crate::console;
 use crate::error::TrainerError;
 use crate::input::Input;
 use crate::progress::Progress;
+use crate::resume::{Beginning, DataFile, Ledger, start};
 use crate::run::Run;
 use estimator::Cancel;
 use experiment::resolve;
@@ -110,9 +111,18 @@ fn attempt(
         .num_threads(1)
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    let beginning = Beginning {
+        name: &experiment.name,
+        seed: experiment.seed,
+        config: config.to_owned(),
+        data: vec![DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() }],
+        threads: 1,
+    };
     let (name, folder) = sweep.folder.begin_run(&label(&sweep.manifest, line))?;
     *run = Some(name);
-    Run { experiment: &experiment, input, folder, pool, cancel, output: SILENT }.perform(config)
+    let folder = start(folder, &beginning)?;
+    let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: SILENT }.perform()
 }
 
 /// What a run's folder is called: its number and what is special about it. What all runs share is left out.

@@ -11,7 +11,7 @@ use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
 use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
-use runs::{RunError, RunFolder, SweepFolder, default_root};
+use runs::{Disk, RunError, RunFolder, SweepFolder, default_root};
 use serde_json::json;
 use settings::Document;
 use std::path::Path;
@@ -22,6 +22,8 @@ pub(super) struct FrozenSweep {
     pub(super) manifest: SweepManifest,
     /// The runs' configurations, in the list's order.
     pub(super) configs: Vec<String>,
+    /// Held as long as the sweep is worked on, so that nobody else takes it up; shares work side by side without.
+    _lock: Option<RunFolder>,
 }
 
 /// Freezes a new sweep, or takes up the one that the arguments name.
@@ -35,7 +37,7 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
         if !joins {
             return Err(SweepCommandError::Begun { folder: path.display().to_string() }.into());
         }
-        return take_up(SweepFolder::open(path), planned.map(|(_, planned)| planned));
+        return take_up(arguments, SweepFolder::open(path), planned.map(|(_, planned)| planned));
     }
     let Some((config, planned)) = planned else {
         let folder = arguments.out.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
@@ -43,10 +45,15 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
     };
     let manifest = manifest(config, &planned)?;
     let folder = match &arguments.out {
-        Some(path) if joins => beginning(path)?,
+        Some(path) if arguments.shard.is_some() => beginning(path)?,
+        Some(path) if joins => {
+            beginning(path)?;
+            RunFolder::resume_on(&Disk::default(), path)?
+        }
         Some(path) => RunFolder::create_at(path)?,
         None => RunFolder::create(&default_root(), &manifest.name)?,
     };
+    let lock = arguments.shard.is_none().then(|| folder.clone());
     let folder = SweepFolder::open(folder.path());
     let configs: Vec<String> = planned.runs.iter().map(|run| run.config.clone()).collect();
     let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
@@ -56,10 +63,11 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
     let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];
     if !folder.freeze(&manifest, &configs, &beside)? {
         // Another share came first.
-        return take_up(folder, Some(planned));
+        drop(lock);
+        return take_up(arguments, folder, Some(planned));
     }
     folder.folder().record_event("start", &json!({ "name": manifest.name, "runs": manifest.runs.len() }))?;
-    Ok(FrozenSweep { folder, manifest, configs })
+    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
 }
 
 /// What a configuration and axes come to.
@@ -127,9 +135,10 @@ fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerE
 /// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written before the
 /// manifest, of which the frozen configurations come first.
 fn beginning(path: &Path) -> Result<RunFolder, RunError> {
-    match RunFolder::create_at(path) {
+    match RunFolder::check_free(path) {
+        Ok(()) => Ok(RunFolder::open(path)),
         Err(RunError::Occupied { path }) => {
-            let known = ["configs", "config.toml", "environment.json", "sweep.json"];
+            let known = [".lock", "configs", "config.toml", "environment.json", "sweep.json"];
             let is_ours = |name: &str| known.contains(&name) || name.starts_with(".tmp");
             let entries = std::fs::read_dir(&path);
             let mut names = entries.into_iter().flatten().flatten().map(|entry| entry.file_name());
@@ -139,12 +148,20 @@ fn beginning(path: &Path) -> Result<RunFolder, RunError> {
                 Err(RunError::Occupied { path })
             }
         }
-        other => other,
+        Err(other) => Err(other),
     }
 }
 
 /// Goes on with a frozen sweep; what the command line asks for, if anything, has to be the same.
-fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep, TrainerError> {
+fn take_up(
+    arguments: &SweepArguments,
+    folder: SweepFolder,
+    planned: Option<Planned>,
+) -> Result<FrozenSweep, TrainerError> {
+    let lock = match arguments.shard {
+        None => Some(RunFolder::resume_on(&Disk::default(), folder.path())?),
+        Some(_) => None,
+    };
     let shown = || folder.path().display().to_string();
     let manifest = folder
         .manifest()
@@ -173,7 +190,7 @@ fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep,
             env!("CARGO_PKG_VERSION")
         ));
     }
-    Ok(FrozenSweep { folder, manifest, configs })
+    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
 }
 
 /// A run's frozen configuration, if it still is what its digest says.

@@ -61,7 +61,7 @@ impl From<&ExperimentArguments> for TrialsArguments {
             config: arguments.config.clone(),
             overrides: arguments.overrides.clone(),
             out: arguments.out.clone(),
-            resume: false,
+            resume: arguments.resume,
             score: None,
             check: false,
             seed: arguments.seed,

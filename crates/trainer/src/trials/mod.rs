@@ -20,7 +20,7 @@ use estimator::Cancel;
 use open::Opened;
 use rayon::ThreadPool;
 use runs::result::{LeftOutBank, TrialsManifest};
-use runs::{RunFolder, to_csv};
+use runs::{Disk, RunFolder, to_csv};
 use serde_json::json;
 use settings::Document;
 use std::collections::BTreeMap;
@@ -73,8 +73,10 @@ fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
         overrides: arguments.overrides.clone(),
         out: arguments.out.clone(),
         seed: arguments.seed,
+        resume: arguments.resume,
         threads: arguments.threads,
         output: arguments.output,
+        disk: Disk::default(),
     }
 }
 
@@ -90,7 +92,7 @@ fn begin(
         if !arguments.resume {
             return Err(TrialsError::Begun { folder: shown }.into());
         }
-        let folder = RunFolder::open(path);
+        let folder = RunFolder::resume_on(&Disk::default(), path)?;
         let file = path.join("config.toml").display().to_string();
         let begun = open::text(&folder, "config.toml")?;
         if let Some(difference) = open::first_difference(&begun, &config) {

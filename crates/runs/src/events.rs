@@ -1,0 +1,200 @@
+//! `events.jsonl`: what happened when, in lines that a change anywhere would show in.
+//!
+//! Every line ends in a digest over itself and the digest before it. A line that a crash cut short can only be the
+//! last one and has no line break; it is left out and said. Anything else that does not add up is refused.
+
+use crate::atomic;
+use crate::digest::hexadecimal;
+use crate::disk::Disk;
+use crate::error::RunError;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// A line of the log.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Event {
+    /// When, in UTC.
+    pub time: String,
+    /// What happened, such as `start`.
+    pub event: String,
+    /// What belongs to it.
+    pub details: Value,
+}
+
+/// The log of a run.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct EventLog {
+    /// Its whole lines, in order.
+    pub events: Vec<Event>,
+    /// The number, from 1, of a last line that a crash cut short.
+    pub torn_line: Option<usize>,
+    /// The whole lines as text.
+    text: String,
+    /// Digest of the last whole line.
+    digest: String,
+}
+
+impl EventLog {
+    /// The last event of a name.
+    #[must_use]
+    pub fn last(&self, event: &str) -> Option<&Event> {
+        self.events.iter().rev().find(|known| known.event == event)
+    }
+
+    /// Reads a log; one that is absent is empty.
+    pub(crate) fn read(path: &Path) -> Result<Self, RunError> {
+        let bytes = match std::fs::read(path) {
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Self::default()),
+            other => other.map_err(RunError::io(path, "read"))?,
+        };
+        Self::parse(path, &bytes)
+    }
+
+    fn parse(path: &Path, bytes: &[u8]) -> Result<Self, RunError> {
+        let mut log = Self::default();
+        for (at, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
+            let Some(line) = line.strip_suffix(b"\n") else {
+                log.torn_line = Some(at + 1);
+                break;
+            };
+            let refused = |problem: &str| RunError::Log {
+                path: path.to_owned(),
+                line: at + 1,
+                problem: problem.to_owned(),
+            };
+            let line = str::from_utf8(line).map_err(|_| refused("it is no text"))?;
+            let (body, stated) = line
+                .strip_suffix("\"}")
+                .and_then(|line| line.rsplit_once(",\"digest\":\""))
+                .ok_or_else(|| refused("it does not end in a digest"))?;
+            let digest = chained(&log.digest, body);
+            if digest != stated {
+                return Err(refused("its digest is not that of what it says"));
+            }
+            let event =
+                serde_json::from_str(&format!("{body}}}")).map_err(|error| refused(&error.to_string()))?;
+            log.events.push(event);
+            log.text.push_str(line);
+            log.text.push('\n');
+            log.digest = digest;
+        }
+        Ok(log)
+    }
+
+    /// Adds a line at the end of the file; a torn one gives way to it.
+    pub(crate) fn append(path: &Path, disk: &Disk, event: &Event) -> Result<(), RunError> {
+        let log = Self::read(path)?;
+        let text = serde_json::to_string(event).map_err(|error| RunError::Encoding {
+            name: path.display().to_string(),
+            problem: error.to_string(),
+        })?;
+        let body = text.strip_suffix('}').unwrap_or(&text);
+        let line = format!("{body},\"digest\":\"{}\"}}\n", chained(&log.digest, body));
+        if log.torn_line.is_some() {
+            return atomic::write(disk, path, (log.text + &line).as_bytes());
+        }
+        let is_new = !path.exists();
+        let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
+        disk.write(&mut file, line.as_bytes()).map_err(RunError::io(path, "write"))?;
+        disk.flush(&file).map_err(RunError::io(path, "flush"))?;
+        match path.parent() {
+            Some(folder) if is_new => {
+                disk.flush_folder(folder).map_err(RunError::io(path, "flush the folder of"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// The first 64 bits of the digest of a line's text after the digest of the line before.
+fn chained(before: &str, body: &str) -> String {
+    let whole = hexadecimal(&Sha256::digest(format!("{before}\n{body}")));
+    whole.chars().take(16).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Event, EventLog};
+    use crate::disk::Disk;
+    use crate::error::RunError;
+    use serde_json::json;
+    use std::path::Path;
+
+    fn three_lines(path: &Path) -> Vec<u8> {
+        for name in ["start", "one\ntwo", "end"] {
+            let event =
+                Event { time: "2026-01-01T00:00:00Z".into(), event: name.into(), details: json!({"π": 1}) };
+            EventLog::append(path, &Disk::default(), &event).unwrap();
+        }
+        std::fs::read(path).unwrap()
+    }
+
+    #[test]
+    fn what_is_written_is_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        assert_eq!(EventLog::read(&path).unwrap(), EventLog::default());
+        three_lines(&path);
+        let log = EventLog::read(&path).unwrap();
+        assert_eq!((log.events.len(), log.torn_line), (3, None));
+        assert_eq!(log.last("one\ntwo").unwrap().details, json!({"π": 1}));
+        assert!(log.last("two").is_none());
+    }
+
+    /// Every bit of every byte: refused with the line, but for the last line break, without which a line is torn.
+    #[test]
+    fn a_flipped_bit_anywhere_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let whole = three_lines(&path);
+        for at in 0..whole.len() {
+            for bit in 0..8 {
+                let mut bytes = whole.clone();
+                bytes[at] ^= 1 << bit;
+                match EventLog::parse(&path, &bytes) {
+                    Err(RunError::Log { line, .. }) => assert!((1..=3).contains(&line)),
+                    Ok(log) => {
+                        assert_eq!((at + 1, log.torn_line), (whole.len(), Some(3)), "byte {at} bit {bit}");
+                        assert_eq!(log.events.len(), 2);
+                    }
+                    Err(other) => panic!("{other}"),
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn cut_short_anywhere_the_whole_lines_stay_and_the_torn_one_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let whole = three_lines(&path);
+        for length in 0..whole.len() {
+            let log = EventLog::parse(&path, &whole[..length]).unwrap();
+            let lines = whole[..length].iter().filter(|byte| **byte == b'\n').count();
+            let torn = length > 0 && whole[length - 1] != b'\n';
+            assert_eq!((log.events.len(), log.torn_line), (lines, torn.then_some(lines + 1)));
+        }
+        // The next line takes the torn one's place.
+        std::fs::write(&path, &whole[..whole.len() - 5]).unwrap();
+        let event = Event { time: String::new(), event: "resume".into(), details: json!(null) };
+        EventLog::append(&path, &Disk::default(), &event).unwrap();
+        let log = EventLog::read(&path).unwrap();
+        let names: Vec<&str> = log.events.iter().map(|event| event.event.as_str()).collect();
+        assert_eq!((names, log.torn_line), (vec!["start", "one\ntwo", "resume"], None));
+    }
+
+    #[test]
+    fn a_line_taken_out_is_noticed() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let text = String::from_utf8(three_lines(&path)).unwrap();
+        let without: String =
+            text.lines().filter(|line| !line.contains("two")).map(|line| format!("{line}\n")).collect();
+        let message = EventLog::parse(&path, without.as_bytes()).unwrap_err().to_string();
+        assert!(message.contains("events.jsonl:2: the line has been changed"), "{message}");
+        assert!(message.contains("its digest is not that of what it says"), "{message}");
+    }
+}

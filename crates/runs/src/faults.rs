@@ -1,0 +1,67 @@
+//! Disks that fail, for tests: nothing here is part of the program, which is built without the feature `faults`.
+
+use std::io::{Error, Result};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// What the system says when an operation fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Refusal {
+    /// EIO: the device failed.
+    Device,
+    /// ENOSPC: the disk is full.
+    Full,
+}
+
+/// How long a disk fails.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lasts {
+    /// One operation.
+    Once,
+    /// Every operation from the first one on, as when the program is killed there.
+    ForGood,
+}
+
+/// Which operation of a disk fails, counted from 0, and how. A write that fails has written half of its bytes.
+#[derive(Debug)]
+pub struct Faults {
+    first: usize,
+    refusal: Refusal,
+    lasts: Lasts,
+    asked: AtomicUsize,
+}
+
+impl Faults {
+    /// The operation `first` fails.
+    #[must_use]
+    pub fn new(first: usize, refusal: Refusal, lasts: Lasts) -> Self {
+        Self { first, refusal, lasts, asked: AtomicUsize::new(0) }
+    }
+
+    /// No operation fails, they are only counted.
+    #[must_use]
+    pub fn none() -> Self {
+        Self::new(usize::MAX, Refusal::Device, Lasts::Once)
+    }
+
+    /// Operations asked for so far, failed ones included.
+    #[must_use]
+    pub fn asked(&self) -> usize {
+        self.asked.load(Ordering::Relaxed)
+    }
+
+    pub(crate) fn next(&self, bytes: usize) -> (usize, Result<()>) {
+        let at = self.asked.fetch_add(1, Ordering::Relaxed);
+        let fails = match self.lasts {
+            Lasts::Once => at == self.first,
+            Lasts::ForGood => at >= self.first,
+        };
+        if !fails {
+            return (bytes, Ok(()));
+        }
+        let code = match self.refusal {
+            Refusal::Device => 5,
+            Refusal::Full => 28,
+        };
+        (bytes / 2, Err(Error::from_raw_os_error(code)))
+    }
+}

@@ -1,0 +1,136 @@
+//! One program at a time in a run's folder.
+//!
+//! The lock is the system's own on an open file, so a program that is killed leaves none behind; what stands in
+//! the file only serves the message to others.
+
+use crate::disk::Disk;
+use crate::error::RunError;
+use jiff::Timestamp;
+use serde::{Deserialize, Serialize};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// Name of the file, hidden since nobody needs to read it.
+pub(crate) const LOCK: &str = ".lock";
+
+/// Who has the folder.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Holder {
+    pid: u32,
+    host: String,
+    since: String,
+}
+
+/// The lock, while it lives.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    file: File,
+}
+
+/// Closing the file is not enough: a process that another thread is just about to start holds a copy of it.
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Where this fails the file is closed all the same.
+        let _ = self.file.unlock();
+    }
+}
+
+impl Lock {
+    /// Takes the lock of a folder.
+    ///
+    /// # Errors
+    /// [`RunError::Locked`] where another program has it, or this one already.
+    pub(crate) fn take(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
+        let path = folder.join(LOCK);
+        let mut file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
+        lock(&mut file, folder)?;
+        let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
+        let text = serde_json::to_string(&holder)
+            .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
+        disk.empty(&file).map_err(RunError::io(&path, "empty"))?;
+        disk.write(&mut file, text.as_bytes()).map_err(RunError::io(&path, "write"))?;
+        Ok(Self { file })
+    }
+
+    /// Whether nobody has the folder; it is left as it is.
+    ///
+    /// # Errors
+    /// As [`Lock::take`].
+    pub(crate) fn check(folder: &Path) -> Result<(), RunError> {
+        match OpenOptions::new().read(true).write(true).open(folder.join(LOCK)) {
+            Ok(mut file) => lock(&mut file, folder),
+            // A folder without such a file, or one that may only be read.
+            Err(_) => Ok(()),
+        }
+    }
+}
+
+fn lock(file: &mut File, folder: &Path) -> Result<(), RunError> {
+    match file.try_lock() {
+        Ok(()) => Ok(()),
+        Err(TryLockError::WouldBlock) => Err(RunError::locked(folder, holder(file).as_ref())),
+        Err(TryLockError::Error(error)) => Err(RunError::io(&folder.join(LOCK), "lock")(error)),
+    }
+}
+
+/// Who has it; `None` where that has just been emptied.
+fn holder(file: &mut File) -> Option<Holder> {
+    let mut text = String::new();
+    file.seek(SeekFrom::Start(0)).ok()?;
+    file.read_to_string(&mut text).ok()?;
+    serde_json::from_str(&text).ok()
+}
+
+impl RunError {
+    fn locked(folder: &Path, holder: Option<&Holder>) -> Self {
+        let holder = holder.map_or_else(
+            || "another program".to_owned(),
+            |Holder { pid, host, since }| format!("process {pid} on {host} since {since}"),
+        );
+        Self::Locked { path: folder.to_owned(), holder }
+    }
+}
+
+/// The machine's name, where the system tells.
+fn host() -> String {
+    ["/proc/sys/kernel/hostname", "/etc/hostname"]
+        .iter()
+        .find_map(|path| std::fs::read_to_string(path).ok())
+        .map(|name| name.trim().to_owned())
+        .filter(|name| !name.is_empty())
+        .unwrap_or_else(|| "this machine".to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LOCK, Lock};
+    use crate::disk::Disk;
+
+    #[test]
+    fn the_second_is_refused_by_the_firsts_name_until_that_is_gone() {
+        let folder = tempfile::tempdir().unwrap();
+        Lock::check(folder.path()).unwrap();
+        assert!(!folder.path().join(LOCK).exists());
+        let first = Lock::take(&Disk::default(), folder.path()).unwrap();
+        for refused in [Lock::take(&Disk::default(), folder.path()).map(|_| ()), Lock::check(folder.path())] {
+            let message = refused.unwrap_err().to_string();
+            assert!(message.contains(&format!("process {} on ", std::process::id())), "{message}");
+            assert!(message.contains(" since 20"), "{message}");
+        }
+        drop(first);
+        Lock::check(folder.path()).unwrap();
+        Lock::take(&Disk::default(), folder.path()).unwrap();
+    }
+
+    #[test]
+    fn what_stands_in_the_file_decides_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(LOCK), "process 1 for ever").unwrap();
+        let lock = Lock::take(&Disk::default(), folder.path()).unwrap();
+        std::fs::write(folder.path().join(LOCK), "").unwrap();
+        let message = Lock::check(folder.path()).unwrap_err().to_string();
+        assert!(message.contains("another program is working in it"), "{message}");
+        drop(lock);
+    }
+}

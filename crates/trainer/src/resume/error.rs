@@ -1,0 +1,37 @@
+//! Why a run cannot be resumed or verified.
+
+use thiserror::Error;
+
+/// Why a run cannot be resumed or verified.
+#[derive(Debug, Error)]
+pub(crate) enum ResumeError {
+    #[error(
+        "{folder}: there is no run in it to go on with or to run again: its events.jsonl does not tell how one began; name \
+         the folder of a run"
+    )]
+    NoRun { folder: String },
+    #[error(
+        "{file}: has been changed since the run began: its digest is not that in events.jsonl; bring it back as it was, \
+         or begin anew in another folder"
+    )]
+    ConfigTouched { file: String },
+    #[error(
+        "{folder}: this run was begun with other settings: {differences}; resume with those it was begun with \
+         (`trainer {folder}/config.toml --out {folder} --resume`), or name another folder with --out"
+    )]
+    OtherConfig { folder: String, differences: String },
+    #[error(
+        "{folder}: this run was begun by version {begun} of the program, this is {version}, whose digits may be others; \
+         resume with the version that began it, or begin anew in another folder"
+    )]
+    OtherVersion { folder: String, begun: String, version: &'static str },
+    #[error(
+        "{file}: the record is not the one that the run was made with: expected the digest {expected}, found {found}; put the \
+         old record back, or begin anew in another folder"
+    )]
+    OtherData { file: String, expected: String, found: String },
+    #[error("{file}: the checkpoint belongs to another run; take it away and resume again")]
+    ForeignCheckpoint { file: String },
+    #[error("{folder}: this run is not finished, so there is nothing to verify; finish it with --resume")]
+    Unfinished { folder: String },
+}

@@ -1,0 +1,205 @@
+//! Beginning a run, or going on with one that was begun: to the bit what it would have been in one go.
+
+mod difference;
+mod error;
+mod ledger;
+#[cfg(test)]
+mod tests;
+
+use crate::Outcome;
+use crate::cli::ExperimentArguments;
+use crate::console;
+use crate::environment::{self, Environment};
+use crate::error::TrainerError;
+use crate::run::new_folder;
+use difference::differences;
+pub(crate) use error::ResumeError;
+pub(crate) use ledger::{Ledger, Resumed};
+use runs::{RunFolder, digest};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+/// The events that say how far a run is.
+const START: &str = "start";
+const RESUME: &str = "resume";
+const INTERRUPTED: &str = "interrupted";
+const END: &str = "end";
+
+/// A record file of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct DataFile {
+    /// As configured.
+    pub(crate) path: String,
+    pub(crate) digest: String,
+}
+
+/// What a run is made of; whoever resumes it has to bring the same.
+pub(crate) struct Beginning<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) seed: u64,
+    /// The resolved configuration, which becomes `config.toml`.
+    pub(crate) config: String,
+    pub(crate) data: Vec<DataFile>,
+    pub(crate) threads: usize,
+}
+
+/// The details of the event `start`: what the run is made of, in digests.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Start {
+    name: String,
+    seed: u64,
+    /// Version of the program.
+    version: String,
+    /// Digest of `config.toml`.
+    config: String,
+    pub(crate) data: Vec<DataFile>,
+}
+
+/// A run that is open for work, or one that needs none.
+pub(crate) enum Begun {
+    Open(RunFolder),
+    Finished(Outcome),
+}
+
+/// Makes the run's folder, or goes on with the one that the arguments name and `--resume` allows.
+pub(crate) fn begin(
+    arguments: &ExperimentArguments,
+    beginning: &Beginning<'_>,
+) -> Result<Begun, TrainerError> {
+    let Some(out) = arguments.out.as_ref().filter(|_| arguments.resume) else {
+        return start(new_folder(arguments, beginning.name)?, beginning).map(Begun::Open);
+    };
+    let folder = RunFolder::resume_on(&arguments.disk, out)?;
+    let log = folder.events()?;
+    if let (Some(line), false) = (log.torn_line, arguments.output.quiet) {
+        let path = out.display();
+        console::remark(&format!(
+            "{path}/events.jsonl:{line}: a crash cut the last line short; it is left out"
+        ));
+    }
+    let Some(begun) = started(&folder)? else {
+        // Killed before anything was computed, or nothing there yet.
+        return match folder.holds_only(&["config.toml", "environment.json", "events.jsonl"])? {
+            true => start(folder, beginning).map(Begun::Open),
+            false => Err(ResumeError::NoRun { folder: out.display().to_string() }.into()),
+        };
+    };
+    check(&folder, &begun, beginning)?;
+    if log.last(END).is_some() {
+        return finished(arguments, &folder).map(Begun::Finished);
+    }
+    check_data(&begun, &beginning.data)?;
+    let ground = environment::changes(&folder.read("environment.json")?, &environment_of(beginning));
+    if !arguments.output.quiet {
+        console::remark(&format!("resuming {}", out.display()));
+        for change in &ground {
+            console::remark(&format!("note: {change}; last digits may differ from those of a run in one go"));
+        }
+    }
+    folder.record_event(RESUME, &json!({ "changes": ground }))?;
+    Ok(Begun::Open(folder))
+}
+
+/// Begins a run in a folder of its own.
+pub(crate) fn start(folder: RunFolder, beginning: &Beginning<'_>) -> Result<RunFolder, TrainerError> {
+    let config = &beginning.config;
+    folder.write("config.toml", config.as_bytes())?;
+    folder.write_json("environment.json", &environment_of(beginning))?;
+    let start = Start {
+        name: beginning.name.to_owned(),
+        seed: beginning.seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        config: digest(config.as_bytes()),
+        data: beginning.data.clone(),
+    };
+    folder.record_event(START, &start)?;
+    Ok(folder)
+}
+
+fn environment_of(beginning: &Beginning<'_>) -> Environment {
+    let digests: Vec<&str> = beginning.data.iter().map(|data| data.digest.as_str()).collect();
+    Environment::new(beginning.threads, &digests.join(" "))
+}
+
+/// What a run was begun with; `None` where its log does not say that it was.
+pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError> {
+    let Some(event) = folder.events()?.last(START).cloned() else { return Ok(None) };
+    let begun = serde_json::from_value(event.details);
+    begun.map(Some).map_err(|_| ResumeError::NoRun { folder: folder.path().display().to_string() }.into())
+}
+
+/// Whether the last word of a run's log is that it is finished.
+pub(crate) fn is_finished(folder: &RunFolder) -> Result<bool, TrainerError> {
+    Ok(folder.events()?.last(END).is_some())
+}
+
+/// The configuration of a run, if it is still what the run was begun with.
+pub(crate) fn config_of(folder: &RunFolder, begun: &Start) -> Result<String, TrainerError> {
+    let bytes = folder.read("config.toml")?;
+    let touched =
+        || ResumeError::ConfigTouched { file: folder.path().join("config.toml").display().to_string() };
+    if digest(&bytes) != begun.config {
+        return Err(touched().into());
+    }
+    Ok(String::from_utf8(bytes).map_err(|_| touched())?)
+}
+
+/// That this program with this configuration began the run.
+fn check(folder: &RunFolder, begun: &Start, beginning: &Beginning<'_>) -> Result<(), TrainerError> {
+    let shown = folder.path().display().to_string();
+    let version = env!("CARGO_PKG_VERSION");
+    if begun.version != version {
+        return Err(ResumeError::OtherVersion { folder: shown, begun: begun.version.clone(), version }.into());
+    }
+    let differences = differences(&config_of(folder, begun)?, &beginning.config)?;
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(ResumeError::OtherConfig { folder: shown, differences: differences.join("; ") }.into())
+}
+
+/// That the records are those that the run was begun with.
+pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeError> {
+    for expected in &begun.data {
+        let found = data.iter().find(|found| found.path == expected.path);
+        if found != Some(expected) {
+            return Err(ResumeError::OtherData {
+                file: expected.path.clone(),
+                expected: expected.digest.clone(),
+                found: found.map_or_else(|| "nothing".to_owned(), |found| found.digest.clone()),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A finished run is shown as it is; checkpoints that a kill left after its last event are taken away.
+fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
+    folder.remove_checkpoints()?;
+    if arguments.output.json {
+        console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
+    } else if !arguments.output.quiet {
+        console::result(&format!("{}: this run is finished; nothing was changed", folder.path().display()));
+    }
+    Ok(Outcome::Done)
+}
+
+/// Writes the last event: that the run is finished, or where to go on. A finished run needs no checkpoints.
+pub(crate) fn end(
+    folder: &RunFolder,
+    interrupted: bool,
+    quiet: bool,
+    details: &impl Serialize,
+) -> Result<(), TrainerError> {
+    if interrupted {
+        folder.record_event(INTERRUPTED, details)?;
+        if !quiet {
+            let shown = folder.path().display();
+            console::remark(&format!("interrupted; go on with the same command, --out {shown} and --resume"));
+        }
+        return Ok(());
+    }
+    folder.record_event(END, details)?;
+    folder.remove_checkpoints()?;
+    Ok(())
+}
