@@ -4,12 +4,16 @@
 //! entry that is handed in; this crate knows no estimator.
 
 mod experiment;
+mod json_schema;
+mod nominal;
 mod prediction;
 mod schema;
 
 pub use experiment::{
     Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,
 };
+pub use json_schema::{compare_schema, estimate_schema, predict_schema};
+pub use nominal::{NOMINAL, StatedNominal, resolve_nominal};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

@@ -7,9 +7,11 @@
 //! The way of a configuration: text → [`Document`] (leaves with their origin) → overrides applied →
 //! [`Resolved`] (every key known, typed, in range, defaults filled in) → a plain struct by serde.
 
+mod base;
 mod document;
 mod error;
 mod field;
+pub mod json_schema;
 mod resolved;
 
 pub use document::{Document, Leaf, Origin};

@@ -1,6 +1,9 @@
 //! The arguments.
 
+use crate::configured::ConfigArguments;
 use crate::diagnose::arguments::DiagnoseArguments;
+use crate::explain::ExplainArguments;
+use crate::schema::Purpose;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -23,6 +26,9 @@ Examples:
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
+  trainer check configs/paper.toml seed=3         would it run? nothing is run or written
+  trainer explain fit.tolerance_percent configs/pinn.toml
+  trainer schema > ringdown.schema.json           for editors: #:schema ringdown.schema.json
   trainer list estimators
   trainer list effects
   trainer report reports/runs/RUN
@@ -73,8 +79,12 @@ pub(crate) struct Output {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Checks a configuration and that its data can be read; runs and writes nothing
+    Check(ConfigArguments),
     /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
     Diagnose(Box<DiagnoseArguments>),
+    /// Says what is in force in a configuration, where it comes from, and what it means
+    Explain(ExplainArguments),
     /// Lists what there is to choose from
     List {
         /// What to list
@@ -82,6 +92,12 @@ pub(crate) enum Command {
         what: Listing,
         #[command(flatten)]
         output: Output,
+    },
+    /// Prints what a configuration may hold, as JSON Schema for editors
+    Schema {
+        /// What the file is for [default: what its key `task` says]
+        #[arg(value_enum)]
+        purpose: Option<Purpose>,
     },
     /// Makes records of systems drawn from priors, their truths sealed in a folder apart
     Simulate(ExperimentArguments),

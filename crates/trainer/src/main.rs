@@ -3,13 +3,16 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod cautions;
+mod check;
 mod cli;
 mod compare;
+mod configured;
 mod console;
 mod diagnose;
 mod environment;
 mod error;
 mod estimate;
+mod explain;
 mod fit;
 mod input;
 mod interrupt;
@@ -19,6 +22,7 @@ mod predict;
 mod progress;
 mod rerender;
 mod run;
+mod schema;
 mod simulate;
 mod summary;
 mod trials;
@@ -61,8 +65,11 @@ impl Outcome {
 
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
+        Some(Command::Check(arguments)) => check::command(&arguments),
+        Some(Command::Explain(arguments)) => explain::command(&arguments),
         Some(Command::List { what, output }) => list::list(what, output),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
+        Some(Command::Schema { purpose }) => schema::command(purpose),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),

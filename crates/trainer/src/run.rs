@@ -3,6 +3,7 @@
 use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::compare::compare;
+use crate::configured::read_document;
 use crate::console;
 use crate::environment::Environment;
 use crate::error::TrainerError;
@@ -123,15 +124,7 @@ impl Output {
 /// Reads the configuration that the arguments name, overrides applied.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
-        file: file.clone(),
-        problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
-    })?;
-    let mut document = Document::parse(&file, &text)?;
-    for argument in &arguments.overrides {
-        document.apply_override(argument)?;
-    }
+    let mut document = read_document(path, &arguments.overrides)?;
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
