@@ -14,10 +14,13 @@
 
 mod architecture;
 mod bad_input;
+mod cite;
 mod comparison;
 mod diagnose;
 mod documents;
 mod explain;
+mod exports;
+mod fuzz_regressions;
 mod honesty;
 mod json_schema;
 mod measured_records;

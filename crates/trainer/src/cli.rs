@@ -1,9 +1,11 @@
 //! The arguments.
 
+use crate::cite::CiteArguments;
 use crate::configured::ConfigArguments;
 use crate::diagnose::arguments::DiagnoseArguments;
 use crate::explain::ExplainArguments;
 use crate::schema::Purpose;
+use crate::tracking::ExportArguments;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -32,6 +34,8 @@ Examples:
   trainer list estimators
   trainer list effects
   trainer report reports/runs/RUN
+  trainer cite reports/runs/RUN                   the literature that it follows, as BibTeX
+  trainer export reports/runs/RUN --to tensorboard,mlflow
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
 usage; 130 interrupted, the best so far is saved."
@@ -81,6 +85,8 @@ pub(crate) struct Output {
 pub(crate) enum Command {
     /// Checks a configuration and that its data can be read; runs and writes nothing
     Check(ConfigArguments),
+    /// Prints the literature that a run, or an estimator, follows, as BibTeX
+    Cite(CiteArguments),
     /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
     Diagnose(Box<DiagnoseArguments>),
     /// Says what is in force in a configuration, where it comes from, and what it means
@@ -103,6 +109,8 @@ pub(crate) enum Command {
     Simulate(ExperimentArguments),
     /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
     Trials(Box<TrialsArguments>),
+    /// Writes finished runs for TensorBoard or MLflow
+    Export(ExportArguments),
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder

@@ -81,6 +81,8 @@ pub(crate) enum TrainerError {
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
+    #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
+    NoRun { folder: String, problem: String },
     /// Threads or signal handlers could not be set up.
     #[error("cannot set up {what}: {problem}")]
     System { what: &'static str, problem: String },
@@ -110,6 +112,7 @@ impl TrainerError {
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
+            | Self::NoRun { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

@@ -4,6 +4,7 @@
 
 mod cautions;
 mod check;
+mod cite;
 mod cli;
 mod compare;
 mod configured;
@@ -25,6 +26,7 @@ mod run;
 mod schema;
 mod simulate;
 mod summary;
+mod tracking;
 mod trials;
 
 use clap::Parser;
@@ -66,12 +68,14 @@ impl Outcome {
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
         Some(Command::Check(arguments)) => check::command(&arguments),
+        Some(Command::Cite(arguments)) => cite::command(&arguments),
         Some(Command::Explain(arguments)) => explain::command(&arguments),
         Some(Command::List { what, output }) => list::list(what, output),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
+        Some(Command::Export(arguments)) => tracking::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }
