@@ -93,7 +93,7 @@ fn masked(content: &[u8]) -> u32 {
         .collect();
     let crc =
         !content.iter().fold(!0u32, |c, byte| table[((c ^ u32::from(*byte)) & 0xff) as usize] ^ (c >> 8));
-    ((crc >> 15) | (crc << 17)).wrapping_add(0xa282_ead8)
+    crc.rotate_right(15).wrapping_add(0xa282_ead8)
 }
 
 /// Scalars by tag: step and value. Every checksum is held against the content.
