@@ -4,8 +4,10 @@
 //! meaning, source of the default. The checks, the resolved configuration and the help text all come
 //! from that declaration, so that they cannot part from each other.
 //!
-//! The way of a configuration: text → [`Document`] (leaves with their origin) → overrides applied →
+//! The way of a configuration: text → [`Document`] (leaves with their origin) → put on its bases → overrides applied →
 //! [`Resolved`] (every key known, typed, in range, defaults filled in) → a plain struct by serde.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod base;
 mod document;
@@ -20,5 +22,4 @@ pub use field::{Default, Field, Kind, Section};
 pub use resolved::{Resolved, Setting};
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used)]
 mod tests;
