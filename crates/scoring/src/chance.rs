@@ -125,6 +125,8 @@ mod tests {
     #[test]
     fn an_interval_of_clusters_by_hand() {
         let clusters = [(8, 10), (9, 10), (10, 10), (7, 10), (5, 10), (9, 10)];
+        // An empty one more is none.
+        assert_eq!(clustered_interval(&[&clusters[..], &[(0, 0)]].concat()), clustered_interval(&clusters));
         let [low, high] = clustered_interval(&clusters).unwrap();
         assert!(
             (low - 0.549_484_862_2).abs() < 1e-7 && (high - 0.947_365_500_7).abs() < 1e-7,

@@ -52,6 +52,7 @@ mod tests {
     fn a_twentieth_of_a_percent() {
         assert!((error_percent(1.0005, 1.0) - 0.05).abs() < 1e-12);
         assert!((error_percent(-1.0005, -1.0) - 0.05).abs() < 1e-12);
+        assert!((error_percent(0.250_125, 0.25) - 0.05).abs() < 1e-12);
     }
 
     #[test]
