@@ -3,11 +3,16 @@
 //! Pure: text in, checked settings out. What an estimator's section may hold comes from the registry's
 //! entry that is handed in; this crate knows no estimator.
 
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
 mod experiment;
 mod json_schema;
 mod nominal;
 mod prediction;
 mod schema;
+
+#[cfg(test)]
+mod tests;
 
 pub use experiment::{
     Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline, Single, Task, resolve,
