@@ -14,10 +14,15 @@
 
 mod architecture;
 mod bad_input;
+mod cite;
 mod comparison;
 mod diagnose;
 mod documents;
+mod explain;
+mod exports;
+mod fuzz_regressions;
 mod honesty;
+mod json_schema;
 mod listing;
 mod measured_records;
 mod nist;
@@ -25,6 +30,7 @@ mod prediction;
 mod recipe;
 mod resuming;
 mod run_folders;
+mod schema;
 mod simulation;
 mod support;
 mod sweep;

@@ -6,14 +6,21 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod experiment;
+mod json_schema;
+mod nominal;
 mod prediction;
 mod schema;
 pub mod sweep;
+
+#[cfg(test)]
+mod tests;
 
 pub use experiment::{
     CheckpointSettings, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline,
     Single, Task, resolve,
 };
+pub use json_schema::{compare_schema, estimate_schema, predict_schema};
+pub use nominal::{NOMINAL, StatedNominal, resolve_nominal};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

@@ -122,7 +122,17 @@ pub enum ScatterKind {
     Logarithm,
 }
 
-const KINDS: &[&str] = &["exponential", "coulomb-viscous", "viscous-quadratic", "record"];
+/// Kinds of problems.
+pub(crate) const KINDS: &[&str] = &["exponential", "coulomb-viscous", "viscous-quadratic", "record"];
+
+/// Every section but those of the problems.
+pub(crate) const PREDICT_SECTIONS: &[Section<'static>] = &[
+    Section { name: "", fields: TOP },
+    Section { name: "predict", fields: PREDICT },
+    Section { name: "checkpoint", fields: CHECKPOINT },
+    Section { name: "envelope.paper", fields: PAPER },
+    Section { name: "envelope.recommended", fields: RECOMMENDED },
+];
 
 const PREDICT: &[Field] = &[
     Field {
@@ -308,16 +318,7 @@ pub fn resolve_prediction(
     let names: Vec<String> = ids.iter().map(|id| format!("problem.{id}")).collect();
     let fields: Vec<Vec<Field>> = names.iter().map(|name| fields(document, name)).collect();
     let own = names.iter().zip(&fields).map(|(name, fields)| Section { name, fields });
-    let sections: Vec<Section<'_>> = [
-        Section { name: "", fields: TOP },
-        Section { name: "predict", fields: PREDICT },
-        Section { name: "checkpoint", fields: CHECKPOINT },
-        Section { name: "envelope.paper", fields: PAPER },
-        Section { name: "envelope.recommended", fields: RECOMMENDED },
-    ]
-    .into_iter()
-    .chain(own)
-    .collect();
+    let sections: Vec<Section<'_>> = PREDICT_SECTIONS.iter().copied().chain(own).collect();
     let resolved = Resolved::new(document, &sections)?;
 
     let top: Top = resolved.section("")?;
@@ -345,9 +346,12 @@ pub fn resolve_prediction(
     })
 }
 
-/// The keys that a problem may have depend on its kind.
 fn fields(document: &Document, section: &str) -> Vec<Field> {
-    let kind = document.get(&format!("{section}.kind")).and_then(|leaf| leaf.value.as_str());
+    fields_of(document.get(&format!("{section}.kind")).and_then(|leaf| leaf.value.as_str()))
+}
+
+/// The keys that a problem may have depend on its kind.
+pub(crate) fn fields_of(kind: Option<&str>) -> Vec<Field> {
     let common = [KIND, TITLE];
     let own: Vec<Field> = match kind {
         Some("record") => {

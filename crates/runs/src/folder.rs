@@ -284,6 +284,30 @@ impl RunFolder {
         self.disk.remove_folder(&path).map_err(RunError::io(&path, "take away"))
     }
 
+    /// When the run began and when it last recorded an event, in milliseconds since 1970, from `events.jsonl`.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where there is no such file; [`RunError::Encoding`] where it tells no time.
+    pub fn span_ms(&self) -> Result<(i64, i64), RunError> {
+        #[derive(serde::Deserialize)]
+        struct Line {
+            time: String,
+        }
+        let name = "events.jsonl";
+        let path = self.path.join(name);
+        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path, "read"))?;
+        // A crash can have cut the last line short.
+        let times = text.lines().filter_map(|line| serde_json::from_str::<Line>(line).ok());
+        let times: Vec<i64> = times
+            .filter_map(|line| line.time.parse::<Timestamp>().ok())
+            .map(Timestamp::as_millisecond)
+            .collect();
+        times.first().copied().zip(times.last().copied()).ok_or_else(|| RunError::Encoding {
+            name: name.to_owned(),
+            problem: "no line of it has a time".to_owned(),
+        })
+    }
+
     /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
     /// affair.
     ///
@@ -379,6 +403,17 @@ mod tests {
         std::fs::write(&file, "x").unwrap();
         let message = RunFolder::create_at(&file).unwrap_err().to_string();
         assert!(message.contains("file: cannot create"), "{message}");
+    }
+
+    #[test]
+    fn a_run_spans_its_events_and_a_line_cut_short_is_none() {
+        let root = tempfile::tempdir().unwrap();
+        let line = |second: u8| format!("{{\"time\":\"2026-01-01T00:00:{second:02}.5Z\",\"event\":\"x\"}}\n");
+        std::fs::write(root.path().join("events.jsonl"), line(1) + &line(3) + "{\"time\":").unwrap();
+        let (began, ended) = RunFolder::open(root.path()).span_ms().unwrap();
+        assert_eq!((began, ended - began), (1_767_225_601_500, 2000));
+        std::fs::write(root.path().join("events.jsonl"), "").unwrap();
+        assert!(matches!(RunFolder::open(root.path()).span_ms(), Err(RunError::Encoding { .. })));
     }
 
     #[test]

@@ -114,8 +114,24 @@ mod tests {
         // Where all clusters have the same share, all trials count.
         let almost: Vec<(usize, usize)> = (0..100).map(|i| (19 - i % 2, 20)).collect();
         assert_eq!(clustered_interval(&almost), Some(binomial_interval(1850.0, 2000.0)));
-        // None missed: one trial a cluster.
+        // Exactly the same share, so that no variance is seen: one trial a cluster, as where none is missed.
+        assert_eq!(clustered_interval(&[(10, 20); 60]), Some(binomial_interval(30.0, 60.0)));
+        assert!(clustered_interval(&[(1, 2); 5]).is_some());
         assert_eq!(clustered_interval(&[(20, 20); 60]), Some(binomial_interval(60.0, 60.0)));
+    }
+
+    /// Six clusters of ten, worked out with 25 digits: variance 6/5·16/60², quantiles of Student's t with 59 and
+    /// 5 degrees of freedom, 18.178 effective trials, and their interval by the incomplete beta function.
+    #[test]
+    fn an_interval_of_clusters_by_hand() {
+        let clusters = [(8, 10), (9, 10), (10, 10), (7, 10), (5, 10), (9, 10)];
+        // An empty one more is none.
+        assert_eq!(clustered_interval(&[&clusters[..], &[(0, 0)]].concat()), clustered_interval(&clusters));
+        let [low, high] = clustered_interval(&clusters).unwrap();
+        assert!(
+            (low - 0.549_484_862_2).abs() < 1e-7 && (high - 0.947_365_500_7).abs() < 1e-7,
+            "{low} {high}"
+        );
     }
 
     /// Of many samples of clustered trials about 95 % hold the true share.

@@ -52,6 +52,7 @@ mod tests {
     fn a_twentieth_of_a_percent() {
         assert!((error_percent(1.0005, 1.0) - 0.05).abs() < 1e-12);
         assert!((error_percent(-1.0005, -1.0) - 0.05).abs() < 1e-12);
+        assert!((error_percent(0.250_125, 0.25) - 0.05).abs() < 1e-12);
     }
 
     #[test]
@@ -75,6 +76,8 @@ mod tests {
     fn the_median_of_even_and_odd_counts() {
         assert!((median([3.0, 1.0, 2.0]) - 2.0).abs() < 1e-12);
         assert!((median([4.0, 1.0, 2.0, 3.0]) - 2.5).abs() < 1e-12);
+        assert!((median([1.0, 2.0]) - 1.5).abs() < 1e-12);
+        assert!((median([5.0, 1.0, 4.0, 2.0, 3.0]) - 3.0).abs() < 1e-12);
         assert!(median([]).is_nan());
     }
 }

@@ -113,6 +113,20 @@ mod tests {
         }
     }
 
+    /// Away from 0 and from a standard deviation of 1, where a product is no quotient and a sum no difference.
+    #[test]
+    fn a_gaussian_is_measured_from_its_mean_in_standard_deviations() {
+        let peaks = [peak(3.0, 4.0, Some(0.5)), peak(3.0, 3.0, Some(0.5))];
+        let (two_off, none_off) = (0.053_990_966_513_188_06_f64 / 0.5, 0.398_942_280_401_432_7_f64 / 0.5);
+        let expected = f64::midpoint(two_off.ln(), none_off.ln());
+        assert!((mean_log_density(&peaks).unwrap() - expected).abs() < 1e-14);
+        let within = |predicted: f64| peak(3.0, predicted, Some(0.5)).is_within_95();
+        assert_eq!(
+            [within(3.97), within(2.03), within(3.99), within(2.01)],
+            [true, true, false, false].map(Some)
+        );
+    }
+
     #[test]
     fn densities_and_intervals_of_a_gaussian() {
         // One standard deviation off: ln of 0.24197072451914337/0.5.

@@ -53,6 +53,8 @@ pub struct Document {
     leaves: Vec<Leaf>,
     /// Dotted names of the tables that the file opens, empty ones among them.
     tables: Vec<String>,
+    /// Dotted names of the lists of tables.
+    lists: Vec<String>,
 }
 
 impl Document {
@@ -142,6 +144,37 @@ impl Document {
         self.tables.retain(|known| !lies_below(known, table));
     }
 
+    /// Takes a leaf out.
+    pub(crate) fn take(&mut self, key: &str) -> Option<Leaf> {
+        let place = self.leaves.iter().position(|leaf| leaf.key == key)?;
+        Some(self.leaves.remove(place))
+    }
+
+    /// This document on top of another: its leaves displace those below, and its lists of tables whole lists.
+    pub(crate) fn over(self, below: Self) -> Self {
+        let mut merged = Self { file: self.file, ..below };
+        for list in &self.lists {
+            merged.leaves.retain(|leaf| !lies_below(&leaf.key, list));
+            merged.tables.retain(|table| !lies_below(table, list));
+        }
+        for table in self.tables {
+            merged.leaves.retain(|leaf| leaf.key != table);
+            if !merged.tables.contains(&table) {
+                merged.tables.push(table);
+            }
+        }
+        for list in self.lists {
+            merged.leaves.retain(|leaf| leaf.key != list);
+            if !merged.lists.contains(&list) {
+                merged.lists.push(list);
+            }
+        }
+        for leaf in self.leaves {
+            merged.set(leaf);
+        }
+        merged
+    }
+
     /// Puts a leaf in place of what it displaces: the leaf of that key, a table of that name with all that is
     /// below it, or a value where the key now needs a table.
     fn set(&mut self, leaf: Leaf) {
@@ -166,6 +199,7 @@ impl Document {
                 self.tables.push(key.clone());
                 self.collect(text, &key, inner)?;
             } else if let Some(inner) = tables(value.get_ref()) {
+                self.lists.push(key.clone());
                 for (number, inner) in inner.into_iter().enumerate() {
                     let key = format!("{key}.{}", number + 1);
                     self.tables.push(key.clone());

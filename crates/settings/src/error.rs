@@ -76,6 +76,32 @@ pub enum SettingsError {
         /// The argument as given.
         argument: String,
     },
+    /// A file that another stands on is not to be had.
+    #[error("{origin}: the base {file} cannot be read: {problem}")]
+    Base {
+        /// Where it was named.
+        origin: Origin,
+        /// The file.
+        file: String,
+        /// Why it cannot be read.
+        problem: String,
+    },
+    /// A file stands on itself.
+    #[error("{origin}: `base` leads back to where it started: {}", files.join(", "))]
+    BaseCircle {
+        /// Where the way down closes.
+        origin: Origin,
+        /// The files on the way.
+        files: Vec<String>,
+    },
+    /// Values that are each as declared and do not go together.
+    #[error("{file}: cannot be used: {problem}")]
+    Refused {
+        /// Name of the file.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
     /// The checked table does not fit the struct that reads it: a fault of the program.
     #[error(
         "section `{section}` does not fit its declaration: {problem} (a fault of the program, please report it)"

@@ -79,6 +79,17 @@ impl Resolved {
         &self.settings
     }
 
+    /// The setting with a dotted key.
+    ///
+    /// # Errors
+    /// [`SettingsError::UnknownKey`] with the key that is spelled most alike.
+    pub fn setting(&self, key: &str) -> Result<&Setting, SettingsError> {
+        self.settings
+            .iter()
+            .find(|setting| setting.key() == key)
+            .ok_or_else(|| unknown_key(key, Origin::Override(key.to_owned()), &self.settings))
+    }
+
     /// Reads one section into a struct.
     ///
     /// # Errors

@@ -16,6 +16,7 @@ mod envelope_draw;
 mod error;
 mod generate;
 mod generation_error;
+mod json_schema;
 mod number;
 mod plan;
 mod prior;
@@ -32,5 +33,6 @@ pub use envelope_draw::{EnvelopeSimulation, EnvelopeTruth, SMALLEST_IN_SCATTER, 
 pub use error::SimulationError;
 pub use generate::{MOST_DECIMALS, MOST_SAMPLES, csv_text, generate};
 pub use generation_error::GenerationError;
+pub use json_schema::simulate_schema;
 pub use plan::Plan;
 pub use prior::Prior;

@@ -105,7 +105,7 @@ struct EffectKeys {
 }
 
 /// Keys of the nominal oscillator that are never drawn.
-const NOMINAL_CHOICES: [Field; 2] = [
+pub(crate) const NOMINAL_CHOICES: [Field; 2] = [
     Field {
         key: "coordinate",
         kind: Kind::Choice(&["angle", "displacement"]),
@@ -122,7 +122,7 @@ const NOMINAL_CHOICES: [Field; 2] = [
     },
 ];
 
-const PROBABILITY: Field = Field {
+pub(crate) const PROBABILITY: Field = Field {
     key: "probability",
     kind: Kind::Float { min: 0.0, max: 1.0 },
     default: Default::Float(1.0),
@@ -130,14 +130,14 @@ const PROBABILITY: Field = Field {
     ..PLAIN
 };
 
-const EFFECT_ID: Field = Field {
+pub(crate) const EFFECT_ID: Field = Field {
     key: "id",
     default: Default::Required,
     meaning: "The effect, as `trainer list effects` names it.",
     ..PLAIN
 };
 
-fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
+pub(crate) fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
     use dynamics::Quantity::{Damping, Inertia, Position, Stiffness};
     let key = |key, range, default, quantity: dynamics::Quantity, meaning| NumberKey {
         key,
@@ -167,7 +167,7 @@ fn nominal_keys(units: ConfiguredUnits) -> [NumberKey; 5] {
     ]
 }
 
-fn start_keys(units: ConfiguredUnits) -> [NumberKey; 2] {
+pub(crate) fn start_keys(units: ConfiguredUnits) -> [NumberKey; 2] {
     let key = |key, default, quantity: dynamics::Quantity, meaning| NumberKey {
         key,
         range: Range::ANY,
@@ -181,7 +181,7 @@ fn start_keys(units: ConfiguredUnits) -> [NumberKey; 2] {
     ]
 }
 
-fn noise_key(units: ConfiguredUnits) -> NumberKey {
+pub(crate) fn noise_key(units: ConfiguredUnits) -> NumberKey {
     NumberKey {
         key: "noise",
         range: Range::NON_NEGATIVE,
@@ -191,7 +191,7 @@ fn noise_key(units: ConfiguredUnits) -> NumberKey {
     }
 }
 
-fn parameter_keys(description: &Description, units: ConfiguredUnits) -> Vec<NumberKey> {
+pub(crate) fn parameter_keys(description: &Description, units: ConfiguredUnits) -> Vec<NumberKey> {
     let key = |parameter: &dynamics::Parameter| NumberKey {
         key: parameter.name,
         range: parameter.range,
@@ -294,13 +294,13 @@ impl Plan {
 
 /// The units that numbers are in, for messages and comments: per inertia where that is given as exactly 1.
 #[derive(Debug, Clone, Copy)]
-struct ConfiguredUnits {
+pub(crate) struct ConfiguredUnits {
     units: Units,
     observed: Observed,
 }
 
 impl ConfiguredUnits {
-    fn of_document(document: &Document, nominal_table: &str) -> Self {
+    pub(crate) fn of_document(document: &Document, nominal_table: &str) -> Self {
         let value = |key: &str| document.get(key).map(|leaf| &leaf.value);
         let coordinate = match value(&dotted(nominal_table, "coordinate")).and_then(|value| value.as_str()) {
             Some("displacement") => Coordinate::Displacement,

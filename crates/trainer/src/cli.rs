@@ -1,8 +1,13 @@
 //! The arguments.
 
+use crate::cite::CiteArguments;
+use crate::configured::ConfigArguments;
 use crate::diagnose::arguments::DiagnoseArguments;
+use crate::explain::ExplainArguments;
+use crate::schema::Purpose;
 use crate::side_by_side::arguments::CompareArguments;
 use crate::sweep::arguments::SweepArguments;
+use crate::tracking::ExportArguments;
 use crate::trials::arguments::TrialsArguments;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use runs::Disk;
@@ -30,11 +35,16 @@ Examples:
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable
   trainer compare 'reports/runs/pinn-*'           runs side by side
+  trainer check configs/paper.toml seed=3         would it run? nothing is run or written
+  trainer explain fit.tolerance_percent configs/pinn.toml
+  trainer schema > ringdown.schema.json           for editors: #:schema ringdown.schema.json
   trainer list estimators
   trainer list effects
   trainer list runs                               what lies below reports/runs
   trainer report reports/runs/RUN
   trainer verify reports/runs/RUN                 runs it again: identical, or where it differs
+  trainer cite reports/runs/RUN                   the literature that it follows, as BibTeX
+  trainer export reports/runs/RUN --to tensorboard,mlflow
 
 Exit codes: 0 done; 1 done, but a stated check failed; 2 wrong input or
 usage; 130 interrupted (Ctrl-C, SIGTERM, q and Enter), the best so far is
@@ -89,8 +99,14 @@ pub(crate) struct Output {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Checks a configuration and that its data can be read; runs and writes nothing
+    Check(ConfigArguments),
+    /// Prints the literature that a run, or an estimator, follows, as BibTeX
+    Cite(CiteArguments),
     /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
     Diagnose(Box<DiagnoseArguments>),
+    /// Says what is in force in a configuration, where it comes from, and what it means
+    Explain(ExplainArguments),
     /// Lists what there is to choose from
     List {
         /// What to list
@@ -101,6 +117,12 @@ pub(crate) enum Command {
         folder: Option<PathBuf>,
         #[command(flatten)]
         output: Output,
+    },
+    /// Prints what a configuration may hold, as JSON Schema for editors
+    Schema {
+        /// What the file is for [default: what its key `task` says]
+        #[arg(value_enum)]
+        purpose: Option<Purpose>,
     },
     /// Makes records of systems drawn from priors, their truths sealed in a folder apart
     Simulate(ExperimentArguments),
@@ -120,6 +142,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
+    /// Writes finished runs for TensorBoard or MLflow
+    Export(ExportArguments),
     /// Makes the report of a finished run again, from its folder alone
     Report {
         /// The run's folder

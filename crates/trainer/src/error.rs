@@ -90,6 +90,8 @@ pub(crate) enum TrainerError {
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
+    #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
+    NoRun { folder: String, problem: String },
     /// Threads or signal handlers could not be set up.
     #[error("cannot set up {what}: {problem}")]
     System { what: &'static str, problem: String },
@@ -122,6 +124,7 @@ impl TrainerError {
             | Self::Sweep(_)
             | Self::Table(_)
             | Self::Resume(_)
+            | Self::NoRun { .. }
             | Self::Run(_)
             | Self::Report(_) => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,

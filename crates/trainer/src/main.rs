@@ -12,13 +12,17 @@
 )]
 
 mod cautions;
+mod check;
+mod cite;
 mod cli;
 mod compare;
+mod configured;
 mod console;
 mod diagnose;
 mod environment;
 mod error;
 mod estimate;
+mod explain;
 mod fit;
 mod input;
 mod interrupt;
@@ -31,10 +35,12 @@ mod quit;
 mod rerender;
 mod resume;
 mod run;
+mod schema;
 mod side_by_side;
 mod simulate;
 mod summary;
 mod sweep;
+mod tracking;
 mod trials;
 mod verify;
 mod watcher;
@@ -80,10 +86,15 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::List { what, folder, output }) => list::list(what, folder.as_deref(), output),
         Some(Command::Sweep(arguments)) => sweep::command(&arguments),
         Some(Command::Compare(arguments)) => side_by_side::command(&arguments),
+        Some(Command::Check(arguments)) => check::command(&arguments),
+        Some(Command::Cite(arguments)) => cite::command(&arguments),
+        Some(Command::Explain(arguments)) => explain::command(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
+        Some(Command::Schema { purpose }) => schema::command(purpose),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),
+        Some(Command::Export(arguments)) => tracking::command(&arguments),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

@@ -3,6 +3,7 @@
 use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::compare::compare;
+use crate::configured::read_document;
 use crate::console;
 use crate::error::TrainerError;
 use crate::estimate::estimate;
@@ -15,7 +16,6 @@ use crate::resume::{Beginning, Begun, DataFile, Ledger, begin};
 use crate::simulate::{is_simulation, simulate};
 use crate::trials::{self, is_trials};
 use estimator::Cancel;
-use experiment::sweep::apply_override;
 use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
 use rayon::ThreadPool;
@@ -25,7 +25,6 @@ use runs::{RunFolder, default_root};
 use serde::Serialize;
 use settings::Document;
 use simulator::Plan;
-use std::path::Path;
 
 /// An experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
@@ -143,23 +142,10 @@ impl Output {
 
 /// Reads the configuration that the arguments name, overrides applied.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
-    let (_, mut document) = read_document(arguments.config.as_ref().ok_or(TrainerError::NoConfig)?)?;
-    for argument in &arguments.overrides {
-        apply_override(&mut document, argument)?;
-    }
+    let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
+    let mut document = read_document(path, &arguments.overrides)?;
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
     Ok(document)
-}
-
-/// Reads a configuration file: its text, and what that says.
-pub(crate) fn read_document(path: &Path) -> Result<(String, Document), TrainerError> {
-    let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Config {
-        file: file.clone(),
-        problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
-    })?;
-    let document = Document::parse(&file, &text)?;
-    Ok((text, document))
 }

@@ -13,5 +13,5 @@ mod score;
 
 pub use baseline::{Baseline, BaselineRecord, WEAK_FORM, WEAK_FORM_METHOD, most_common, weak_form};
 pub use hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
-pub use make::{Case, TrialError, TrialPlan};
+pub use make::{Case, TrialError, TrialPlan, trials_schema};
 pub use score::{AnsweredCase, Trials, case_rows, misses_a_bar, score, true_closure};

@@ -16,8 +16,8 @@ use crate::rerender::write_report;
 use arguments::{DiagnoseArguments, Reading};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use dynamics::Nominal;
+use experiment::StatedNominal;
 use export::Repaired;
-use nominal::Stated;
 use read::Given;
 use record::Quantity;
 use result::{Beside, result, series_rows};
@@ -111,7 +111,7 @@ fn settings(arguments: &DiagnoseArguments) -> Settings {
 
 /// Records of one system and what is believed of it.
 struct Question {
-    stated: Stated,
+    stated: StatedNominal,
     given: Vec<Given>,
     nominal: PathBuf,
 }

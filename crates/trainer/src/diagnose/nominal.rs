@@ -1,103 +1,19 @@
-//! `nominal.toml`: what is believed of a system.
+//! Reading `nominal.toml`: what is believed of a system.
 
 use crate::error::TrainerError;
-use dynamics::{Coefficients, Coordinate, Nominal};
-use serde::Deserialize;
-use settings::{Default, Document, Field, Kind, Resolved, Section};
+use experiment::{StatedNominal, resolve_nominal};
+use settings::{Document, SettingsError};
 use std::path::Path;
 
-/// A nominal simulator as its file has it.
-pub(crate) struct Stated {
-    pub(crate) nominal: Nominal,
-    /// Whether the file speaks of an input: the records have to have one then.
-    pub(crate) driven: bool,
-}
-
-#[derive(Deserialize)]
-struct Keys {
-    coordinate: Coordinate,
-    inertia: f64,
-    damping: f64,
-    stiffness: f64,
-    rest_angle: f64,
-    input_gain: f64,
-    sensor_resolution: Option<f64>,
-}
-
-const NUMBER: Field = Field {
-    key: "",
-    kind: Kind::Float { min: f64::MIN, max: f64::MAX },
-    default: Default::Required,
-    unit: "SI, or divided by the inertia",
-    meaning: "",
-    source: "",
-};
-const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
-const NON_NEGATIVE: Kind = Kind::Float { min: 0.0, max: f64::MAX };
-
-const FIELDS: &[Field] = &[
-    Field {
-        key: "coordinate",
-        kind: Kind::Choice(&["angle", "displacement"]),
-        default: Default::Text("angle"),
-        unit: "",
-        meaning: "What moves: an angle in rad, or a displacement in m.",
-        ..NUMBER
-    },
-    Field {
-        key: "inertia",
-        kind: POSITIVE,
-        meaning: "Moment of inertia, or mass; 1 where everything is per unit of inertia.",
-        ..NUMBER
-    },
-    Field { key: "damping", kind: NON_NEGATIVE, meaning: "Viscous damping.", ..NUMBER },
-    Field {
-        key: "stiffness",
-        kind: NON_NEGATIVE,
-        meaning: "Stiffness; 0 for a drive without a spring.",
-        ..NUMBER
-    },
-    Field { key: "rest_angle", unit: "rad or m", meaning: "Where the spring is relaxed.", ..NUMBER },
-    Field {
-        key: "input_gain",
-        default: Default::Float(1.0),
-        unit: "torque or force per unit of the input",
-        meaning: "What a unit of the input exerts.",
-        ..NUMBER
-    },
-    Field {
-        key: "sensor_resolution",
-        kind: POSITIVE,
-        default: Default::Absent,
-        unit: "rad or m",
-        meaning: "The sensor's stated resolution.",
-        ..NUMBER
-    },
-];
-
 /// Reads a nominal simulator.
-pub(crate) fn read(path: &Path) -> Result<Stated, TrainerError> {
+pub(crate) fn read(path: &Path) -> Result<StatedNominal, TrainerError> {
     let file = path.display().to_string();
     let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Nominal {
         file: file.clone(),
         problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
     })?;
-    let document = Document::parse(&file, &text)?;
-    let resolved = Resolved::new(&document, &[Section { name: "", fields: FIELDS }])?;
-    let keys: Keys = resolved.section("")?;
-    let refused = |error: dynamics::DynamicsError| TrainerError::Nominal { file, problem: error.to_string() };
-    let nominal = Nominal::from_coefficients(Coefficients {
-        inertia: keys.inertia,
-        damping: keys.damping,
-        stiffness: keys.stiffness,
-        rest_angle: keys.rest_angle,
-        input_gain: keys.input_gain,
+    resolve_nominal(&Document::parse(&file, &text)?).map_err(|error| match error {
+        SettingsError::Refused { file, problem } => TrainerError::Nominal { file, problem },
+        other => other.into(),
     })
-    .map(|nominal| nominal.with_coordinate(keys.coordinate))
-    .and_then(|nominal| match keys.sensor_resolution {
-        Some(resolution) => nominal.with_sensor_resolution(resolution),
-        None => Ok(nominal),
-    })
-    .map_err(refused)?;
-    Ok(Stated { nominal, driven: document.get("input_gain").is_some() })
 }

@@ -1,12 +1,12 @@
 //! From files to what a diagnosis may see: no name and no path among it.
 
 use super::arguments::{FormatChoice, Reading};
-use super::nominal::Stated;
 use crate::error::TrainerError;
 use crate::input::summarize;
 use diagnosis::Observations;
 use dynamics::Coordinate;
 use dynamics::chain::Observed;
+use experiment::StatedNominal;
 use record::{
     Clock, ClockChoice, CsvColumns, Fault, Format, Quantity, ReadOptions, Record, Statements, Unit,
 };
@@ -38,7 +38,7 @@ const NAMED: &[(&str, Option<(Unit, Quantity)>)] = &[
 ];
 
 /// Reads a record by the options and, where these are silent, by its header and the nominal simulator.
-pub(crate) fn read(path: &Path, reading: &Reading, stated: &Stated) -> Result<Given, TrainerError> {
+pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Result<Given, TrainerError> {
     let name = path.display().to_string();
     let fault = |fault: Fault| TrainerError::DiagnosedRecord(fault.in_file(&name));
     if path.is_dir() {

@@ -1,6 +1,6 @@
 //! `task = "predict"`: many methods, classical and learned, scored on peaks that they did not see.
 
-mod problem;
+pub(crate) mod problem;
 mod split;
 mod summary;
 mod tally;
@@ -97,7 +97,7 @@ pub(crate) fn predict(
 }
 
 /// The methods named, or all that there are.
-fn choose(study: &PredictionStudy) -> Result<Vec<Method>, TrainerError> {
+pub(crate) fn choose(study: &PredictionStudy) -> Result<Vec<Method>, TrainerError> {
     let mut methods = Method::all()?;
     if let Some(names) = &study.settings.methods {
         methods.retain(|method| names.iter().any(|name| name == method.id()));

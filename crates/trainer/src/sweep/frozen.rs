@@ -2,10 +2,10 @@
 
 use super::arguments::SweepArguments;
 use super::error::SweepCommandError;
+use crate::configured::{read_document, read_text};
 use crate::console;
 use crate::environment::Environment;
 use crate::error::TrainerError;
-use crate::run::read_document;
 use experiment::resolve;
 use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
 use oracle::classical::CLASSICAL;
@@ -80,7 +80,7 @@ struct Planned {
 }
 
 fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
-    let (text, mut document) = read_document(config)?;
+    let (text, mut document) = (read_text(config)?, read_document(config, &[])?);
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }

@@ -20,6 +20,7 @@ mod error;
 mod foreign;
 mod hiding;
 mod integrator;
+mod json_schema;
 mod laws;
 mod outside;
 mod own_record;
@@ -42,4 +43,5 @@ mod tests;
 
 pub use case::Case;
 pub use error::TrialError;
+pub use json_schema::trials_schema;
 pub use plan::{LeftOutBank, TrialPlan};

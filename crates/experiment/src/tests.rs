@@ -1,0 +1,311 @@
+//! Tests of the declarations, and of the way from a document to settings.
+
+use crate::prediction::{KINDS, PREDICT_SECTIONS, fields_of};
+use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
+use crate::{
+    NOMINAL, Pipeline, ProblemSource, Single, Task, is_prediction, resolve, resolve_nominal,
+    resolve_prediction,
+};
+use envelope::Envelope;
+use estimator::{Entry, Estimate, Estimator, FitContext, FitError};
+use record::ClockChoice;
+use settings::{Default, Document, Field, Kind, SettingsError};
+use std::collections::BTreeSet;
+
+struct Nothing;
+
+impl Estimator for Nothing {
+    fn fit(&self, _: &Envelope, _: &FitContext<'_>) -> Result<Estimate, FitError> {
+        panic!("configurations are checked here, nothing is fitted")
+    }
+}
+
+const REGISTRY: &[Entry] = &[Entry {
+    id: "mine",
+    paper_number: None,
+    title: "Mine",
+    summary: "",
+    tags: &[],
+    citations: &[],
+    fields: &[Field {
+        key: "width",
+        kind: Kind::Integer { min: 1, max: 9 },
+        default: Default::Integer(3),
+        unit: "",
+        meaning: "A width.",
+        source: "",
+    }],
+    build: |_| Ok(Box::new(Nothing)),
+}];
+
+const CLASSICAL: &[&str] = &["ols", "qr"];
+
+fn document(text: &str) -> Document {
+    Document::parse("a.toml", text).unwrap()
+}
+
+/// Every declared key with the name of its section.
+fn declared() -> Vec<(String, Field)> {
+    let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL]);
+    let fixed =
+        sections.flat_map(|section| section.fields.iter().map(|field| (section.name.to_owned(), *field)));
+    let problems = KINDS.iter().map(Some).chain([None]).flat_map(|kind| {
+        let name = format!("problem, {}", kind.unwrap_or(&"any"));
+        fields_of(kind.copied()).into_iter().map(move |field| (name.clone(), field))
+    });
+    fixed.chain(problems).chain([("estimator".to_owned(), estimator_name_field())]).collect()
+}
+
+#[test]
+fn every_key_is_declared_whole() {
+    for (section, field) in declared() {
+        let place = format!("[{section}] {}", field.key);
+        assert!(!field.key.is_empty(), "{section} has a key without a name: {}", field.meaning);
+        assert!(field.meaning.ends_with('.') && field.meaning.len() > 8, "{place}: {}", field.meaning);
+        let admitted = field.default.value().map(|value| field.kind.admit(&value));
+        assert!(!matches!(admitted, Some(Err(_))), "{place}: its default is not admitted: {admitted:?}");
+        // The name of a key that ends in a unit says it, and so does the declaration.
+        for (ending, unit) in
+            [("_s", "s"), ("_hz", "Hz"), ("_kg_m2", "kg m^2"), ("_percent", "%"), ("_periods", "periods")]
+        {
+            assert!(!field.key.ends_with(ending) || field.unit == unit, "{place} is in `{}`", field.unit);
+        }
+    }
+}
+
+#[test]
+fn no_key_is_declared_twice() {
+    for kind in KINDS {
+        let keys: Vec<&str> = fields_of(Some(kind)).iter().map(|field| field.key).collect();
+        assert_eq!(keys.iter().collect::<BTreeSet<_>>().len(), keys.len(), "{keys:?}");
+    }
+}
+
+#[test]
+fn a_silent_configuration_has_the_defaults_of_the_paper_and_ours() {
+    let found = resolve(&document("[estimator]\nname = \"mine\"\n"), REGISTRY, CLASSICAL).unwrap();
+    assert_eq!((found.name.as_str(), found.seed), ("mine", 0));
+    assert!(matches!(&found.task, Task::Estimate(Single::Learned { entry, .. }) if entry.id == "mine"));
+    assert_eq!(found.data.clock, ClockChoice::Auto);
+    assert_eq!((found.fit.seeds, found.fit.max_steps), (1, None));
+    assert!((found.fit.tolerance_percent - 0.1).abs() < 1e-15);
+    assert_eq!((found.envelope.pipeline.name(), Pipeline::Paper.name()), ("recommended", "paper"));
+    let paper = &found.envelope.paper;
+    assert_eq!((paper.smoothing_window, paper.smoothing_order, paper.peak_distance), (0, 3, 50));
+    let numbers = [paper.interpolation_step_s, paper.late_fraction, paper.prominence];
+    assert_eq!(numbers, [0.002, 0.2, 0.01]);
+    let ours = &found.envelope.recommended;
+    assert!((ours.half_width_periods * 6.0 - 1.0).abs() < 1e-15 && (ours.floor_in_noise - 8.0).abs() < 1e-15);
+    assert_eq!(found.data.read_options(), record::ReadOptions::default());
+}
+
+#[test]
+fn what_is_stated_of_a_record_arrives_where_it_is_read() {
+    let text = "[data]\ntime = \"t\"\nunit = \"deg\"\nsample_rate_hz = 50\norigin = \"measured\"\nstated_samples = 7\n\
+                [estimator]\nname = \"ols\"\n";
+    let found = resolve(&document(text), REGISTRY, CLASSICAL).unwrap();
+    let options = found.data.read_options();
+    assert_eq!((options.columns.time.as_deref(), options.columns.sample_rate_hz), (Some("t"), Some(50.0)));
+    assert_eq!(options.columns.unit, Some(record::Unit::Degree));
+    let stated = found.data.statements();
+    assert_eq!((stated.origin, stated.samples), (Some(record::Origin::Measured), Some(7)));
+}
+
+fn refused(text: &str) -> String {
+    let document = document(text);
+    let error = if is_prediction(&document) {
+        resolve_prediction(&document, REGISTRY, CLASSICAL).map(|_| ())
+    } else {
+        resolve(&document, REGISTRY, CLASSICAL).map(|_| ())
+    };
+    error.unwrap_err().to_string()
+}
+
+/// One value beyond each range or set of words.
+#[test]
+fn values_beyond_what_is_declared_are_refused() {
+    for wrong in [
+        "task = \"guess\"",
+        "seed = -1",
+        "name = 3",
+        "[data]\nformat = \"xml\"",
+        "[data]\nquantity = \"jerk\"",
+        "[data]\nclock = \"sun\"",
+        "[data]\nunit = \"furlong\"",
+        "[data]\ntime_unit = \"moon\"",
+        "[data]\nsample_rate_hz = 0",
+        "[data]\norigin = \"heaven\"",
+        "[data]\nstated_rate_hz = 0",
+        "[data]\nstated_samples = 0",
+        "[data]\npath = 3",
+        "[data]\ntime = 3",
+        "[data]\nangle = 3",
+        "[data]\ninput = 3",
+        "[envelope]\npipeline = \"none\"",
+        "[envelope.paper]\ninterpolation_step_s = 0",
+        "[envelope.paper]\nsmoothing_window = -1",
+        "[envelope.paper]\nsmoothing_order = 21",
+        "[envelope.paper]\nlate_fraction = 0",
+        "[envelope.paper]\npeak_distance = 0",
+        "[envelope.paper]\nprominence = -1",
+        "[envelope.recommended]\nhalf_width_periods = 0.3",
+        "[envelope.recommended]\nfloor_in_noise = -1",
+        "[fit]\nseeds = 0",
+        "[fit]\nmax_steps = -1",
+        "[fit]\ntolerance_percent = -1",
+    ] {
+        let expected = if wrong.contains("[fit]\nmax_steps") { "fit.max_steps" } else { "; expected " };
+        let message = refused(&format!("{wrong}\n[estimator]\nname = \"mine\"\n"));
+        assert!(message.contains(expected) && message.contains("expected"), "{wrong}: {message}");
+    }
+    for wrong in ["methods = []", "inertia_kg_m2 = 0"] {
+        let message = refused(&format!("task = \"compare\"\n[compare]\n{wrong}\n"));
+        assert!(message.contains("; expected "), "{wrong}: {message}");
+    }
+    for wrong in [
+        "methods = []",
+        "problems = []",
+        "draws = 0",
+        "draws_seeded = 0",
+        "block_peaks = 0",
+        "every = 1",
+        "last_share = 0.9",
+        "significance = 0",
+        "max_steps = -1",
+    ] {
+        let problem = "[problem.a]\nkind = \"exponential\"\ndecay_rate = 1\nscatter_size = 0.1\n";
+        let message = refused(&format!("task = \"predict\"\n[predict]\n{wrong}\n{problem}"));
+        assert!(message.contains("; expected "), "{wrong}: {message}");
+    }
+    for wrong in [
+        "amplitude = 0",
+        "period_s = 0",
+        "peaks = 3",
+        "decay_rate = -1",
+        "scatter = \"none\"",
+        "scatter_size = -1",
+        "dead_zone = -1",
+        "title = 3",
+    ] {
+        let message =
+            refused(&format!("task = \"predict\"\n[problem.a]\nkind = \"coulomb-viscous\"\n{wrong}\n"));
+        assert!(message.contains("; expected "), "{wrong}: {message}");
+    }
+    for (kind, wrong) in [("viscous-quadratic", "quadratic_rate = -1"), ("record", "pipeline = \"none\"")] {
+        let message = refused(&format!("task = \"predict\"\n[problem.a]\nkind = \"{kind}\"\n{wrong}\n"));
+        assert!(message.contains("; expected "), "{wrong}: {message}");
+    }
+}
+
+#[test]
+fn names_are_held_against_what_there_is() {
+    let known = ["[estimator]\nname = \"min\"\n", "task = \"compare\"\n[compare]\nmethods = [\"min\"]\n"];
+    for text in known {
+        assert!(refused(text).contains("did you mean `mine`?"), "{}", refused(text));
+    }
+    let problem = "[problem.a]\nkind = \"exponential\"\ndecay_rate = 1\nscatter_size = 0.1\n";
+    let predict = |keys: &str| format!("task = \"predict\"\n[predict]\n{keys}\n{problem}");
+    assert!(refused(&predict("methods = [\"min\"]")).contains("did you mean `mine`?"));
+    assert!(refused(&predict("problems = [\"b\"]")).contains("unknown problem \"b\""));
+    assert!(refused("seed = 1\n").contains("`estimator.name` is missing"));
+    let wide = "[estimator]\nname = \"ols\"\nwidth = 3\n";
+    assert!(refused(wide).contains("unknown key `estimator.width`"), "{}", refused(wide));
+}
+
+#[test]
+fn methods_of_a_comparison_may_be_classical_or_learned() {
+    let text = "task = \"compare\"\n[compare]\nmethods = [\"qr\", \"mine\"]\n";
+    let found = resolve(&document(text), REGISTRY, CLASSICAL).unwrap();
+    let Task::Compare(comparison) = found.task else { panic!("a comparison") };
+    assert_eq!(comparison.methods, Some(vec!["qr".to_owned(), "mine".to_owned()]));
+    assert!((comparison.inertia_kg_m2 - 5.0e-4).abs() < 1e-18);
+    assert_eq!(found.name, "compare");
+}
+
+#[test]
+fn the_problems_of_a_study_have_the_keys_of_their_kind() {
+    let text = "task = \"predict\"\n[predict]\nproblems = [\"dry\", \"file\"]\n\
+                [problem.dry]\nkind = \"coulomb-viscous\"\ndecay_rate = 1\nscatter_size = 0.1\ndead_zone = 0.2\n\
+                [problem.left]\nkind = \"exponential\"\ndecay_rate = 1\nscatter_size = 0.1\n\
+                [problem.file]\nkind = \"record\"\npath = \"x.csv\"\npipeline = \"paper\"\ntitle = \"A file\"\n";
+    let found = resolve_prediction(&document(text), REGISTRY, CLASSICAL).unwrap();
+    let settings = &found.settings;
+    assert_eq!((settings.draws, settings.draws_seeded), (200, 20));
+    assert_eq!((settings.block_peaks, settings.every, settings.max_steps), (3, 4, None));
+    assert!((settings.last_share * 3.0 - 1.0).abs() < 1e-15 && (settings.significance - 0.05).abs() < 1e-15);
+    let [dry, file] = &found.problems[..] else { panic!("two problems") };
+    assert_eq!((dry.title.as_str(), file.title.as_str()), ("dry", "A file"));
+    let ProblemSource::Simulated(law) = &dry.source else { panic!("a law") };
+    assert_eq!((law.amplitude, law.period_s, law.peaks, law.dead_zone), (0.5, 0.288, 72, 0.2));
+    let ProblemSource::Record { data, pipeline } = &file.source else { panic!("a record") };
+    assert_eq!((data.path.as_str(), *pipeline), ("x.csv", Pipeline::Paper));
+    for (kind, missing) in [
+        ("exponential", "decay_rate"),
+        ("coulomb-viscous", "decay_rate"),
+        ("viscous-quadratic", "decay_rate"),
+        ("record", "path"),
+    ] {
+        let message = refused(&format!("task = \"predict\"\n[problem.a]\nkind = \"{kind}\"\n"));
+        assert!(message.contains(&format!("`problem.a.{missing}` is missing")), "{message}");
+    }
+    let given = "decay_rate = 1\nscatter_size = 0.1\n";
+    for (kind, missing) in [("coulomb-viscous", "dead_zone"), ("viscous-quadratic", "quadratic_rate")] {
+        let message = refused(&format!("task = \"predict\"\n[problem.a]\nkind = \"{kind}\"\n{given}"));
+        assert!(message.contains(&format!("`problem.a.{missing}` is missing")), "{message}");
+    }
+}
+
+#[test]
+fn a_nominal_simulator_is_read_with_what_it_may_leave_out() {
+    let text = "inertia = 2\ndamping = 0.5\nstiffness = 8\nrest_angle = 0.1\n";
+    let found = resolve_nominal(&document(text)).unwrap();
+    assert!(!found.driven);
+    let all = format!("{text}input_gain = 3\ncoordinate = \"displacement\"\nsensor_resolution = 1e-3\n");
+    let driven = resolve_nominal(&document(&all)).unwrap();
+    assert!(driven.driven);
+    let same = |a: &dynamics::Nominal, b: &dynamics::Nominal| format!("{a:?}") == format!("{b:?}");
+    assert!(!same(&found.nominal, &driven.nominal));
+    for wrong in [
+        "inertia = 0",
+        "damping = -1",
+        "stiffness = -1",
+        "rest_angle = nan",
+        "input_gain = inf",
+        "coordinate = \"heat\"",
+        "sensor_resolution = 0",
+    ] {
+        let key = wrong.split(' ').next().unwrap();
+        let kept: String =
+            all.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
+        let error = resolve_nominal(&document(&format!("{kept}{wrong}\n"))).unwrap_err();
+        assert!(matches!(error, SettingsError::BadValue { .. }), "{wrong}: {error}");
+    }
+    for key in ["inertia", "damping", "stiffness", "rest_angle"] {
+        let kept: String =
+            text.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
+        let message = resolve_nominal(&document(&kept)).unwrap_err().to_string();
+        assert!(message.contains(&format!("`{key}` is missing")), "{message}");
+    }
+}
+
+#[test]
+fn schemas_close_what_is_declared() {
+    for (schema, task) in [
+        (crate::estimate_schema(REGISTRY, CLASSICAL), "estimate"),
+        (crate::compare_schema(REGISTRY, CLASSICAL), "compare"),
+        (crate::predict_schema(REGISTRY, CLASSICAL), "predict"),
+    ] {
+        assert_eq!(schema["properties"]["task"]["const"], task);
+        assert_eq!(schema["additionalProperties"], false);
+        assert!(schema["properties"]["base"].is_object());
+    }
+    let estimate = crate::estimate_schema(REGISTRY, CLASSICAL);
+    let estimator = &estimate["properties"]["estimator"];
+    assert_eq!(estimator["properties"]["name"]["enum"], serde_json::json!(["mine", "ols", "qr"]));
+    assert_eq!(estimator["properties"]["width"]["maximum"], 9);
+    assert_eq!(estimate["then"]["properties"]["estimator"]["required"], serde_json::json!(["name"]));
+    let compare = crate::compare_schema(REGISTRY, CLASSICAL);
+    let items = &compare["properties"]["compare"]["properties"]["methods"]["anyOf"][0]["items"];
+    assert_eq!(items["enum"], serde_json::json!(["ols", "qr", "mine"]));
+    assert_eq!(compare["then"]["required"], serde_json::json!(["task"]));
+}
