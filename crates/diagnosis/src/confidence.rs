@@ -21,13 +21,13 @@ struct Line {
 const NOTHING_MISSING: Line = Line { at_even: -0.56, by_odds: 0.64 };
 const UNKNOWN: Line = Line { at_even: 0.72, by_odds: 0.29 };
 /// By the number of fitted effects that are named, the last for more; none are fitted where stamps and values show what is
-/// missing. The banks hide two effects at most: for three the step from one to two had been taken once more, and of 26 answers
-/// with three none was right.
+/// missing. The banks hide two effects at most, so that they cannot show three to be right (of 26 such answers none was):
+/// for three the step from one to two, as the first banks had it, is taken once more.
 const EFFECTS: [Line; 4] = [
     Line { at_even: -0.40, by_odds: 0.75 },
     Line { at_even: -0.38, by_odds: 0.45 },
     Line { at_even: -0.78, by_odds: 0.53 },
-    Line { at_even: -3.31, by_odds: 0.15 },
+    Line { at_even: -2.02, by_odds: 0.36 },
 ];
 
 /// Log odds beyond which the bank has nothing more to say.
