@@ -85,7 +85,12 @@ impl EventLog {
     }
 
     /// Adds a line at the end of the file; a torn one gives way to it.
+    ///
+    /// The file is locked meanwhile: shares of a sweep write into one log, and each line's digest follows from the one before.
     pub(crate) fn append(path: &Path, disk: &Disk, event: &Event) -> Result<(), RunError> {
+        let is_new = !path.exists();
+        let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
+        file.lock().map_err(RunError::io(path, "lock"))?;
         let log = Self::read(path)?;
         let text = serde_json::to_string(event).map_err(|error| RunError::Encoding {
             name: path.display().to_string(),
@@ -96,8 +101,6 @@ impl EventLog {
         if log.torn_line.is_some() {
             return atomic::write(disk, path, (log.text + &line).as_bytes());
         }
-        let is_new = !path.exists();
-        let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
         disk.write(&mut file, line.as_bytes()).map_err(RunError::io(path, "write"))?;
         disk.flush(&file).map_err(RunError::io(path, "flush"))?;
         match path.parent() {
@@ -122,6 +125,25 @@ mod tests {
     use crate::error::RunError;
     use serde_json::json;
     use std::path::Path;
+
+    #[test]
+    fn several_writers_keep_one_chain() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        std::thread::scope(|scope| {
+            for writer in 0..4 {
+                let path = &path;
+                scope.spawn(move || {
+                    for number in 0..25 {
+                        let details = json!({ "writer": writer, "number": number });
+                        let event = Event { time: String::new(), event: "share".into(), details };
+                        EventLog::append(path, &Disk::default(), &event).unwrap();
+                    }
+                });
+            }
+        });
+        assert_eq!(EventLog::read(&path).unwrap().events.len(), 100);
+    }
 
     fn three_lines(path: &Path) -> Vec<u8> {
         for name in ["start", "one\ntwo", "end"] {
