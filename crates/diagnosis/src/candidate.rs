@@ -1,7 +1,8 @@
 //! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
 
 use crate::facts::Facts;
-use dynamics::{Class, SystemEffect};
+use dynamics::{Class, Nominal, SystemEffect};
+use record::Quantity;
 use std::f64::consts::PI;
 
 /// An effect of the measuring chain that changes values smoothly enough to be fitted.
@@ -124,8 +125,14 @@ impl Candidate {
         }
     }
 
+    /// Every candidate that can act on these records.
+    pub(crate) fn that_apply(facts: &Facts, quantity: Quantity, nominal: &Nominal) -> Vec<Self> {
+        let (position, spring) = (quantity == Quantity::Position, nominal.stiffness() > 0.0);
+        Self::ALL.iter().copied().filter(|candidate| candidate.applies(facts, position, spring)).collect()
+    }
+
     /// Whether it can act on these records at all.
-    pub(crate) fn applies(self, facts: &Facts, position: bool, spring: bool) -> bool {
+    fn applies(self, facts: &Facts, position: bool, spring: bool) -> bool {
         match self {
             Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => {
                 facts.input_torque > 0.0

@@ -22,7 +22,7 @@ use crate::verdict::{by_members, significant, unknown, weigh, without_passed_ove
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null};
 use dynamics::Nominal;
-use record::{ClockKind, Quantity};
+use record::ClockKind;
 use seed::Seed;
 
 /// How to diagnose.
@@ -93,14 +93,8 @@ pub fn diagnose(
     let data = data.for_noise(noise::floor(&data, &base.calibrated.residuals).value);
     lap("calibration");
 
-    let candidates: Vec<Candidate> = Candidate::ALL
-        .iter()
-        .copied()
-        .filter(|candidate| settings.considers(candidate.id()))
-        .filter(|candidate| {
-            candidate.applies(&data.facts, data.quantity == Quantity::Position, nominal.stiffness() > 0.0)
-        })
-        .collect();
+    let mut candidates = Candidate::that_apply(&data.facts, data.quantity, nominal);
+    candidates.retain(|candidate| settings.considers(candidate.id()));
     let coarse = data.strided();
     let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
     let coarse_base =
@@ -136,7 +130,8 @@ pub fn diagnose(
     let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
     lap("held out");
     let fitted = &held.fitted;
-    let floor = noise::floor(segments.data, &fitted.residuals);
+    let floors = noise::squares(segments.data, &fitted.residuals);
+    let floor = noise::of_squares(&floors);
     let ceiling = latent::ceiling(segments.data, fitted)?;
     lap("latent torque");
     let unit = records.first().map_or("", |record| record.unit);
@@ -147,7 +142,7 @@ pub fn diagnose(
             repaired: &held.after,
             ceiling: &ceiling,
         },
-        (floor, &noise::squares(segments.data, &fitted.residuals)),
+        (floor, &floors),
         held.last_third,
         unit,
     );

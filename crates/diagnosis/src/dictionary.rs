@@ -67,13 +67,13 @@ const LINES: usize = 3;
 /// of the inertia at most.
 const SECOND_MODES: usize = 3;
 const OUT_OF_PHASE: f64 = 0.1;
-const LARGEST_BODY: f64 = 0.02;
+const FIRST_BODY: f64 = 0.02;
 
 /// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
 /// a body that is not yet where it belongs would lose count of the swings.
 fn second_body(data: &Data) -> f64 {
     let phase = data.facts.frequency * data.longest_span();
-    (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(LARGEST_BODY)
+    (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(FIRST_BODY)
 }
 
 /// The shapes that a candidate is tried at, as parameters of the fit with unit coefficients.
@@ -212,12 +212,12 @@ impl Dictionary {
         nominal: &Coefficients<f64>,
         candidates: &[Candidate],
     ) -> Self {
+        let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
         let mut entries = Vec::new();
         let mut all: Vec<Vec<f64>> = Vec::new();
         for &candidate in candidates {
             let mut shapes = shapes(candidate, &data.facts);
             if candidate == Candidate::System(SystemEffect::PeriodicForcing) {
-                let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
                 shapes = lines(data, &residuals, LINES)
                     .into_iter()
                     .map(|line| vec![1.0, line.frequency, 0.0])
@@ -251,7 +251,6 @@ impl Dictionary {
         let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
         let mut further = Vec::new();
         if candidates.contains(&coupling) {
-            let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
             let body = second_body(data) * nominal.inertia;
             further = decaying_lines(data, &residuals, SECOND_MODES)
                 .into_iter()

@@ -28,7 +28,11 @@ pub struct NoiseFloor {
 /// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
 /// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
 pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
-    let squares = squares(data, residuals);
+    of_squares(&squares(data, residuals))
+}
+
+/// The same from the [`squares`] of a residual.
+pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
     let count = squares.iter().flatten().flatten().count() as f64;
     let variance = squares.iter().flatten().flatten().sum::<f64>() / count.max(1.0);
     let worth = count / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));

@@ -10,7 +10,6 @@ use crate::observations::Observations;
 use crate::search::{alone, fit_all, vanished};
 use crate::segments::{MOST_SEARCHED, cut};
 use dynamics::Nominal;
-use record::Quantity;
 
 /// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with squares SS and p
 /// parameters.
@@ -40,12 +39,7 @@ pub fn single_effect(
     let all = cut(records, &kept, nominal)?;
     let data = all.sparser(MOST_SEARCHED).thinned(MOST_SEARCHED);
     let (data, base) = better_hold(&data, nominal)?;
-    let (position, spring) = (data.quantity == Quantity::Position, nominal.stiffness() > 0.0);
-    let candidates: Vec<Candidate> = Candidate::ALL
-        .iter()
-        .copied()
-        .filter(|candidate| candidate.applies(&data.facts, position, spring))
-        .collect();
+    let candidates = Candidate::that_apply(&data.facts, data.quantity, nominal);
     let dictionary = Dictionary::at(&data, &base.calibrated, &candidates)?;
     let proposals = alone(&data, &base.calibrated, &dictionary);
     let fits = fit_all(&data, &proposals, Effort::SEARCH);
