@@ -35,7 +35,7 @@ pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_c
 pub use verdict::in_a_sentence;
 
 /// The texts of the files in a run folder.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct RunTexts<'a> {
     /// Name of the run, as its folder is called.
     pub name: &'a str,

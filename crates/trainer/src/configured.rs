@@ -41,7 +41,7 @@ pub(crate) enum Configured {
 impl Configured {
     /// Checks a document against the keys of the task that it asks for.
     pub(crate) fn resolve(document: &Document) -> Result<Self, TrainerError> {
-        let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
+        let classical = classical();
         Ok(if is_simulation(document) {
             Self::Simulation(Box::new(Plan::resolve(document)?))
         } else if is_trials(document) {
@@ -64,20 +64,26 @@ impl Configured {
     }
 }
 
+/// Ids of the classical methods.
+pub(crate) fn classical() -> Vec<&'static str> {
+    CLASSICAL.iter().map(|route| route.id).collect()
+}
+
 /// Reads a configuration file with those that it stands on, and applies overrides in their order.
 pub(crate) fn read_document(path: &Path, overrides: &[String]) -> Result<Document, TrainerError> {
-    let text = read_text(path)?;
-    let mut document =
-        Document::parse(&path.display().to_string(), &text)?.on_its_bases(&mut |path| text_of(path))?;
+    let (_, mut document) = read_with_text(path)?;
     for argument in overrides {
         apply_override(&mut document, argument)?;
     }
     Ok(document)
 }
 
-/// A configuration file as it is written.
-pub(crate) fn read_text(path: &Path) -> Result<String, TrainerError> {
-    text_of(path).map_err(|problem| TrainerError::Config { file: path.display().to_string(), problem })
+/// A configuration file as it is written, and what it says on those that it stands on.
+pub(crate) fn read_with_text(path: &Path) -> Result<(String, Document), TrainerError> {
+    let file = path.display().to_string();
+    let text = text_of(path).map_err(|problem| TrainerError::Config { file: file.clone(), problem })?;
+    let document = Document::parse(&file, &text)?.on_its_bases(&mut |path| text_of(path))?;
+    Ok((text, document))
 }
 
 fn text_of(path: &Path) -> Result<String, String> {

@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::compare::compare;
-use crate::configured::read_document;
+use crate::configured::{Configured, read_document};
 use crate::console;
 use crate::error::TrainerError;
 use crate::estimate::estimate;
@@ -12,19 +12,16 @@ use crate::input::Input;
 use crate::interrupt;
 use crate::method::Method;
 use crate::predict::predict;
-use crate::resume::{Beginning, Begun, DataFile, Ledger, begin};
-use crate::simulate::{is_simulation, simulate};
-use crate::trials::{self, is_trials};
+use crate::resume::{Beginning, Begun, Ledger, begin};
+use crate::simulate::simulate;
+use crate::trials;
 use estimator::Cancel;
-use experiment::{Experiment, Task, is_prediction, resolve, resolve_prediction};
-use oracle::classical::CLASSICAL;
+use experiment::{Experiment, Task};
 use rayon::ThreadPool;
-use registry::ESTIMATORS;
 use runs::result::SeedRow;
 use runs::{RunFolder, default_root};
 use serde::Serialize;
 use settings::Document;
-use simulator::Plan;
 
 /// An experiment that is ready to be fitted.
 pub(crate) struct Run<'a> {
@@ -47,27 +44,16 @@ pub(crate) fn run_until(
     arguments: &ExperimentArguments,
     cancel: &'static Cancel,
 ) -> Result<Outcome, TrainerError> {
-    let document = read_config(arguments)?;
-    if is_simulation(&document) {
-        return simulate(arguments, &Plan::resolve(&document)?, cancel);
-    }
-    if is_trials(&document) {
-        return trials::run(&arguments.into(), cancel);
-    }
-    let classical: Vec<&str> = CLASSICAL.iter().map(|route| route.id).collect();
-    if is_prediction(&document) {
-        return predict(arguments, &resolve_prediction(&document, ESTIMATORS, &classical)?, cancel);
-    }
-    let experiment = resolve(&document, ESTIMATORS, &classical)?;
+    let experiment = match Configured::resolve(&read_config(arguments)?)? {
+        Configured::Simulation(plan) => return simulate(arguments, &plan, cancel),
+        Configured::Trials(_) => return trials::run(&arguments.into(), cancel),
+        Configured::Prediction(study) => return predict(arguments, &study, cancel),
+        Configured::Experiment(experiment) => experiment,
+    };
     let input = Input::read(&experiment)?;
     let pool = thread_pool(arguments)?;
-    let beginning = Beginning {
-        name: &experiment.name,
-        seed: experiment.seed,
-        config: experiment.resolved.to_toml(),
-        data: vec![DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() }],
-        threads: pool.current_num_threads(),
-    };
+    let config = experiment.resolved.to_toml();
+    let beginning = Beginning::of(&experiment, &input, config, pool.current_num_threads());
     let folder = match begin(arguments, &beginning)? {
         Begun::Open(folder) => folder,
         Begun::Finished(outcome) => return Ok(outcome),

@@ -169,29 +169,22 @@ impl DotRows {
             value.filter(|v| self.x.can_show(*v)).map(|v| computed.map_x(ticks.place(v)))
         };
         let (value, extreme) = (at(row.value), at(row.extreme));
+        let bar = |x1: f64, x2: f64, hue: Hue| Primitive::Line {
+            x1,
+            y1: marks,
+            x2,
+            y2: marks,
+            stroke: Color::from(hue.light()),
+            stroke_width: form.canvas.line_width,
+            stroke_dasharray: None,
+        };
         let ends = row.interval.map(|[low, high]| (at(Some(low)), at(Some(high))));
-        if let Some((Some(x1), Some(x2))) = ends {
-            scene.add(Primitive::Line {
-                x1,
-                y1: marks,
-                x2,
-                y2: marks,
-                stroke: Color::from(Hue::Estimate.light()),
-                stroke_width: form.canvas.line_width,
-                stroke_dasharray: None,
-            });
+        if let Some((Some(low), Some(high))) = ends {
+            scene.add(bar(low, high, Hue::Estimate));
         }
         let radius = form.canvas.dot_radius;
-        if let (Some(x1), Some(x2)) = (value, extreme) {
-            scene.add(Primitive::Line {
-                x1,
-                y1: marks,
-                x2,
-                y2: marks,
-                stroke: Color::from(Hue::Second.light()),
-                stroke_width: form.canvas.line_width,
-                stroke_dasharray: None,
-            });
+        if let (Some(value), Some(extreme)) = (value, extreme) {
+            scene.add(bar(value, extreme, Hue::Second));
         }
         if let Some(x) = extreme {
             scene.add(Primitive::Circle {

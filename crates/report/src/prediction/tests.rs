@@ -142,16 +142,7 @@ fn every_row_of_the_markdown_has_its_columns() {
 fn the_task_chooses_the_page() {
     let folder = Folder::new();
     let result = serde_json::to_string(&folder.result).unwrap();
-    let texts = RunTexts {
-        name: "a",
-        config: "",
-        result: &result,
-        trace: "",
-        envelope: "",
-        predictions: "",
-        series: "",
-        environment: "",
-    };
+    let texts = RunTexts { name: "a", result: &result, ..RunTexts::default() };
     assert_eq!(render(&texts).unwrap(), render_prediction(&texts).unwrap());
     assert!(comparison_markdown(&result).unwrap_err().to_string().contains("reads \"compare\""));
     let other = crate::sample::Sample::new().json();

@@ -45,16 +45,7 @@ fn table() -> RunTable {
 
 fn page(table: &RunTable) -> String {
     let result = serde_json::to_string(table).unwrap();
-    let texts = RunTexts {
-        name: "a",
-        config: "",
-        result: &result,
-        trace: "",
-        envelope: "",
-        predictions: "",
-        series: "",
-        environment: "",
-    };
+    let texts = RunTexts { name: "a", result: &result, ..RunTexts::default() };
     render(&texts).unwrap()
 }
 

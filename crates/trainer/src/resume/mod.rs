@@ -11,9 +11,11 @@ use crate::cli::ExperimentArguments;
 use crate::console;
 use crate::environment::{self, Environment};
 use crate::error::TrainerError;
+use crate::input::Input;
 use crate::run::new_folder;
 use difference::differences;
 pub(crate) use error::ResumeError;
+use experiment::Experiment;
 pub(crate) use ledger::{Ledger, Resumed};
 use runs::{RunFolder, digest};
 use serde::{Deserialize, Serialize};
@@ -41,6 +43,14 @@ pub(crate) struct Beginning<'a> {
     pub(crate) config: String,
     pub(crate) data: Vec<DataFile>,
     pub(crate) threads: usize,
+}
+
+impl<'a> Beginning<'a> {
+    /// Of an experiment on one record, with the text that is to be its `config.toml`.
+    pub(crate) fn of(experiment: &'a Experiment, input: &Input, config: String, threads: usize) -> Self {
+        let data = DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() };
+        Self { name: &experiment.name, seed: experiment.seed, config, data: vec![data], threads }
+    }
 }
 
 /// The details of the event `start`: what the run is made of, in digests.

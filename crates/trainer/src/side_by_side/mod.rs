@@ -78,16 +78,7 @@ pub(crate) fn print_table(table: &RunTable) {
 fn page(table: &RunTable) -> Result<String, TrainerError> {
     let result = serde_json::to_string_pretty(table)
         .map_err(|error| TrainerError::System { what: "the table", problem: error.to_string() })?;
-    Ok(render_run_table(&RunTexts {
-        name: "Runs side by side",
-        config: "",
-        result: &result,
-        trace: "",
-        envelope: "",
-        predictions: "",
-        series: "",
-        environment: "",
-    })?)
+    Ok(render_run_table(&RunTexts { name: "Runs side by side", result: &result, ..RunTexts::default() })?)
 }
 
 /// The folders that an argument names, in the order of their names where it is a pattern.

@@ -1,13 +1,14 @@
 //! Making the runs of a sweep, several at a time.
 
-use super::frozen::{FrozenSweep, classical};
+use super::frozen::FrozenSweep;
 use crate::Outcome;
 use crate::cli::Output;
+use crate::configured::classical;
 use crate::console;
 use crate::error::TrainerError;
 use crate::input::Input;
 use crate::progress::Progress;
-use crate::resume::{Beginning, DataFile, Ledger, start};
+use crate::resume::{Beginning, Ledger, start};
 use crate::run::Run;
 use estimator::Cancel;
 use experiment::resolve;
@@ -111,13 +112,7 @@ fn attempt(
         .num_threads(1)
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
-    let beginning = Beginning {
-        name: &experiment.name,
-        seed: experiment.seed,
-        config: config.to_owned(),
-        data: vec![DataFile { path: experiment.data.path.clone(), digest: input.source.digest.clone() }],
-        threads: 1,
-    };
+    let beginning = Beginning::of(&experiment, &input, config.to_owned(), 1);
     let (name, folder) = sweep.folder.begin_run(&label(&sweep.manifest, line))?;
     *run = Some(name);
     let folder = start(folder, &beginning)?;

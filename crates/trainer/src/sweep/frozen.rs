@@ -2,13 +2,12 @@
 
 use super::arguments::SweepArguments;
 use super::error::SweepCommandError;
-use crate::configured::{read_document, read_text};
+use crate::configured::{classical, read_with_text};
 use crate::console;
 use crate::environment::Environment;
 use crate::error::TrainerError;
 use experiment::resolve;
 use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
-use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
 use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
 use runs::{Disk, RunError, RunFolder, SweepFolder, default_root};
@@ -80,7 +79,7 @@ struct Planned {
 }
 
 fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
-    let (text, mut document) = (read_text(config)?, read_document(config, &[])?);
+    let (text, mut document) = read_with_text(config)?;
     if let Some(seed) = arguments.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
@@ -94,10 +93,6 @@ fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, Trainer
     let stem = config.file_stem().unwrap_or_default().to_string_lossy();
     let name = document.get("name").and_then(|leaf| leaf.value.as_str()).unwrap_or(&stem);
     Ok(Planned { text, name: format!("{name}-sweep"), axes, runs })
-}
-
-pub(super) fn classical() -> Vec<&'static str> {
-    CLASSICAL.iter().map(|route| route.id).collect()
 }
 
 /// The manifest of a sweep that begins now. A record that cannot be read is found out here, not by its runs.
