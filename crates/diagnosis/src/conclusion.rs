@@ -3,7 +3,7 @@
 use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
 use crate::candidate::Candidate;
 use crate::coefficients::parameters;
-use crate::confidence::confidence;
+use crate::confidence::{confidence, stand_in};
 use crate::fit::Fit;
 use crate::verdict::{Weighed, marginal};
 use crate::work::{Shift, Work};
@@ -11,6 +11,9 @@ use crate::work::{Shift, Work};
 /// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
 /// other in one of twenty records.
 const DISTINCT: f64 = 3.29;
+
+/// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and no calibration.
+const SHIFTED: f64 = 0.9;
 
 /// What is known once everything is fitted.
 #[derive(Clone, Copy)]
@@ -21,7 +24,10 @@ pub(crate) struct Parts<'a> {
     pub(crate) named: &'a [Candidate],
     pub(crate) shares: &'a [(f64, Interval)],
     pub(crate) weighed: &'a [Weighed<'a>],
+    /// Probability that what is missing has no name.
     pub(crate) unnamed: f64,
+    /// Probability that anything is left beside the named effects, however little.
+    pub(crate) left_over: f64,
     pub(crate) calibrated_off: bool,
     pub(crate) shift: Option<Shift>,
     pub(crate) rivals: &'a [Rivalry],
@@ -37,15 +43,17 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     let bare = bare * (1.0 - unnamed);
     // The significance of the calibration was tested at 1 %.
     let of_calibration = if calibrated_off { 0.99 } else { 0.01 };
-    let of_shift = if shift.is_some() { 0.9 } else { 0.0 };
+    let of_shift = if shift.is_some() && parts.named.is_empty() { SHIFTED } else { 0.0 };
     let plain =
         |id, probability| EffectProbability { id, probability, parameters: Vec::new(), gap_share: None };
     let mut list = vec![
-        plain("unknown", unnamed),
+        plain("unknown", unnamed + (1.0 - unnamed) * stand_in(parts.named.len())),
         plain("none", bare * (1.0 - of_calibration)),
         plain("calibration", bare * of_calibration * (1.0 - of_shift)),
     ];
     if let Some(shift) = shift {
+        // A shift was looked for beside the named effects, or beside none.
+        let beside = if parts.named.is_empty() { bare * of_calibration } else { 1.0 - unnamed - bare };
         let units = work.base.calibrated.hypothesis.nominal.units();
         list.push(EffectProbability {
             parameters: vec![ParameterEstimate {
@@ -53,7 +61,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
                 unit: dynamics::Quantity::Torque.unit(units).to_owned(),
                 estimate: shift.torque,
             }],
-            ..plain("constant_torque", bare * of_calibration * of_shift)
+            ..plain("constant_torque", beside * SHIFTED)
         });
     }
     for &candidate in candidates {
@@ -101,8 +109,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
             equivalent.push(class);
         }
     }
-    let physical = !effects.is_empty();
-    if !physical && parts.shift.is_some() && parts.unnamed <= 0.5 {
+    if parts.shift.is_some() && parts.unnamed <= 0.5 {
         effects.push("constant_torque");
         equivalent.push(vec!["constant_torque", "calibration"]);
     }
@@ -124,7 +131,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
         Status::None
     };
     let probability = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
-    let confidence = confidence(status, parts.named.len(), probability);
+    let confidence = confidence(status, parts.named.len(), probability, parts.left_over);
     let gap = parts.gap;
     let figures = format!(
         "{:.3e} {} recalibrated, {:.3e} after, noise floor {:.3e}",

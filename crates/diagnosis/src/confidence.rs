@@ -33,8 +33,22 @@ const EFFECTS: [Line; 4] = [
 /// Log odds beyond which the bank has nothing more to say.
 const MOST_ODDS: f64 = 4.0;
 
-/// The probability that a verdict is right, status and effects together, from that of its set.
-pub(crate) fn confidence(status: Status, fitted: usize, probability: f64) -> f64 {
+/// Log odds of named effects being right where something is left beside them for certain.
+const LEFT_OVER: f64 = -1.5;
+
+/// How often so many fitted effects stood in, without leaving anything, for something without a name; the last for more.
+const STAND_IN: [f64; 4] = [0.025, 0.071, 0.083, 0.1];
+
+/// The probability that named effects, so many fitted ones among them, stand in for something without a name though
+/// nothing is left that shows it.
+pub(crate) fn stand_in(fitted: usize) -> f64 {
+    let [.., last] = STAND_IN;
+    STAND_IN.get(fitted).copied().unwrap_or(last)
+}
+
+/// The probability that a verdict is right, status and effects together, from that of its set and from the probability that
+/// anything is left beside it.
+pub(crate) fn confidence(status: Status, fitted: usize, probability: f64, left_over: f64) -> f64 {
     let [.., last] = &EFFECTS;
     let line = match status {
         Status::None | Status::Calibration => &NOTHING_MISSING,
@@ -42,7 +56,8 @@ pub(crate) fn confidence(status: Status, fitted: usize, probability: f64) -> f64
         Status::Effect => EFFECTS.get(fitted).unwrap_or(last),
     };
     let odds = (probability / (1.0 - probability)).ln().clamp(-MOST_ODDS, MOST_ODDS);
-    1.0 / (1.0 + (-(line.at_even + line.by_odds * odds)).exp())
+    let left = if status == Status::Effect { LEFT_OVER * left_over } else { 0.0 };
+    1.0 / (1.0 + (-(line.at_even + line.by_odds * odds + left)).exp())
 }
 
 #[cfg(test)]
@@ -54,13 +69,14 @@ mod tests {
     #[test]
     fn confidence_grows_with_the_sets_and_falls_with_their_size() {
         for status in [Status::None, Status::Unknown, Status::Effect] {
-            let values = [0.0, 0.02, 0.3, 0.6, 0.9, 1.0].map(|p| confidence(status, 1, p));
+            let values = [0.0, 0.02, 0.3, 0.6, 0.9, 1.0].map(|p| confidence(status, 1, p, 0.0));
             assert!(values.is_sorted(), "{status:?} {values:?}");
             assert!(values.iter().all(|p| (0.0..=1.0).contains(p)));
         }
-        let by_size = [1, 2, 3, 5].map(|fitted| confidence(Status::Effect, fitted, 0.9));
+        let by_size = [1, 2, 3, 5].map(|fitted| confidence(Status::Effect, fitted, 0.9, 0.0));
         assert!(by_size.is_sorted_by(|a, b| a >= b), "{by_size:?}");
         let most = 1.0 / (1.0 + (-MOST_ODDS).exp());
-        assert_eq!(confidence(Status::Effect, 2, most), confidence(Status::Effect, 2, 1.0));
+        assert_eq!(confidence(Status::Effect, 2, most, 0.0), confidence(Status::Effect, 2, 1.0, 0.0));
+        assert!(confidence(Status::Effect, 1, 0.9, 1.0) < confidence(Status::Effect, 1, 0.9, 0.0));
     }
 }

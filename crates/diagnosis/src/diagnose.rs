@@ -18,7 +18,7 @@ use crate::search::{Breadth, Pool, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
-use crate::verdict::{by_members, significant, unknown, weigh, without_passed_over};
+use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null};
 use dynamics::Nominal;
@@ -127,7 +127,7 @@ pub fn diagnose(
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
     let weighed = without_passed_over(weighed, repaired);
-    let shift = if settings.considers("constant_torque") { work.shift()? } else { None };
+    let shift = if settings.considers("constant_torque") { work.shift(repaired) } else { None };
     lap("held out");
     let fitted = &held.fitted;
     let floors = noise::squares(segments.data, &fitted.residuals);
@@ -159,7 +159,8 @@ pub fn diagnose(
         nameless = nameless.max((figures.repaired.powi(2) - noise_square) / excess.max(f64::MIN_POSITIVE));
         evidence = f64::INFINITY;
     }
-    let unnamed = unknown(evidence, nameless.min(1.0));
+    let left_over = acts(evidence);
+    let unnamed = unknown(left_over, nameless.min(1.0));
     lap("unexplained");
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
@@ -214,6 +215,7 @@ pub fn diagnose(
         shares: &shares,
         weighed: &weighed,
         unnamed,
+        left_over,
         calibrated_off,
         shift,
         rivals: &rivals,

@@ -364,23 +364,49 @@ impl Dictionary {
     }
 }
 
-/// A torque as a function of position, velocity and time.
-pub(crate) type Torque = Box<dyn Fn(f64, f64, f64) -> f64 + Sync>;
+/// Where the motion is at a sample: what a torque or a sensor without a name may depend on.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Moment {
+    pub(crate) position: f64,
+    pub(crate) velocity: f64,
+    pub(crate) time: f64,
+    /// Torque of the input; 0 without one.
+    pub(crate) input: f64,
+}
 
-/// The response to torques that are functions of the motion, projected: for what has no name.
-pub(crate) fn torque_columns(
+/// A function of the motion.
+pub(crate) type Smooth = Box<dyn Fn(Moment) -> f64 + Sync>;
+
+/// What functions of the motion do to what is observed: as torques, or added to the sensor's values.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Acting {
+    Torque,
+    Sensor,
+}
+
+/// The change of what is observed by functions of the motion, not projected: for what has no name.
+pub(crate) fn columns_of(
     data: &Data,
     fit: &Fit,
-    torques: &[Torque],
+    functions: &[Smooth],
+    acting: Acting,
 ) -> Result<Vec<Vec<f64>>, DynamicsError> {
     let paths = Path::of(data, fit)?;
-    Ok(torques
+    Ok(functions
         .iter()
-        .map(|torque| {
+        .map(|function| {
             stack(&paths, |path| {
-                let motion = path.motion.position.iter().zip(&path.motion.velocity).zip(&path.times);
-                let along: Vec<f64> = motion.map(|((x, v), t)| torque(*x, *v, *t)).collect();
-                path.response(&along, data.quantity)
+                let motion = path.motion.position.iter().zip(&path.motion.velocity);
+                let along: Vec<f64> = motion
+                    .zip(path.times.iter().zip(&path.input))
+                    .map(|((&position, &velocity), (&time, &input))| {
+                        function(Moment { position, velocity, time, input })
+                    })
+                    .collect();
+                match acting {
+                    Acting::Torque => path.response(&along, data.quantity),
+                    Acting::Sensor => along,
+                }
             })
         })
         .collect())

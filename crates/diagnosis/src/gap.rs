@@ -36,11 +36,15 @@ fn held_out(held: &HeldOut) -> Squares {
     held.residuals.iter().map(own).collect()
 }
 
-/// The noise floor's, its mean taken where it was not measured.
+/// The noise floor's: their sum is what it comes to over all samples, and they scatter as that sum does. A sample where the floor
+/// was not measured stands for the mean, and those where it was for all: each deviation counts N/n times.
 fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
     let mean = floor.value * floor.value;
+    let samples = squares.iter().map(Vec::len).sum::<usize>();
+    let worth = samples as f64 / floor.count.max(1) as f64;
     let own = |squares: &Vec<Option<f64>>| {
-        let filled: Vec<f64> = squares.iter().map(|square| square.unwrap_or(mean)).collect();
+        let filled: Vec<f64> =
+            squares.iter().map(|square| mean + worth * square.map_or(0.0, |square| square - mean)).collect();
         by_block(&filled, 1.0)
     };
     squares.iter().map(own).collect()

@@ -1,10 +1,10 @@
 //! A free latent torque: what a torque without a name could still explain.
 //!
-//! A smooth function of position, velocity and time in a tensor basis of low order, added to the fitted system to first
+//! A smooth function of position, velocity, time and the input in a tensor basis of low order, added to the fitted system to first
 //! order, its coefficients fitted to interleaved segments and scored on the others. Where it beats the best named
 //! effects clearly, something without a name is at work; where it does not, nothing smooth is left.
 
-use crate::dictionary::{Torque, torque_columns};
+use crate::dictionary::{Acting, Smooth, columns_of};
 use crate::fit::{Fit, solve};
 use crate::matrices::ridged;
 use crate::projection::{Projection, jacobians};
@@ -25,25 +25,45 @@ fn chebyshev(degree: i32, x: f64) -> f64 {
     (f64::from(degree) * x.acos()).cos()
 }
 
-pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Torque> {
+/// Highest degree in the input.
+const INPUT_DEGREE: i32 = 5;
+
+/// Smooth functions of position, velocity and time, and of the input where there is one, each of order one.
+pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
     let (a, v, t) = (1.05 * data.facts.amplitude, 1.05 * data.facts.speed, data.facts.duration);
-    let mut basis: Vec<Torque> = Vec::new();
+    let mut basis: Vec<Smooth> = Vec::new();
     for i in 0..=DEGREE {
         for j in 0..=DEGREE - i {
             if i + j >= 2 {
-                basis.push(Box::new(move |x, w, _| chebyshev(i, (x - rest) / a) * chebyshev(j, w / v)));
+                basis.push(Box::new(move |m| {
+                    chebyshev(i, (m.position - rest) / a) * chebyshev(j, m.velocity / v)
+                }));
             }
         }
     }
     // Friction has an edge at rest that no polynomial follows.
-    basis.push(Box::new(|_, w, _| w.signum()));
-    basis.push(Box::new(move |x, w, _| w.signum() * ((x - rest) / a)));
+    basis.push(Box::new(|m| m.velocity.signum()));
+    basis.push(Box::new(move |m| m.velocity.signum() * ((m.position - rest) / a)));
     for degree in 1..=2 {
         for (i, j) in [(0, 0), (1, 0), (0, 1)] {
-            basis.push(Box::new(move |x, w, time| {
-                chebyshev(degree, 2.0 * time / t - 1.0) * chebyshev(i, (x - rest) / a) * chebyshev(j, w / v)
+            basis.push(Box::new(move |m| {
+                chebyshev(degree, 2.0 * m.time / t - 1.0)
+                    * chebyshev(i, (m.position - rest) / a)
+                    * chebyshev(j, m.velocity / v)
             }));
         }
+    }
+    if data.facts.input_torque > 0.0 {
+        let u = 1.05 * data.facts.input_torque;
+        for degree in 2..=INPUT_DEGREE {
+            basis.push(Box::new(move |m| chebyshev(degree, m.input / u)));
+        }
+        for (i, j) in [(1, 0), (0, 1)] {
+            basis.push(Box::new(move |m| {
+                m.input / u * chebyshev(i, (m.position - rest) / a) * chebyshev(j, m.velocity / v)
+            }));
+        }
+        basis.push(Box::new(move |m| m.input / u * chebyshev(1, 2.0 * m.time / t - 1.0)));
     }
     basis
 }
@@ -52,7 +72,7 @@ pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Torque> {
 /// ones, and the other way round.
 pub(crate) fn ceiling(data: &Data, fit: &Fit) -> Result<Vec<DVector<f64>>, DynamicsError> {
     let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
-    let latent = torque_columns(data, fit, &basis(data, rest))?;
+    let latent = columns_of(data, fit, &basis(data, rest), Acting::Torque)?;
     let jacobians = jacobians(data, &fit.hypothesis, &fit.point)?;
     let starts = fit.hypothesis.start_length();
     let globals = fit.globals();

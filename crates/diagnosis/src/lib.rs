@@ -48,6 +48,7 @@ mod projection;
 mod ratio;
 mod refine;
 mod response;
+mod rounding;
 mod score;
 mod search;
 mod segments;

@@ -2,7 +2,7 @@
 //!
 //! Two views of the residual of the best named set, both in units of the noise around them:
 //!
-//! - what a smooth torque of position, velocity and time would still take away;
+//! - what a smooth function of position, velocity, time and the input would still take away, as a torque or in the sensor;
 //! - how far the spectrum of the residual stands out in a band about a harmonic of the swing, or midway between two,
 //!   above the bands beside it. That needs no basis, and sees torques and sensors alike.
 //!
@@ -10,7 +10,7 @@
 //! of two Gaussian variances against a common one, so that a noise of any color, if it is smooth over a few bands,
 //! counts for nothing, and few samples say little.
 
-use crate::dictionary::torque_columns;
+use crate::dictionary::{Acting, columns_of};
 use crate::fit::Fit;
 use crate::latent::basis;
 use crate::matrices::{element, entry};
@@ -38,6 +38,9 @@ const SWING: usize = 1;
 
 /// Bins of a segment's spectrum on either side of a band's middle that belong to it.
 const BESIDE: i32 = 1;
+
+/// How often is looked: in every band, with a free torque and with a free sensor. The evidence is the largest of all.
+const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
 
 /// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the correlations 2/3
 /// and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
@@ -140,16 +143,20 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
             squares += 2.0 * (band.power - band.bins * beside.mean());
         }
     }
-    let looks = 1.0 + 2.0 * HARMONICS as f64;
-    let evidence = (evidence - looks.ln()).max(0.0);
-    (Unexplained { evidence, squares }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
+    let evidence = (evidence - LOOKS.ln()).max(0.0);
+    (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
 }
 
-/// What a free torque would take away of a fit's residual: squares and how many independent directions they lie in.
-fn torque(data: &Data, fit: &Fit) -> Result<(f64, f64), DynamicsError> {
+/// What free functions of the motion would take away of a fit's residual, as a torque or in the sensor: squares and how many
+/// independent directions they lie in.
+fn taken(
+    data: &Data,
+    fit: &Fit,
+    projection: &Projection,
+    acting: Acting,
+) -> Result<(f64, f64), DynamicsError> {
     let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
-    let columns = torque_columns(data, fit, &basis(data, rest))?;
-    let projection = Projection::at(data, fit)?;
+    let columns = columns_of(data, fit, &basis(data, rest), acting)?;
     let mut columns = matrix(projection.rows(), &columns);
     let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     projection.apply(&mut columns);
@@ -184,20 +191,22 @@ fn torque(data: &Data, fit: &Fit) -> Result<(f64, f64), DynamicsError> {
 /// What the dynamics refuse.
 pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, DynamicsError> {
     let (spectrum, around) = outstanding(&bands(data, &fit.residuals));
-    let (squares, directions) = torque(data, fit)?;
     // Where the spectrum has nothing beside the swing's band, all of the residual is the noise.
     let whole =
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
-    // The largest of as many looks as there are bands, and this one.
-    let looks = 1.0 + 2.0 * HARMONICS as f64;
-    let evidence = larger(squares / directions.max(1.0), directions, noise.mean(), noise.worth) - looks.ln();
-    let evidence = evidence.max(0.0);
-    let beyond = (squares - directions * noise.mean()).max(0.0);
-    Ok(Unexplained {
-        evidence: evidence.max(spectrum.evidence),
-        squares: if evidence >= spectrum.evidence { beyond } else { spectrum.squares.max(0.0) },
-    })
+    let projection = Projection::at(data, fit)?;
+    let mut found = spectrum;
+    for acting in [Acting::Torque, Acting::Sensor] {
+        let (squares, directions) = taken(data, fit, &projection, acting)?;
+        let mean = squares / directions.max(1.0);
+        let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
+        if evidence > found.evidence {
+            let squares = (squares - directions * noise.mean()).max(0.0);
+            found = Unexplained { evidence, squares };
+        }
+    }
+    Ok(found)
 }
 
 #[cfg(test)]

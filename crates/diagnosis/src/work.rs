@@ -74,30 +74,38 @@ pub(crate) struct Shift {
 }
 
 impl<'a> Work<'a> {
-    /// Whether a shifted rest angle alone does what the whole calibration does: that is a constant torque.
-    pub(crate) fn shift(&self) -> Result<Option<Shift>, DiagnosisError> {
-        let base = &self.base.calibrated;
-        if !base.hypothesis.calibrated.contains(&Coefficient::RestAngle) {
-            return Ok(None);
+    /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does: that is a constant
+    /// torque.
+    pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
+        let own = &repaired.hypothesis;
+        let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
+        if !own.calibrated.contains(&Coefficient::RestAngle) {
+            return None;
         }
-        let hypothesis = Hypothesis { calibrated: vec![Coefficient::RestAngle], ..base.hypothesis.clone() };
-        let point =
-            Point { globals: hypothesis.nominal_point(), starts: self.base.nominal.point.starts.clone() };
-        let shifted = fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL)?;
-        let time = base.autocorrelation_time();
-        let enough = !significant(base, &shifted, time, base.globals() - 1, OFF_BY_CHANCE);
-        let needed = significant(&shifted, &self.base.nominal, time, 1, SHIFTED_BY_CHANCE);
-        let nominal = &base.hypothesis.nominal;
+        // Effects that cannot be followed beside the given coefficients do not go with a mere shift.
+        let with = |calibrated: Vec<Coefficient>| {
+            let hypothesis = Hypothesis { calibrated, ..own.clone() };
+            let globals = [hypothesis.nominal_point().as_slice(), effects].concat();
+            let from = if effects.is_empty() { &self.base.nominal } else { repaired };
+            let point = Point { globals, starts: from.point.starts.clone() };
+            fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL).ok()
+        };
+        let shifted = with(vec![Coefficient::RestAngle])?;
+        let bare = if effects.is_empty() { self.base.nominal.clone() } else { with(Vec::new())? };
+        let time = repaired.autocorrelation_time();
+        let enough = !significant(repaired, &shifted, time, own.calibrated.len() - 1, OFF_BY_CHANCE);
+        let needed = significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE);
+        let nominal = &own.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
         let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
         let reach = normal_above(0.025) * error;
-        Ok((enough && needed).then(|| Shift {
+        (enough && needed).then(|| Shift {
             torque: Interval {
                 value: torque(angle),
                 interval_95: [torque(angle - reach), torque(angle + reach)],
             },
-        }))
+        })
     }
 
     /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts: better
