@@ -6,9 +6,6 @@ use crate::statistics::normal_above;
 use nalgebra::DVector;
 use serde::Serialize;
 
-/// Fewest second differences of a moving signal that a floor is taken from.
-const FEWEST: usize = 100;
-
 /// Standard deviation of the white part of a residual.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct NoiseFloor {
@@ -22,10 +19,9 @@ pub struct NoiseFloor {
 
 /// The floor from second differences of a residual.
 ///
-/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². A quantized signal at
-/// rest shows one value over and over and no noise at all, so that only stretches count where the signal moves
-/// by a resolution step or more between samples (all, if those are too few). What rounding and this choice do to the
-/// differences of this very motion is worked out and taken back ([`crate::rounding`]).
+/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². In readings rounded to steps
+/// they show less than there is where the motion is slow: what rounding does to the differences of this very motion is worked
+/// out and taken back ([`crate::rounding`]).
 ///
 /// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
 /// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
@@ -47,39 +43,29 @@ pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
     }
 }
 
-/// For each sample of each segment, a sixth of the squared second difference about it, where it counts, on the scale on which
+/// For each sample of each segment but the outermost, a sixth of the squared second difference about it, on the scale on which
 /// their mean is the variance of a sample.
 pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
-    let pieces: Vec<(&[f64], &[f64])> = data
-        .segments
-        .iter()
-        .zip(residuals)
-        .map(|(segment, residual)| (segment.values.as_slice(), residual.as_slice()))
-        .collect();
-    let Some(step) = data.resolution else {
-        return pieces.into_iter().map(|(values, residual)| sixths(values, residual, 0.0)).collect();
-    };
-    let all = |least: f64| -> Vec<Vec<Option<f64>>> {
-        pieces.iter().map(|(values, residual)| sixths(values, residual, least)).collect()
-    };
-    let (mut squares, mut least) = (all(2.0 * step), 2.0 * step);
-    if squares.iter().flatten().flatten().count() < FEWEST {
-        (squares, least) = (all(0.0), 0.0);
-    }
-    let factor = rounding::factor(&pieces, step, least, of_squares(&squares).value);
-    for square in squares.iter_mut().flatten().flatten() {
-        *square *= factor;
+    let mut squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
+    if let Some(step) = data.resolution {
+        let pieces: Vec<(&[f64], &[f64])> = data
+            .segments
+            .iter()
+            .zip(residuals)
+            .map(|(segment, residual)| (segment.values.as_slice(), residual.as_slice()))
+            .collect();
+        let factor = rounding::factor(&pieces, step, of_squares(&squares).value);
+        for square in squares.iter_mut().flatten().flatten() {
+            *square *= factor;
+        }
     }
     squares
 }
 
-/// For each sample, a sixth of the squared second difference of the errors about it, where the values beside it differ by no
-/// less than `least`.
-pub(crate) fn sixths(values: &[f64], errors: &[f64], least: f64) -> Vec<Option<f64>> {
-    let inner = errors.windows(3).zip(values.windows(3)).map(|(e, y)| match (e, y) {
-        (&[a, b, c], &[first, _, last]) if (last - first).abs() >= least => {
-            Some((a - 2.0 * b + c).powi(2) / 6.0)
-        }
+/// For each sample but the outermost, a sixth of the squared second difference of the errors about it.
+pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
+    let inner = errors.windows(3).map(|e| match e {
+        &[a, b, c] => Some((a - 2.0 * b + c).powi(2) / 6.0),
         _ => None,
     });
     std::iter::once(None).chain(inner).chain([None]).take(errors.len()).collect()

@@ -1,9 +1,8 @@
 //! What a sensor's steps make of a noise floor.
 //!
 //! Rounding is not white: where the motion is slow, or crosses a whole number of steps from sample to sample, neighbors are
-//! rounded alike, and second differences show less than there is. And who picks the samples where readings move picks
-//! some for their noise. How much both do depends on the motion and on the size of the noise beneath the steps; so the
-//! sensor is played through: this motion, white Gaussian noise, rounding, the same choice of samples.
+//! rounded alike, and second differences show less than there is. How much depends on the motion and on the size of the
+//! noise beneath the steps; so the sensor is played through: this motion, white Gaussian noise, rounding.
 
 use crate::noise::sixths;
 use rand_distr::{Distribution, StandardNormal};
@@ -34,15 +33,16 @@ impl Mean {
     }
 }
 
-/// Mean square error of a sample over the mean of the [`sixths`] that count, in readings rounded to whole steps.
+/// Mean square error of a sample over the mean of the [`sixths`], in readings rounded to whole steps.
 ///
-/// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`; `least` is how far the
-/// readings beside a sample have to lie apart, and `measured` the root of the mean sixth in these readings. The noise
-/// beneath the steps is taken to be white and Gaussian, as large as makes that mean. 1 where nothing counts.
+/// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`; `measured` is the
+/// root of the mean sixth in these readings. The noise beneath the steps is taken to be white and Gaussian, as large as
+/// makes that mean. 1 where the readings show no noise.
 ///
 /// Draws are the nodes of an integral: they are the same in every call.
-pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, least: f64, measured: f64) -> f64 {
-    let Some(lattice) = pieces.iter().find_map(|(readings, _)| readings.first().copied()) else { return 1.0 };
+pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f64 {
+    let first = pieces.iter().find_map(|(readings, _)| readings.first().copied());
+    let Some(lattice) = first.filter(|_| measured > 0.0) else { return 1.0 };
     let motions: Vec<Vec<f64>> = pieces
         .iter()
         .map(|(readings, errors)| readings.iter().zip(*errors).map(|(y, e)| y - e).collect())
@@ -52,9 +52,9 @@ pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, least: f64, measure
         .flat_map(|_| motions.iter().map(Vec::len).collect::<Vec<_>>())
         .map(|count| (0..count).map(|_| StandardNormal.sample(&mut generator)).collect())
         .collect();
-    // The mean square error of all samples, and the mean of the sixths that count.
+    // The mean square error, and the mean of the sixths.
     let play = |noise: f64| -> [f64; 2] {
-        let (mut all, mut counted) = (Mean::default(), Mean::default());
+        let (mut all, mut differences) = (Mean::default(), Mean::default());
         for (motion, draws) in motions.iter().cycle().zip(&draws) {
             let noises: Vec<f64> = draws.iter().map(|draw| noise * draw).collect();
             let readings: Vec<f64> = motion
@@ -66,18 +66,16 @@ pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, least: f64, measure
             for (error, noise) in errors.iter().zip(&noises) {
                 all.add(error * error, noise * noise);
             }
-            let sixths =
-                sixths(&readings, &errors, least).into_iter().zip(self::sixths(&readings, &noises, 0.0));
-            for pair in sixths {
+            for pair in sixths(&errors).into_iter().zip(sixths(&noises)) {
                 if let (Some(sixth), Some(of_noise)) = pair {
-                    counted.add(sixth, of_noise);
+                    differences.add(sixth, of_noise);
                 }
             }
         }
-        if counted.count > 0.0 { [all.with(noise), counted.with(noise)] } else { [0.0; 2] }
+        [all.with(noise), differences.with(noise)]
     };
-    // Rounding adds to the noise, or hides it: the noise beneath is no larger than this.
-    let (mut low, mut high) = (0.0, 1.5 * measured);
+    // A noise of more than a step cannot be hidden by rounding.
+    let (mut low, mut high) = (0.0, measured.max(step));
     for _ in 0..BISECTIONS {
         let middle = 0.5 * (low + high);
         let [_, sixths] = play(middle);
@@ -101,7 +99,7 @@ mod tests {
             let mut generator = seed::Seed::new(at as u64).child("noise").generator();
             let motion: Vec<f64> = (0..20_000)
                 .map(|i| f64::from(i) / 260.0)
-                .map(|t| 400.0 * (-0.02 * t).exp() * (12.0 * t).sin())
+                .map(|t| 400.0 * (-0.15 * t).exp() * (12.0 * t).sin())
                 .collect();
             let readings: Vec<f64> = motion
                 .iter()
@@ -112,9 +110,9 @@ mod tests {
                 .collect();
             let errors: Vec<f64> = readings.iter().zip(&motion).map(|(y, x)| y - x).collect();
             let own = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
-            let counted: Vec<f64> = sixths(&readings, &errors, 2.0 * step).into_iter().flatten().collect();
-            let mean = counted.iter().sum::<f64>() / counted.len() as f64;
-            let with = mean * factor(&[(&readings, &errors)], step, 2.0 * step, mean.sqrt());
+            let own_sixths: Vec<f64> = sixths(&errors).into_iter().flatten().collect();
+            let mean = own_sixths.iter().sum::<f64>() / own_sixths.len() as f64;
+            let with = mean * factor(&[(&readings, &errors)], step, mean.sqrt());
             for (worst, floor) in worst.iter_mut().zip([mean, with]) {
                 *worst = worst.max((floor / own - 1.0).abs());
             }
@@ -124,7 +122,7 @@ mod tests {
 
     #[test]
     fn nothing_to_play_changes_nothing() {
-        assert_eq!(factor(&[], 1.0, 2.0, 1.0), 1.0);
-        assert_eq!(factor(&[(&[1.0; 9], &[0.0; 9])], 1.0, 2.0, 0.0), 1.0);
+        assert_eq!(factor(&[], 1.0, 1.0), 1.0);
+        assert_eq!(factor(&[(&[1.0; 9], &[0.0; 9])], 1.0, 0.0), 1.0);
     }
 }
