@@ -36,6 +36,8 @@ pub struct Verdict {
     pub effects: Vec<&'static str>,
     /// Probability of this status and of these effects together.
     pub confidence: f64,
+    /// Probability that anything beyond noise is left beside them, however little of the gap it is.
+    pub left_over: f64,
     /// Classes of effects that these data cannot tell apart.
     pub equivalent: Vec<Vec<&'static str>>,
     /// One plain sentence.

@@ -144,8 +144,12 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
                 "The nominal simulator's coefficients are off; recalibrated, nothing is missing ({figures})."
             )
         }
+        Status::Effect if parts.left_over > 0.5 => format!(
+            "The simulator lacks {}, and beside that something small without a name ({figures}).",
+            effects.join(", ")
+        ),
         Status::Effect => format!("The simulator lacks {} ({figures}).", effects.join(", ")),
         Status::Unknown => format!("What is missing has no name in the vocabulary ({figures})."),
     };
-    Verdict { status, effects, confidence, equivalent, summary }
+    Verdict { status, effects, confidence, left_over: parts.left_over, equivalent, summary }
 }

@@ -15,6 +15,8 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
     // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
     let rest = if gap.ratio_to_floor.interval_95.first().is_some_and(|low| low.powi(2) > 2.0) {
         "; most of what is left is still not noise"
+    } else if found.verdict.left_over > 0.5 {
+        "; a part of what is left is still not noise"
     } else {
         ""
     };
