@@ -28,6 +28,13 @@ impl Adam {
         Self { means: vec![0.0; parameters], squares: vec![0.0; parameters], steps: 0 }
     }
 
+    /// Whether this is the state after a number of steps on a number of parameters.
+    #[must_use]
+    pub fn has_taken(&self, steps: u64, parameters: usize) -> bool {
+        u64::try_from(self.steps) == Ok(steps)
+            && [&self.means, &self.squares].iter().all(|of| of.len() == parameters)
+    }
+
     /// Moves the parameters by a step; `rate` is about the distance a parameter goes. `parameters` and
     /// `gradient` are as long as the state; what is longer is left alone.
     pub fn step(&mut self, parameters: &mut [f64], gradient: &[f64], rate: f64) {
@@ -59,6 +66,23 @@ mod tests {
         let mean = (0.9 * 0.2 - 0.1) / (1.0 - 0.81);
         let square: f64 = (0.999 * 0.004 + 0.001) / (1.0 - 0.998_001);
         assert!((x[0] - (before - 0.1 * mean / (square.sqrt() + 1e-8))).abs() < 1e-13);
+    }
+
+    #[test]
+    fn it_knows_how_far_it_is() {
+        let (mut adam, mut x) = (Adam::new(2), [1.0, 2.0]);
+        for steps in 0..3 {
+            assert!(adam.has_taken(steps, 2));
+            assert!(!adam.has_taken(steps + 1, 2) && !adam.has_taken(steps, 1) && !adam.has_taken(steps, 3));
+            adam.step(&mut x, &[1.0, 1.0], 0.1);
+        }
+        for torn in [
+            Adam { means: vec![0.0], ..adam.clone() },
+            Adam { squares: vec![0.0; 3], ..adam.clone() },
+            Adam { steps: -1, ..adam },
+        ] {
+            assert!(!torn.has_taken(3, 2) && !torn.has_taken(u64::MAX, 2));
+        }
     }
 
     #[test]

@@ -82,6 +82,19 @@ impl State {
             last_gain: f64::INFINITY,
         }
     }
+
+    /// Why a minimization over so many parameters in at most so many steps cannot have kept this.
+    fn refusal(&self, parameters: usize, max_steps: u64) -> Option<String> {
+        let (found, steps, rejections) = (self.parameters.len(), self.steps, self.rejections);
+        if found != parameters {
+            return Some(format!("what was kept has {found} parameters, expected {parameters}"));
+        }
+        if steps > max_steps {
+            return Some(format!("what was kept has taken {steps} steps, expected at most {max_steps}"));
+        }
+        (rejections >= MOST_REJECTIONS)
+            .then(|| format!("what was kept goes on after {rejections} rejected steps, expected fewer than {MOST_REJECTIONS}"))
+    }
 }
 
 /// A step that was taken.
@@ -126,7 +139,7 @@ impl LevenbergMarquardt {
     ///
     /// # Errors
     /// What the problem's evaluation gives; [`FitError::Checkpoint`] where a state cannot be kept, or the one that was
-    /// is of another number of parameters.
+    /// is none that this method with this start could have kept.
     pub fn minimize_resumably<P: LeastSquares<Error = FitError>>(
         &self,
         problem: &P,
@@ -136,9 +149,7 @@ impl LevenbergMarquardt {
     ) -> Result<Minimum, FitError> {
         let fresh = State::at(start);
         let state = context.resumed::<State>()?.unwrap_or_else(|| fresh.clone());
-        let (found, expected) = (state.parameters.len(), fresh.parameters.len());
-        if found != expected {
-            let problem = format!("what was kept has {found} parameters, expected {expected}");
+        if let Some(problem) = state.refusal(fresh.parameters.len(), self.max_steps) {
             return Err(FitError::Checkpoint { problem });
         }
         self.go_on(problem, state, |step, state| context.checkpoint(step, state), observe)
@@ -297,7 +308,7 @@ impl Normal {
 
 #[cfg(test)]
 mod tests {
-    use super::{LeastSquares, LevenbergMarquardt, Linearized, Minimum, StopReason};
+    use super::{LeastSquares, LevenbergMarquardt, Linearized, MOST_REJECTIONS, Minimum, State, StopReason};
     use crate::kept::Kept;
     use estimator::{Cancel, FitContext, FitError, Silent};
     use nalgebra::{DMatrix, DVector};
@@ -418,6 +429,39 @@ mod tests {
         let other =
             METHOD.minimize_resumably(&Fallible, DVector::zeros(3), &context, |_| ControlFlow::Continue(()));
         assert!(other.unwrap_err().to_string().contains("has 2 parameters, expected 3"));
+    }
+
+    #[test]
+    fn what_it_cannot_have_kept_is_refused() {
+        let cancel = Cancel::new();
+        let go_on = |state: State| {
+            let kept = Kept::default();
+            let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&kept);
+            context.checkpoint(state.steps, || state).unwrap();
+            let start = DVector::from_vec(vec![10.0, -0.5]);
+            METHOD.minimize_resumably(&Fallible, start, &context, |_| ControlFlow::Continue(()))
+        };
+        let state = State::at(DVector::from_vec(vec![1.0, 0.5]));
+        let last = State { steps: METHOD.max_steps, rejections: MOST_REJECTIONS - 1, ..state.clone() };
+        assert_eq!(go_on(last).unwrap().reason, StopReason::StepsSpent);
+        for (state, says) in [
+            (
+                State { steps: METHOD.max_steps + 1, ..state.clone() },
+                "has taken 101 steps, expected at most 100",
+            ),
+            (State { steps: u64::MAX, ..state.clone() }, "expected at most 100"),
+            (
+                State { rejections: MOST_REJECTIONS, ..state.clone() },
+                "after 12 rejected steps, expected fewer than 12",
+            ),
+            (State { rejections: u32::MAX, ..state }, "expected fewer than 12"),
+        ] {
+            let refused = go_on(state).unwrap_err();
+            assert!(
+                matches!(&refused, FitError::Checkpoint { problem } if problem.contains(says)),
+                "{refused}"
+            );
+        }
     }
 
     #[test]

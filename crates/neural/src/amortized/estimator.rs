@@ -61,9 +61,21 @@ impl<N: Skilled> Amortized<N> {
     /// [`fields`](super::fields) besides the network's own keys.
     ///
     /// # Errors
-    /// [`SettingsError::Declaration`] where a key is not declared.
+    /// [`SettingsError::Declaration`] where a key is not declared; [`SettingsError::BadValue`] where there are fewer peaks
+    /// at most than at least.
     pub fn new(network: N, settings: &Resolved) -> Result<Self, SettingsError> {
-        let (prior, training) = (settings.section("estimator")?, settings.section("estimator")?);
+        let (prior, training): (Prior, _) = (settings.section("estimator")?, settings.section("estimator")?);
+        let [fewest, most] = prior.peaks;
+        if fewest > most {
+            let peaks = settings.setting("estimator.peaks")?;
+            return Err(SettingsError::BadValue {
+                origin: peaks.origin.clone(),
+                key: peaks.key(),
+                found: format!("[{fewest}, {most}]"),
+                expected: "the fewest peaks first, then the most".to_owned(),
+                unit: String::new(),
+            });
+        }
         Ok(Self { network, prior, training })
     }
 
@@ -204,6 +216,7 @@ impl<N: Skilled> Estimator for Trained<N> {
 mod tests {
     use super::Amortized;
     use crate::amortized::bank::Prior;
+    use crate::amortized::fields;
     use crate::amortized::tiny::{Pupil, estimator};
     use crate::amortized::training::Training;
     use crate::kept::Kept;
@@ -211,6 +224,7 @@ mod tests {
     use envelope::Envelope;
     use estimator::{Cancel, Estimate, Estimator, FitContext, FitError, Observer, Reached, Silent, Step};
     use seed::Seed;
+    use settings::{Document, Resolved, Section, SettingsError};
     use std::cell::RefCell;
 
     /// λ = 0.2 1/s with a scatter of about 0.03.
@@ -361,6 +375,38 @@ mod tests {
         assert!(matches!(fit(&broken, 40, None), Err(FitError::NotFinite { .. })));
         let prior = Prior { peaks: [30, 30], ..plain.prior.clone() };
         assert!(fit(&Amortized { prior, ..plain }, 29, None).unwrap().uncertainty.is_none());
+    }
+
+    /// Drawing a number between a larger and a smaller one used to end the program.
+    #[test]
+    fn fewest_peaks_come_before_most() {
+        let keys = [
+            fields::LONGEST_SEQUENCE,
+            fields::MOST_LOOKS,
+            fields::MAX_STEPS,
+            fields::BATCH,
+            fields::LEARNING_RATE,
+            fields::CALIBRATION,
+            fields::PEAKS,
+            fields::DECAY,
+            fields::SCATTER,
+            fields::UNEVENNESS,
+            fields::MISSING,
+            fields::BENT,
+            fields::BEND,
+        ];
+        let new = |peaks: &str| {
+            let document = Document::parse("a.toml", &format!("[estimator]\npeaks = {peaks}\n")).unwrap();
+            let resolved = Resolved::new(&document, &[Section { name: "estimator", fields: &keys }]).unwrap();
+            Amortized::new(Pupil { scale: 0.2 }, &resolved)
+        };
+        assert_eq!(new("[30, 30]").unwrap().prior.peaks, [30, 30]);
+        let refused = new("[400, 10]").unwrap_err();
+        assert!(matches!(refused, SettingsError::BadValue { .. }));
+        assert_eq!(
+            refused.to_string(),
+            "a.toml:2:1: `estimator.peaks` is [400, 10]; expected the fewest peaks first, then the most"
+        );
     }
 
     #[test]

@@ -40,6 +40,9 @@ const LONGEST_GRADIENT: f64 = 1.0;
 /// Share of the steps over which the rate rises to its largest.
 const RISE: f64 = 0.05;
 
+/// Words that the generator of examples has: 16 to a block, blocks counted by 64 bits.
+const WORDS: u128 = 1 << 68;
+
 /// What a training gives.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Skill {
@@ -66,17 +69,23 @@ impl State {
         Self { before: start.clone(), adam: Adam::new(start.len()), parameters: start, steps: 0, words: 0 }
     }
 
-    /// The state that was kept, or that of the start.
-    fn resumed(start: Vec<f64>, context: &FitContext<'_>) -> Result<Self, FitError> {
+    /// The state that was kept, or that of the start. A training of at most `limit` steps can only go on from one
+    /// that it could have kept itself.
+    fn resumed(start: Vec<f64>, limit: u64, context: &FitContext<'_>) -> Result<Self, FitError> {
         let expected = start.len();
-        let state = context.resumed::<Self>()?.unwrap_or_else(|| Self::at(start));
-        if state.parameters.len() == expected && state.before.len() == expected {
+        let Some(state) = context.resumed::<Self>()? else { return Ok(Self::at(start)) };
+        let (found, steps) = (state.parameters.len(), state.steps);
+        let before = state.before.len();
+        let problem = if found != expected || before != expected {
+            format!("what was kept has {found} parameters and {before} of a step before, expected {expected}")
+        } else if steps > limit || !state.adam.has_taken(steps, expected) {
+            format!("what was kept is not what {steps} of {limit} steps on {expected} parameters lead to")
+        } else if state.words >= WORDS {
+            format!("what was kept has read {} words of a generator that has {WORDS}", state.words)
+        } else {
             return Ok(state);
-        }
-        let found = state.parameters.len();
-        Err(FitError::Checkpoint {
-            problem: format!("what was kept has {found} parameters, expected {expected}"),
-        })
+        };
+        Err(FitError::Checkpoint { problem })
     }
 }
 
@@ -95,7 +104,7 @@ impl Training {
         let recording = device.clone().autodiff();
         let mut generator: ChaCha12Rng = context.seed("bank").generator();
         let limit = context.step_limit(self.max_steps);
-        let mut state = State::resumed(start, context)?;
+        let mut state = State::resumed(start, limit, context)?;
         generator.set_word_pos(state.words);
         let mut reached = loop {
             state.words = generator.get_word_pos();
@@ -194,12 +203,16 @@ fn negative_log_likelihood(said: Tensor<2>, targets: Tensor<2>, entries: usize) 
 
 #[cfg(test)]
 mod tests {
-    use super::{SAID, loss_and_gradient, negative_log_likelihood};
+    use super::{SAID, State, WORDS, loss_and_gradient, negative_log_likelihood};
+    use crate::adam::Adam;
     use crate::amortized::estimator::Skilled;
     use crate::amortized::tiny::{estimator, prior};
     use crate::device::{device, tensor, values};
+    use crate::kept::Kept;
+    use estimator::{Cancel, FitContext, FitError, Silent};
     use rand::SeedableRng;
     use rand::rngs::StdRng;
+    use seed::Seed;
 
     #[test]
     fn the_loss_is_the_normal_likelihoods() {
@@ -250,5 +263,37 @@ mod tests {
         assert!(rates[..15].windows(2).all(|pair| pair[0] < pair[1]));
         assert!(rates[15..].windows(2).all(|pair| pair[0] > pair[1]));
         assert!((rates[14] - 0.1).abs() < 4e-3 && rates[299] < 1e-5 && rates[0] < 4e-3, "{rates:?}");
+    }
+
+    #[test]
+    fn what_it_cannot_have_kept_is_refused() {
+        let cancel = Cancel::new();
+        let resumed = |state: &State| {
+            let kept = Kept::default();
+            let context = FitContext::new(Seed::new(0), None, &Silent, &cancel).checkpointing_to(&kept);
+            context.checkpoint(state.steps, || state).unwrap();
+            State::resumed(vec![0.0; 2], 1, &context)
+        };
+        let mut adam = Adam::new(2);
+        adam.step(&mut [0.0; 2], &[1.0; 2], 0.1);
+        let kept = State { parameters: vec![0.3; 2], before: vec![0.2; 2], adam, steps: 1, words: WORDS - 1 };
+        assert_eq!(resumed(&kept).unwrap(), kept);
+        for (state, says) in [
+            (
+                State { parameters: vec![0.3; 3], ..kept.clone() },
+                "has 3 parameters and 2 of a step before, expected 2",
+            ),
+            (State { before: vec![], ..kept.clone() }, "has 2 parameters and 0 of a step before, expected 2"),
+            (State { adam: Adam::new(2), ..kept.clone() }, "not what 1 of 1 steps on 2 parameters lead to"),
+            (State { adam: Adam::new(1), steps: 0, ..kept.clone() }, "not what 0 of 1 steps"),
+            (State { steps: 2, ..kept.clone() }, "not what 2 of 1 steps"),
+            (State { words: WORDS, ..kept }, "has read 295147905179352825856 words"),
+        ] {
+            let refused = resumed(&state).unwrap_err();
+            assert!(
+                matches!(&refused, FitError::Checkpoint { problem } if problem.contains(says)),
+                "{refused}"
+            );
+        }
     }
 }

@@ -82,7 +82,7 @@ impl Ledger {
                 let kept: Option<Finished> = ledger.read(&file)?;
                 let kept = kept.filter(|kept| kept.run == ledger.run).ok_or_else(|| ledger.foreign(&file))?;
                 ledger.finished.extend(kept.entries);
-                next = next.max(number.parse::<u64>().map_or(0, |number| number + 1));
+                next = next.max(number.parse::<u64>().map_or(0, |number| number.saturating_add(1)));
             } else if file.ends_with(STATE) {
                 let kept: Option<InProgress> = ledger.read(&file)?;
                 kept.filter(|kept| kept.run == ledger.run).ok_or_else(|| ledger.foreign(&file))?;
@@ -119,7 +119,7 @@ impl Ledger {
         let file = format!("{FINISHED}{:06}", pending.next);
         let kept = Finished { run: self.run.clone(), entries: std::mem::take(&mut pending.entries) };
         self.folder.write_checkpoint(&file, &encode(&file, &kept)?)?;
-        pending.next += 1;
+        pending.next = pending.next.saturating_add(1);
         pending.seconds = 0.0;
         Ok(())
     }
