@@ -48,3 +48,24 @@ fn fill(disk: &Disk, path: &Path, content: &[u8]) -> Result<NamedTempFile, RunEr
 fn folder_of(path: &Path) -> &Path {
     path.parent().unwrap_or_else(|| Path::new("."))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::write_new;
+    use crate::disk::Disk;
+    use crate::error::RunError;
+
+    #[test]
+    fn a_new_file_gives_way_to_one_that_is_there_and_to_nothing_else() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("sweep.json");
+        let disk = Disk::default();
+        assert!(write_new(&disk, &path, b"first").unwrap());
+        assert!(!write_new(&disk, &path, b"second").unwrap());
+        assert_eq!(std::fs::read(&path).unwrap(), b"first");
+        // No system takes a name so long.
+        let refused = write_new(&disk, &folder.path().join("x".repeat(5000)), b"").unwrap_err();
+        assert!(matches!(refused, RunError::Io { .. }), "{refused}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+}

@@ -11,3 +11,14 @@ pub fn digest(bytes: &[u8]) -> String {
 pub(crate) fn hexadecimal(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::digest;
+
+    /// The first example of FIPS 180-2, appendix B.1.
+    #[test]
+    fn it_is_the_standard_s() {
+        assert_eq!(digest(b"abc"), "sha256:ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+    }
+}

@@ -123,8 +123,31 @@ mod tests {
     use super::{Event, EventLog};
     use crate::disk::Disk;
     use crate::error::RunError;
+    use crate::faults::Faults;
     use serde_json::json;
     use std::path::Path;
+    use std::sync::Arc;
+
+    #[test]
+    fn what_cannot_be_read_is_not_taken_for_an_empty_log() {
+        let folder = tempfile::tempdir().unwrap();
+        assert!(matches!(EventLog::read(folder.path()), Err(RunError::Io { .. })));
+    }
+
+    /// A new file's name is flushed with the folder that holds it; an old one's is there already.
+    #[test]
+    fn the_folder_is_flushed_for_the_first_line_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let operations = || {
+            let faults = Arc::new(Faults::none());
+            let event = Event { time: String::new(), event: "x".into(), details: json!(null) };
+            EventLog::append(&path, &Disk::failing(Arc::clone(&faults)), &event).unwrap();
+            faults.asked()
+        };
+        let first = operations();
+        assert_eq!([operations(), operations()], [first - 1; 2]);
+    }
 
     #[test]
     fn several_writers_keep_one_chain() {

@@ -65,3 +65,30 @@ impl Faults {
         (bytes / 2, Err(Error::from_raw_os_error(code)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Faults, Lasts, Refusal};
+    use std::io::ErrorKind;
+
+    /// What of writes of ten bytes each is allowed, and how it is refused.
+    fn writes(faults: &Faults) -> Vec<(usize, Option<ErrorKind>)> {
+        (0..4)
+            .map(|_| faults.next(10))
+            .map(|(bytes, end)| (bytes, end.err().map(|error| error.kind())))
+            .collect()
+    }
+
+    #[test]
+    fn one_operation_fails_or_all_from_it_on_and_a_write_half_way() {
+        let full = (5, Some(ErrorKind::StorageFull));
+        let faults = Faults::new(1, Refusal::Full, Lasts::Once);
+        assert_eq!(writes(&faults), [(10, None), full, (10, None), (10, None)]);
+        assert_eq!(faults.asked(), 4);
+        let faults = Faults::new(2, Refusal::Full, Lasts::ForGood);
+        assert_eq!(writes(&faults), [(10, None), (10, None), full, full]);
+        assert_eq!(writes(&Faults::none()), [(10, None); 4]);
+        let device = Faults::new(0, Refusal::Device, Lasts::Once).next(0).1.unwrap_err();
+        assert_eq!(device.raw_os_error(), Some(5));
+    }
+}

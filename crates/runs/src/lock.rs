@@ -126,11 +126,21 @@ mod tests {
     #[test]
     fn what_stands_in_the_file_decides_nothing() {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join(LOCK), "process 1 for ever").unwrap();
+        std::fs::write(folder.path().join(LOCK), "process 1 for ever, ".repeat(100)).unwrap();
         let lock = Lock::take(&Disk::default(), folder.path()).unwrap();
+        // Nothing of it is left behind the new holder's name.
+        let message = Lock::check(folder.path()).unwrap_err().to_string();
+        assert!(message.contains(&format!("process {} on ", std::process::id())), "{message}");
         std::fs::write(folder.path().join(LOCK), "").unwrap();
         let message = Lock::check(folder.path()).unwrap_err().to_string();
         assert!(message.contains("another program is working in it"), "{message}");
         drop(lock);
+    }
+
+    #[test]
+    #[cfg(unix)]
+    fn the_machine_has_the_name_that_the_system_gives_it() {
+        let told = std::process::Command::new("uname").arg("-n").output().unwrap();
+        assert_eq!(super::host(), String::from_utf8(told.stdout).unwrap().trim());
     }
 }

@@ -25,3 +25,18 @@ impl Scratch {
         self.0.path()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Scratch;
+
+    #[test]
+    fn it_is_a_folder_while_it_lives() {
+        let (one, other) = (Scratch::new().unwrap(), Scratch::new().unwrap());
+        let path = one.path().to_owned();
+        assert!(path.is_dir() && path != other.path());
+        std::fs::write(path.join("a"), "x").unwrap();
+        drop(one);
+        assert!(!path.exists() && other.path().is_dir());
+    }
+}

@@ -218,6 +218,7 @@ fn text_of(manifest: &SweepManifest) -> Result<Vec<u8>, RunError> {
 #[cfg(test)]
 mod tests {
     use super::{SweepFolder, SweepFolderError};
+    use crate::error::RunError;
     use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
     use std::path::Path;
 
@@ -330,5 +331,20 @@ mod tests {
             let message = refused.to_string();
             assert!(message.contains("sweep.json") && message.contains(says), "{message}");
         }
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_not_taken_for_absent() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        assert_eq!(sweep.folder().path(), root.path());
+        let refused = sweep.begin_run(&"x".repeat(5000)).unwrap_err();
+        assert!(matches!(refused, RunError::Io { .. }), "{refused}");
+        std::fs::write(root.path().join("state"), "a file").unwrap();
+        assert!(matches!(sweep.manifest(), Err(SweepFolderError::Run(RunError::Io { .. }))));
+        let path = root.path().join("sweep.json");
+        std::fs::remove_file(&path).unwrap();
+        std::fs::create_dir(&path).unwrap();
+        assert!(matches!(sweep.manifest(), Err(SweepFolderError::Run(RunError::Io { .. }))));
     }
 }

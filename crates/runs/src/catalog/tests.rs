@@ -198,6 +198,17 @@ fn a_row_of_an_estimation_says_what_its_result_says() {
     );
 }
 
+/// JSON has no word for the error relative to an oracle that says zero.
+#[test]
+fn null_is_no_number_and_not_absent() {
+    let root = tempfile::tempdir().unwrap();
+    let null = json!({ "error_percent": null });
+    let run = kept(root.path(), &with(estimation("converged", "converged"), null));
+    assert_eq!(run.state, RunState::Done, "{}", run.reason);
+    assert!(run.rows[0].error_percent.unwrap().is_nan());
+    assert_eq!(run.rows[0].worst_error_percent, Some(0.32));
+}
+
 #[test]
 fn a_comparison_has_a_row_for_each_method_with_its_estimate_or_why_there_is_none() {
     let root = tempfile::tempdir().unwrap();

@@ -448,3 +448,17 @@ pub(super) fn nulls_are_not_numbers<'de, D: serde::Deserializer<'de>>(
 ) -> Result<[f64; 2], D::Error> {
     Ok(<[Option<f64>; 2]>::deserialize(deserializer)?.map(|end| end.unwrap_or(f64::NAN)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::WithInterval;
+
+    #[test]
+    fn an_end_that_is_no_number_is_null_and_read_again_as_none() {
+        let open = WithInterval { value: 0.25, interval_95: [f64::NEG_INFINITY, 0.75] };
+        let text = serde_json::to_string(&open).unwrap();
+        assert_eq!(text, "{\"value\":0.25,\"interval_95\":[null,0.75]}");
+        let read: WithInterval = serde_json::from_str(&text).unwrap();
+        assert!(read.interval_95[0].is_nan() && read.interval_95[1] == 0.75 && read.value == 0.25);
+    }
+}

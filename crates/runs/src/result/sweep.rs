@@ -274,3 +274,43 @@ impl RunTable {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{RunState, RunTable, RunTableRow, SweepState};
+    use serde_json::to_value;
+
+    const STATES: [RunState; 6] = [
+        RunState::Done,
+        RunState::Interrupted,
+        RunState::Failed,
+        RunState::Unfinished,
+        RunState::Pending,
+        RunState::Corrupt,
+    ];
+
+    #[test]
+    fn a_state_is_called_what_the_files_call_it() {
+        for state in STATES {
+            assert_eq!(to_value(state).unwrap(), state.name());
+        }
+        for state in [SweepState::Pending, SweepState::Done, SweepState::Failed, SweepState::Interrupted] {
+            assert_eq!(to_value(state).unwrap(), state.name());
+        }
+    }
+
+    #[test]
+    fn a_run_is_counted_once_whatever_its_rows() {
+        let row = |run: &str, state| RunTableRow::without_numbers(run, state, "");
+        let each = STATES.map(|state| row(state.name(), state));
+        let rows =
+            [&each[..], &[row("two methods", RunState::Done), row("two methods", RunState::Done)]].concat();
+        let table = RunTable::new("runs", "", vec![], vec![], rows);
+        assert_eq!((table.done, table.failed, table.open), (2, 2, 3));
+        assert!(!table.pass);
+        let pass = |row: RunTableRow| RunTable::new("runs", "", vec![], vec![], vec![row]).pass;
+        let done = row("a", RunState::Done);
+        assert!(pass(done.clone()) && pass(RunTableRow { pass: Some(true), ..done.clone() }));
+        assert!(!pass(RunTableRow { pass: Some(false), ..done }) && !pass(row("a", RunState::Corrupt)));
+    }
+}
