@@ -252,7 +252,8 @@ fn promise(
 
 #[cfg(test)]
 mod tests {
-    use super::{Intercept, least_squares};
+    use super::{Intercept, least_squares, promise};
+    use crate::double_double::UNIT_ROUNDOFF;
     use crate::error::OracleError;
 
     #[test]
@@ -299,5 +300,81 @@ mod tests {
             least_squares(&[&one], &[1.0; 3], Intercept::None),
             Err(OracleError::Shape { column: 1, found: 2, expected: 3 })
         );
+    }
+
+    /// y = 1 + 2x + 3x² and residuals orthogonal to 1, x and x²: (−1, 3, −3, 1) on four even points.
+    #[test]
+    fn a_parabola_by_hand() {
+        let x = [0.0, 1.0, 2.0, 3.0];
+        let square: Vec<f64> = x.iter().map(|x| x * x).collect();
+        let off = [-1.0, 3.0, -3.0, 1.0];
+        let y: Vec<f64> = x.iter().zip(off).map(|(x, off)| 1.0 + 2.0 * x + 3.0 * x * x + off).collect();
+        let fit = least_squares(&[&[1.0; 4], &x, &square], &y, Intercept::Included).unwrap();
+        for (found, expected) in fit.coefficients.iter().zip([1.0, 2.0, 3.0]) {
+            assert!((found - expected).abs() < 1e-15, "{fit:?}");
+        }
+        for (found, expected) in fit.residuals.iter().zip(off) {
+            assert!((found - expected).abs() < 1e-14, "{fit:?}");
+        }
+        // One degree of freedom: σ² = 20. The diagonal of (XᵀX)⁻¹ is 19/20, 49/20, 1/4.
+        assert!((fit.residual_std_dev - 20_f64.sqrt()).abs() < 1e-14);
+        for (found, expected) in fit.std_errors.iter().zip([19_f64, 49.0, 5.0]) {
+            assert!((found - expected.sqrt()).abs() < 1e-13, "{fit:?}");
+        }
+        // y = 0, 9, 14, 35 has the mean 14.5: Σ(y − ȳ)² = 661, Σy² = 1502.
+        assert!((fit.r_squared - (1.0 - 20.0 / 661.0)).abs() < 1e-15);
+        let about_zero = least_squares(&[&[1.0; 4], &x, &square], &y, Intercept::None).unwrap();
+        assert!((about_zero.r_squared - (1.0 - 20.0 / 1502.0)).abs() < 1e-15);
+        assert_eq!(about_zero.coefficients, fit.coefficients);
+    }
+
+    #[test]
+    fn a_constant_is_met_whole() {
+        let fit = least_squares(&[&[1.0; 3]], &[0.0; 3], Intercept::Included).unwrap();
+        assert_eq!((fit.coefficients[0], fit.r_squared, fit.residual_std_dev), (0.0, 1.0, 0.0));
+    }
+
+    /// Singular values of a product do not depend on the order of the columns, and for orthogonal ones they are equal.
+    #[test]
+    fn condition_numbers_of_known_matrices() {
+        let condition = |columns: &[&[f64]]| {
+            let y: Vec<f64> = (0..columns[0].len()).map(|row| f64::from(u32::from(row == 0))).collect();
+            least_squares(columns, &y, Intercept::None).unwrap().condition
+        };
+        let (a, b, c) = ([1.0, 1.0, 1.0, 1.0], [5.0, -5.0, 5.0, -5.0], [0.1, 0.1, -0.1, -0.1]);
+        assert!((condition(&[&a, &b, &c]) - 1.0).abs() < 1e-12);
+        // Three unit columns with the cosine c between any two: eigenvalues 1 + 2c and 1 − c.
+        let cosine = 0.9_f64;
+        let diagonal = |at: usize| {
+            let (large, small) = ((1.0 + 2.0 * cosine).sqrt(), (1.0 - cosine).sqrt());
+            let mean = (large - small) / 3.0;
+            (0..4)
+                .map(|row| if row == 3 { 0.0 } else { mean + if row == at { small } else { 0.0 } })
+                .collect::<Vec<f64>>()
+        };
+        let columns = [diagonal(0), diagonal(1), diagonal(2)];
+        let expected = ((1.0 + 2.0 * cosine) / (1.0 - cosine)).sqrt();
+        for order in [[0, 1, 2], [2, 0, 1], [1, 0, 2]] {
+            let found = condition(&order.map(|at: usize| columns[at].as_slice()));
+            assert!((found / expected - 1.0).abs() < 1e-9, "{found} {expected}");
+        }
+    }
+
+    /// The bound as it is written: ten times the size, u, and κ + κ²·tan θ, over the smallest share that exceeds it.
+    #[test]
+    fn the_promise_is_the_bound_s() {
+        let digits = |condition, tangent, coefficients: &[f64]| {
+            promise(condition, tangent, 7, coefficients.iter().copied())
+        };
+        let bound = 70.0 * UNIT_ROUNDOFF * (1e10 + 1e20 * 0.5);
+        assert!((digits(1e10, 0.5, &[3.0]) + bound.log10()).abs() < 1e-12);
+        // A coefficient of a hundredth of the norm has two digits fewer; one below the bound has no say.
+        let two = digits(1e10, 0.5, &[1.0, 0.01]);
+        assert!((two + bound.log10() - (-2.0 - 0.5 * 1.0001_f64.log10())).abs() < 1e-12, "{two}");
+        assert_eq!(digits(1e10, 0.5, &[1.0, 1e-13]), digits(1e10, 0.5, &[1.0]));
+        assert!((digits(1e10, 0.5, &[0.0, 0.0]) + bound.log10()).abs() < 1e-12);
+        // No double has more.
+        assert_eq!(digits(1.0, 0.0, &[1.0]), 15.65);
+        assert_eq!(digits(1.0, 0.0, &[0.0]), 15.65);
     }
 }

@@ -74,3 +74,51 @@ fn autocorrelation(residuals: &[f64]) -> f64 {
     let product: f64 = residuals.iter().zip(residuals.iter().skip(1)).map(|(a, b)| a * b).sum();
     if square > 0.0 { product / square } else { 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{autocorrelation, decay_rate};
+    use envelope::Envelope;
+
+    #[test]
+    fn three_peaks_by_hand() {
+        // Slope 3/2, residuals 1/2, −1, 1/2: s² = 3/2, Sxx = 2, R² = 1 − (3/2)/6.
+        let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![1.0, 1.0, 4.0], 6.0).unwrap();
+        let fit = decay_rate(&envelope).unwrap();
+        let error = 0.75_f64.sqrt();
+        // Student's t with one degree of freedom, Cauchy's: tan(0.475·π).
+        let quantile = (0.475 * std::f64::consts::PI).tan();
+        for (found, expected) in [
+            (fit.decay_rate, -1.5),
+            (fit.log_amplitude, 0.5),
+            (fit.zeta, -0.25),
+            (fit.std_error, error),
+            (fit.zeta_std_error, error / 6.0),
+            (fit.r_squared, 0.75),
+            (fit.residual_autocorrelation, -2.0 / 3.0),
+            (fit.log_amplitude_at(4.0), 6.5),
+            (fit.interval_95[0], -1.5 - quantile * error),
+            (fit.interval_95[1], -1.5 + quantile * error),
+        ] {
+            assert!((found - expected).abs() < 1e-9 * expected.abs(), "{found} {expected} {fit:?}");
+        }
+    }
+
+    /// t with n − 2 degrees of freedom: 2.306 with eight.
+    #[test]
+    fn ten_peaks_leave_eight_degrees_of_freedom() {
+        let times: Vec<f64> = (0..10).map(f64::from).collect();
+        let logs = times.iter().map(|t| (7.0 * t).sin()).collect();
+        let fit = decay_rate(&Envelope::new(times, logs, 6.0).unwrap()).unwrap();
+        let half_width = (fit.interval_95[1] - fit.interval_95[0]) / 2.0;
+        assert!((half_width / fit.std_error - 2.306_004).abs() < 1e-5);
+    }
+
+    #[test]
+    fn neighbors_that_agree_oppose_or_are_not() {
+        assert_eq!(autocorrelation(&[]), 0.0);
+        assert_eq!(autocorrelation(&[0.0, 0.0]), 0.0);
+        assert_eq!(autocorrelation(&[1.0, -1.0, 1.0, -1.0]), -0.75);
+        assert_eq!(autocorrelation(&[1.0, 1.0, -1.0, -1.0]), 0.25);
+    }
+}

@@ -117,7 +117,9 @@ pub(crate) fn dot(a: &[DoubleDouble], b: &[DoubleDouble]) -> DoubleDouble {
 
 #[cfg(test)]
 mod tests {
-    use super::{DoubleDouble, UNIT_ROUNDOFF};
+    use super::{DoubleDouble, UNIT_ROUNDOFF, dot};
+    use rand::RngExt;
+    use seed::Seed;
 
     #[test]
     fn a_third_three_times_is_one() {
@@ -137,5 +139,68 @@ mod tests {
     fn what_a_double_loses_is_kept() {
         let sum = DoubleDouble::from(1e16) + DoubleDouble::from(1.0) - DoubleDouble::from(1e16);
         assert_eq!(sum.value(), 1.0);
+    }
+
+    /// Whole numbers whose sums, differences and products 106 bits hold are as exact here as among whole numbers.
+    #[test]
+    fn whole_numbers_are_computed_with_exactly() {
+        let mut generator = Seed::new(3).generator();
+        for _ in 0..2000 {
+            // A number of up to 100 bits, in two parts that a double holds each.
+            let mut whole = |bits: u32| -> i128 {
+                let high = i128::from(generator.random_range(-(1_i64 << 52)..=1 << 52));
+                let low = i128::from(generator.random_range(-(1_i64 << 46)..=1 << 46));
+                let shift = generator.random_range(0..=bits);
+                if shift > 47 { (high << shift) + low } else { high + low }
+            };
+            let (a, b, c) = (whole(50), whole(50), whole(0));
+            let (x, y, z) = (exact(a), exact(b), exact(c));
+            assert_eq!([back(x), back(y), back(-x)], [a, b, -a]);
+            assert_eq!([back(x + y), back(x - y), back(y - x)], [a + b, a - b, b - a], "{a} {b}");
+            // 52 times 53 bits.
+            let (d, e) = (c, i128::from(generator.random_range(1_i64..=1 << 52)));
+            let product = z * exact(e);
+            assert_eq!(back(product), d * e, "{d} {e}");
+            assert_eq!(back(product / exact(e)), d, "{d} {e}");
+            assert_eq!(back((exact(e) * exact(e)).sqrt()), e);
+            assert_eq!(back([x, y, -x].into_iter().sum()), b);
+            assert_eq!(back(dot(&[z, z], &[exact(1), exact(1)])), 2 * c);
+        }
+    }
+
+    /// What a number in two parts times such a number is, to 104 bits.
+    #[test]
+    fn long_products_quotients_and_roots_are_good_to_thirty_digits() {
+        let mut generator = Seed::new(4).generator();
+        let mut long = || {
+            let (high, low): (f64, f64) =
+                (generator.random_range(0.5..1.0), generator.random_range(-1.0..1.0));
+            DoubleDouble::renormalize(high, low * f64::EPSILON / 4.0)
+        };
+        for _ in 0..2000 {
+            let (a, b, c) = (long(), long(), long());
+            let off = |found: DoubleDouble, expected: DoubleDouble| (found - expected).value().abs();
+            let near = 16.0 * UNIT_ROUNDOFF;
+            assert!(off(a * b, b * a) <= near && off((a * b) * c, a * (b * c)) <= near);
+            assert!(off(a * (b + c), a * b + a * c) <= near, "{a:?} {b:?} {c:?}");
+            assert!(off((a / b) * b, a) <= near, "{a:?} {b:?}");
+            assert!(off(a.sqrt() * a.sqrt(), a) <= near, "{a:?}");
+        }
+    }
+
+    #[test]
+    fn nothing_has_no_root_and_is_told_from_little() {
+        assert!(DoubleDouble::ZERO.is_zero() && DoubleDouble::ZERO.sqrt().is_zero());
+        assert!(DoubleDouble::from(-4.0).sqrt().is_zero());
+        assert!(!DoubleDouble::from(f64::MIN_POSITIVE).is_zero());
+    }
+
+    fn exact(whole: i128) -> DoubleDouble {
+        let high = whole as f64;
+        DoubleDouble { high, low: (whole - high as i128) as f64 }
+    }
+
+    fn back(number: DoubleDouble) -> i128 {
+        number.high as i128 + number.low as i128
     }
 }

@@ -156,3 +156,20 @@ impl Disk {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::Disk;
+    use std::path::Path;
+
+    /// As the default place of runs is, from the current folder.
+    #[test]
+    fn a_relative_folder_is_made_in_the_current_one() {
+        let name = format!(".made-by-test-{}", std::process::id());
+        let path = Path::new(&name).join("runs");
+        Disk::default().make_folders(&path).unwrap();
+        assert!(path.is_dir());
+        Disk::default().make_folders(&path).unwrap();
+        std::fs::remove_dir_all(&name).unwrap();
+    }
+}

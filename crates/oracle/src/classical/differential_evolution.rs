@@ -218,7 +218,7 @@ impl Moments {
 
 #[cfg(test)]
 mod tests {
-    use super::{Evolution, Evolved, LINE, Moments, minimize};
+    use super::{Evolution, Evolved, LINE, Moments, contracted, inside, minimize, mutate, widest_slope};
     use crate::classical::line::Line;
     use crate::classical::problem::SmoothFunction;
     use envelope::Envelope;
@@ -257,5 +257,100 @@ mod tests {
         let (at, moments) = ([0.7, -0.4], Moments::new(&line));
         let direct = line.value_and_gradient(&at).0;
         assert!((moments.sum_of_squares(&at).value() / direct - 1.0).abs() < 1e-14);
+    }
+
+    fn members() -> Vec<(Vec<f64>, f64)> {
+        [[0.0, 0.0], [1.0, 10.0], [3.0, 20.0], [7.0, 60.0], [15.0, -40.0]].map(|x| (x.to_vec(), 0.0)).to_vec()
+    }
+
+    const WIDE: [[f64; 2]; 2] = [[-100.0, 100.0], [-1000.0, 1000.0]];
+
+    /// x₁ + F·(x₂ − x₃), three different members, none of them the target.
+    #[test]
+    fn a_mutant_is_one_member_and_the_difference_of_two_others() {
+        let (members, mut generator) = (members(), Seed::new(5).generator());
+        let evolution = Evolution { crossover: 1.0, ..LINE };
+        let mut seen = std::collections::BTreeSet::new();
+        for _ in 0..400 {
+            let trial = mutate(&members, 2, &WIDE, evolution, &mut generator);
+            let others = [0, 1, 3, 4];
+            let made =
+                others.iter().flat_map(|a| others.iter().flat_map(move |b| others.map(|c| (*a, *b, c))));
+            let from = made.filter(|(a, b, c)| a != b && b != c && a != c).find(|(a, b, c)| {
+                (0..2).all(|at| {
+                    let x = |number: usize| members[number].0[at];
+                    (trial[at] - (x(*a) + 0.6 * (x(*b) - x(*c)))).abs() < 1e-12
+                })
+            });
+            seen.insert(from.unwrap_or_else(|| panic!("{trial:?}")));
+        }
+        assert_eq!(seen.len(), 24);
+    }
+
+    #[test]
+    fn without_crossover_one_parameter_is_another() {
+        let (members, mut generator) = (members(), Seed::new(6).generator());
+        let evolution = Evolution { crossover: 0.0, ..LINE };
+        let mut changed = [0, 0];
+        for _ in 0..400 {
+            let trial = mutate(&members, 4, &WIDE, evolution, &mut generator);
+            let other: Vec<usize> = (0..2).filter(|at| trial[*at] != members[4].0[*at]).collect();
+            assert_eq!(other.len(), 1, "{trial:?}");
+            changed[other[0]] += 1;
+        }
+        // Each as often as the other, to four standard deviations.
+        assert!(changed.iter().all(|count: &i32| (count - 200).abs() < 40), "{changed:?}");
+    }
+
+    /// A parameter beyond its range is drawn anew, evenly over the range.
+    #[test]
+    fn trials_stay_in_the_box() {
+        let (members, mut generator) = (members(), Seed::new(7).generator());
+        let narrow = [[2.0, 4.0], [-1e3, 1e3]];
+        let evolution = Evolution { crossover: 1.0, difference: 1e6, ..LINE };
+        let trials: Vec<f64> =
+            (0..4000).map(|_| mutate(&members, 0, &narrow, evolution, &mut generator)[0]).collect();
+        assert!(trials.iter().all(|x| (2.0..=4.0).contains(x)));
+        let mean = trials.iter().sum::<f64>() / 4000.0;
+        // The standard deviation of a uniform number over 2 is 2/√12.
+        assert!((mean - 3.0).abs() < 4.0 * 2.0 / 12_f64.sqrt() / 4000_f64.sqrt(), "{mean}");
+        let quarter = trials.iter().filter(|x| **x < 2.5).count();
+        assert!((850..1150).contains(&quarter), "{quarter}");
+    }
+
+    #[test]
+    fn the_spread_is_the_widest_over_its_range() {
+        assert_eq!(contracted(&members(), &WIDE), 15.0 / 200.0);
+        assert_eq!(contracted(&members(), &[[0.0, 1e3], [-50.0, 150.0]]), 0.5);
+        // A range of one value is not spread over.
+        assert_eq!(contracted(&members(), &[[3.0, 3.0], [-1e3, 1e3]]), 0.05);
+        assert_eq!(contracted::<f64>(&[], &[]), 0.0);
+    }
+
+    #[test]
+    fn the_best_member_is_given_and_none_gets_worse() {
+        let mut before = f64::INFINITY;
+        for max_generations in [0, 1, 5, 25] {
+            let evolved = evolve(3, Evolution { max_generations, ..LINE });
+            assert_eq!((evolved.generations, evolved.value), (max_generations, rastrigin(&evolved.best)));
+            assert!(evolved.value <= before, "{evolved:?}");
+            before = evolved.value;
+        }
+        // Of the first members, drawn in this order, none is better.
+        let mut generator = Seed::new(3).generator();
+        let first =
+            (0..30).map(|_| [inside(&[-5.12, 5.12], &mut generator), inside(&[-5.12, 5.12], &mut generator)]);
+        let best = first.map(|x| rastrigin(&x)).fold(f64::INFINITY, f64::min);
+        assert_eq!(evolve(3, Evolution { max_generations: 0, ..LINE }).value, best);
+    }
+
+    /// Values of standard deviation 1 on times from 0 to 1 rise at most like √n/‖u − ū‖.
+    #[test]
+    fn the_box_holds_every_line() {
+        let times: Vec<f64> = (0..9).map(f64::from).collect();
+        let line = Line::new(&Envelope::new(times.clone(), times, 20.0).unwrap());
+        // A straight line has the steepest slope there is: u/σ with σ² = (n² − 1)/(12·(n − 1)²).
+        let steepest = (12.0 * 64.0 / 80.0_f64).sqrt();
+        assert!((widest_slope(&line) / (1.5 * steepest) - 1.0).abs() < 1e-14);
     }
 }

@@ -205,9 +205,11 @@ fn between(short: f64, short_slope: f64, long: f64, long_slope: Option<f64>) -> 
 
 #[cfg(test)]
 mod tests {
-    use super::minimize;
+    use super::{Pair, Point, between, direction, explain, minimize, search};
     use crate::classical::problem::{Limits, SmoothFunction};
+    use crate::classical::vectors::{dot, length};
     use crate::classical::{Minimum, Reached};
+    use std::collections::VecDeque;
 
     /// Rosenbrock's valley in n dimensions.
     struct Valley;
@@ -258,5 +260,103 @@ mod tests {
     #[test]
     fn a_start_without_a_value_is_refused() {
         assert!(minimize(&Valley, &[f64::NAN, 0.0], Limits { tolerance: 1e-12, max_steps: 9 }).is_err());
+    }
+
+    /// ½·Σ i·xᵢ².
+    struct Bowl;
+
+    impl SmoothFunction for Bowl {
+        fn value_and_gradient(&self, x: &[f64]) -> (f64, Vec<f64>) {
+            let gradient: Vec<f64> = (1..).zip(x).map(|(i, x)| f64::from(i) * x).collect();
+            (0.5 * dot(x, &gradient), gradient)
+        }
+
+        fn relative_gradient(&self, _: &[f64], gradient: &[f64]) -> f64 {
+            length(gradient)
+        }
+    }
+
+    fn point(function: &impl SmoothFunction, x: &[f64]) -> Point {
+        Point::at(function, x.to_vec()).unwrap()
+    }
+
+    /// The last change of the gradient is taken for what it is: H·y = s. All directions go down.
+    #[test]
+    fn the_approximate_inverse_knows_the_last_step() {
+        let path = [[3.0, -1.0, 2.0], [1.0, -0.5, 1.5], [0.7, 0.1, 0.2], [-0.2, 0.3, 0.1]];
+        let points: Vec<Point> = path.iter().map(|x| point(&Bowl, x)).collect();
+        let pairs: VecDeque<Pair> = points.windows(2).map(|two| Pair::between(&two[0], &two[1])).collect();
+        for count in 1..=pairs.len() {
+            let pairs: VecDeque<Pair> =
+                (0..count).map(|at| Pair::between(&points[at], &points[at + 1])).collect();
+            let last = pairs.back().unwrap();
+            let back = direction(&last.change, &pairs);
+            assert!(back.iter().zip(&last.step).all(|(b, s)| (b + s).abs() < 1e-12), "{back:?}");
+            for gradient in [[1.0, 0.0, 0.0], [-2.0, 5.0, 0.3]] {
+                assert!(dot(&direction(&gradient, &pairs), &gradient) < 0.0);
+            }
+        }
+        // Without a pair it is the gradient's.
+        assert_eq!(direction(&[1.0, -2.0], &VecDeque::new()), [-1.0, 2.0]);
+        assert!((pairs[0].curvature - (4.0 + 2.0 * 0.25 + 3.0 * 0.25)).abs() < 1e-14);
+    }
+
+    /// Wolfe's conditions, from steep and from hardly falling starts, with directions of any length.
+    #[test]
+    fn a_step_that_is_found_fulfils_wolfe_s_conditions() {
+        let mut found = 0;
+        for start in [[-1.2, 1.0], [2.0, -3.0], [0.9, 0.81], [0.0, 0.0]] {
+            let here = point(&Valley, &start);
+            for scale in [1e-6, 1e-3, 1.0, 30.0] {
+                for first in [true, false] {
+                    let direction: Vec<f64> = here.gradient.iter().map(|g| -scale * g).collect();
+                    let Some(next) = search(&Valley, &here, &direction, first) else { continue };
+                    let slope = dot(&here.gradient, &direction);
+                    let moved: Vec<f64> = next.x.iter().zip(&here.x).map(|(a, b)| a - b).collect();
+                    let trial = length(&moved) / length(&direction);
+                    assert!(next.value <= here.value + 1.001e-4 * trial * slope);
+                    assert!(dot(&next.gradient, &direction).abs() <= 0.9 * slope.abs());
+                    found += 1;
+                }
+            }
+            let up: Vec<f64> = here.gradient.clone();
+            assert!(search(&Valley, &here, &up, false).is_none());
+        }
+        assert!(found >= 30, "{found}");
+    }
+
+    #[test]
+    fn a_trial_lies_inside_its_bracket() {
+        // Where a straight line from −2 to 2 is zero.
+        assert_eq!(between(1.0, -2.0, 3.0, Some(2.0)), 2.0);
+        assert_eq!(between(1.0, -1.0, 3.0, Some(3.0)), 1.5);
+        // At most so near to an end.
+        assert!((between(0.0, -1e-9, 1.0, Some(1.0)) - 0.05).abs() < 1e-15);
+        assert!((between(0.0, -1.0, 1.0, Some(1e-9)) - 0.95).abs() < 1e-15);
+        for without in [None, Some(-1.0), Some(0.0)] {
+            assert_eq!(between(1.0, -1.0, 4.0, without), 2.5);
+        }
+    }
+
+    /// A quadratic of four parameters: about as many steps, as by conjugate gradients.
+    #[test]
+    fn a_quadratic_takes_few_steps() {
+        let minimum =
+            minimize(&Bowl, &[4.0, -3.0, 2.0, 1.0], Limits { tolerance: 1e-10, max_steps: 100 }).unwrap();
+        assert_eq!(minimum.reached, Reached::Converged);
+        assert!(minimum.steps <= 20, "{}", minimum.steps);
+        assert!(minimum.value < 1e-20 && minimum.relative_gradient <= 1e-10);
+    }
+
+    #[test]
+    fn every_end_is_told() {
+        for (reached, says) in [
+            (Reached::Converged, "relative gradient 2.0e-3 after 7 steps, at most 1e-12 wanted"),
+            (Reached::BudgetSpent, "after 7 steps, the budget; 1e-12 wanted. Raise the budget"),
+            (Reached::Stalled, "after 7 steps and no step gains; 1e-12 wanted"),
+        ] {
+            let told = explain(reached, 2e-3, 7, Limits { tolerance: 1e-12, max_steps: 7 });
+            assert!(told.contains(says), "{told}");
+        }
     }
 }

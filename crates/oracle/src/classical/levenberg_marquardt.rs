@@ -242,10 +242,14 @@ fn decrease(weights: &[f64], z: &[f64], size: f64, triangle: &super::linear::Tri
 
 #[cfg(test)]
 mod tests {
-    use super::minimize;
+    use super::{Step, damped, decrease, minimize};
+    use crate::classical::local::Local;
     use crate::classical::problem::Limits;
+    use crate::classical::vectors::{combine, dot, length, minus, times};
     use crate::classical::{LeastSquaresProblem, Reached};
     use crate::error::OracleError;
+    use rand::RngExt;
+    use seed::Seed;
 
     const LIMITS: Limits = Limits { tolerance: 1e-10, max_steps: 500 };
 
@@ -298,5 +302,104 @@ mod tests {
         assert_eq!(found.reached, Reached::Converged, "{found:?}");
         assert!((found.parameters[0] - 1.0).abs() < 1e-12, "{found:?}");
         assert_eq!(minimize(&Root, &[-1.0], LIMITS), Err(OracleError::NotFinite { row: 1 }));
+    }
+
+    /// Residuals b − A·p of a problem with curvatures up to 10⁶ apart, at p.
+    struct Linear {
+        columns: Vec<Vec<f64>>,
+        right: Vec<f64>,
+    }
+
+    impl LeastSquaresProblem for Linear {
+        fn residuals(&self, p: &[f64]) -> Vec<f64> {
+            minus(&combine(&self.columns, p), &self.right)
+        }
+
+        fn jacobian(&self, _: &[f64]) -> Vec<Vec<f64>> {
+            self.columns.clone()
+        }
+
+        fn data_length(&self) -> f64 {
+            length(&self.right)
+        }
+    }
+
+    fn linear_problems() -> impl Iterator<Item = Linear> {
+        let mut generator = Seed::new(15).generator();
+        (0..100).map(move |number| {
+            let mut vector =
+                |scale: f64| (0..7).map(|_| scale * generator.random_range(-1.0..1.0)).collect::<Vec<f64>>();
+            let columns = (0..2 + number % 3).map(|at| vector(10_f64.powi(at - 1))).collect();
+            Linear { columns, right: vector(3.0) }
+        })
+    }
+
+    /// (JᵀJ + μD²)·p = Jᵀr with ‖D·p‖ at the radius to a tenth, or within it undamped; the gain is the model's.
+    #[test]
+    fn a_step_is_the_best_within_its_radius() {
+        for problem in linear_problems() {
+            let size = problem.columns.len();
+            let here = Local::start(&problem, &vec![0.0; size], &LIMITS).unwrap();
+            let scales: Vec<f64> =
+                here.lengths.iter().zip([1.0, 2.0, 1.0, 5.0]).map(|(a, b)| a * b).collect();
+            let free = Step::within(&here, &scales, f64::MAX, 0.0);
+            assert_eq!(free.damping, 0.0);
+            for share in [1e-4, 0.03, 0.5, 0.9, 1.2] {
+                for damping in [0.0, 1e-3, 10.0] {
+                    let radius = share * free.size;
+                    let step = Step::within(&here, &scales, radius, damping);
+                    let misfit = (step.size / radius - 1.0).abs();
+                    assert!(
+                        if share > 1.0 { step.damping == 0.0 } else { misfit <= 0.1 },
+                        "{share} {misfit}"
+                    );
+                    assert!((length(&times(&scales, &step.back)) / step.size - 1.0).abs() < 1e-9);
+                    let (residuals, image) =
+                        (problem.residuals(&vec![0.0; size]), combine(&problem.columns, &step.back));
+                    let left = minus(&residuals, &image);
+                    for ((column, scale), p) in problem.columns.iter().zip(&scales).zip(&step.back) {
+                        let gap = dot(column, &left) - step.damping * scale * scale * p;
+                        assert!(gap.abs() <= 1e-9 * length(column) * here.size, "{gap:e}");
+                    }
+                    let gain = 1.0 - (length(&left) / here.size).powi(2);
+                    assert!((step.gain / gain - 1.0).abs() < 1e-6, "{} {gain}", step.gain);
+                    // Half the derivative of ‖r − t·J·p‖² by t at 0, over ‖r‖².
+                    let slope = -dot(&residuals, &image) / here.size.powi(2);
+                    assert!((step.slope / slope - 1.0).abs() < 1e-6, "{} {slope}", step.slope);
+                }
+            }
+        }
+    }
+
+    /// −d ln‖D·p‖/dμ by differences.
+    #[test]
+    fn a_step_shortens_with_its_damping_as_said() {
+        for problem in linear_problems() {
+            let here = Local::start(&problem, &vec![0.0; problem.columns.len()], &LIMITS).unwrap();
+            let weights: Vec<f64> = [1.0, 2.0, 1.0, 5.0].into_iter().take(problem.columns.len()).collect();
+            let size = |damping: f64| length(&times(&weights, &damped(&here, &weights, damping).unwrap().0));
+            for damping in [0.01, 1.0] {
+                let (z, triangle) = damped(&here, &weights, damping).unwrap();
+                let h = 1e-5 * damping;
+                let difference = (size(damping - h) - size(damping + h)) / (2.0 * h) / size(damping);
+                let stated = decrease(&weights, &z, size(damping), &triangle);
+                assert!((stated / difference - 1.0).abs() < 1e-6, "{stated} {difference}");
+            }
+        }
+    }
+
+    /// A linear problem is solved by the first step that may be as long as it takes.
+    #[test]
+    fn a_linear_problem_takes_a_step_or_two() {
+        for problem in linear_problems() {
+            let start = vec![1.0; problem.columns.len()];
+            let found = minimize(&problem, &start, Limits { tolerance: 1e-12, max_steps: 50 }).unwrap();
+            assert_eq!(found.reached, Reached::Converged, "{found:?}");
+            assert!(found.steps <= 12, "{found:?}");
+            let left = problem.residuals(&found.parameters);
+            for column in &problem.columns {
+                assert!(dot(column, &left).abs() <= 1e-9 * length(column) * length(&left));
+            }
+        }
     }
 }

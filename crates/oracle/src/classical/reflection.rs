@@ -217,8 +217,10 @@ fn exit(from: &[f64], direction: &[f64], radius: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::{Model, exit};
-    use crate::classical::vectors::length;
+    use super::{Model, Walls, exit, select};
+    use crate::classical::vectors::{add_scaled, combine, dot, length, times};
+    use rand::RngExt;
+    use seed::Seed;
 
     #[test]
     fn the_step_in_the_ball_solves_the_damped_equations() {
@@ -248,5 +250,188 @@ mod tests {
             let end = [from[0] + t * direction[0], from[1] + t * direction[1]];
             assert!(t > 0.0 && (length(&end) - 2.0).abs() < 1e-14);
         }
+    }
+
+    /// Models of two to four parameters, the curvatures up to 10⁴ apart.
+    fn models() -> Vec<Model> {
+        let mut generator = Seed::new(12).generator();
+        (0..200)
+            .map(|number| {
+                let size = 2 + number % 3;
+                let columns = (0..size).map(|_| {
+                    let scale = 10_f64.powf(generator.random_range(-2.0..2.0));
+                    (0..size + 2).map(|_| scale * generator.random_range(-1.0..1.0)).collect()
+                });
+                let columns = columns.collect();
+                Model::new(columns, (0..size).map(|_| generator.random_range(-1.0..1.0)).collect())
+            })
+            .collect()
+    }
+
+    #[test]
+    fn the_model_is_half_a_square_and_a_slope() {
+        let model = Model::new(vec![vec![2.0, 0.0, 1.0], vec![1.0, 3.0, -1.0]], vec![-4.0, 7.0]);
+        // ½·(5s² + 2st + 11t²) − 4s + 7t.
+        assert!((model.value(&[1.0, 2.0]) - (0.5 * 53.0 + 10.0)).abs() < 1e-13);
+        assert_eq!(model.gradient(), [-4.0, 7.0]);
+        assert_eq!(model.value(&[0.0, 0.0]), 0.0);
+    }
+
+    /// (BᵀB + α)·s = −g, and −d‖s‖/dα.
+    #[test]
+    fn damped_steps_solve_their_equations_and_shorten_as_said() {
+        for model in models() {
+            for damping in [0.1, 3.0] {
+                let step = model.step(damping);
+                let image = combine(&model.columns, &step);
+                for ((column, s), g) in model.columns.iter().zip(&step).zip(&model.gradient) {
+                    let left = dot(column, &image) + damping * s;
+                    assert!((left + g).abs() < 1e-8 * (1.0 + damping), "{left} {g}");
+                }
+                let h = 1e-5 * damping;
+                let size = |damping| length(&model.step(damping));
+                let difference = (size(damping - h) - size(damping + h)) / (2.0 * h);
+                let stated = model.decrease(damping, size(damping));
+                assert!((stated / difference - 1.0).abs() < 1e-5, "{stated} {difference}");
+            }
+        }
+    }
+
+    /// On the sphere, and no other point of the ball is better by more than the hundredth that the radius is met to.
+    #[test]
+    fn the_step_in_the_ball_is_the_best_in_it() {
+        let mut generator = Seed::new(13).generator();
+        for model in models() {
+            let free = length(&model.within(f64::MAX));
+            for share in [0.01, 0.3, 0.9, 0.999, 1.5] {
+                let radius = share * free;
+                let step = model.within(radius);
+                let size = length(&step);
+                if share > 1.0 {
+                    assert!((size / free - 1.0).abs() < 1e-9);
+                } else {
+                    assert!((size / radius - 1.0).abs() < 1e-12, "{size} {radius}");
+                }
+                let value = model.value(&step);
+                assert!(value < 0.0);
+                for _ in 0..50 {
+                    let other: Vec<f64> = step.iter().map(|_| generator.random_range(-1.0..1.0)).collect();
+                    let factor = radius * generator.random::<f64>() / length(&other);
+                    let other: Vec<f64> = other.iter().map(|x| x * factor).collect();
+                    assert!(model.value(&other) >= 1.02 * value, "{} {value}", model.value(&other));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn along_a_ray_the_least_of_the_model_is_found() {
+        for model in models() {
+            let size = model.gradient.len();
+            let (from, direction) =
+                (vec![0.1; size], model.gradient.iter().map(|g| -g).collect::<Vec<f64>>());
+            for (low, high) in [(0.0, 1e-4), (0.0, 10.0), (2.0, 3.0)] {
+                let (factor, value) = model.along(&from, &direction, low, high);
+                let at = |factor: f64| {
+                    let mut s = from.clone();
+                    add_scaled(&mut s, factor, &direction);
+                    model.value(&s)
+                };
+                assert!((low..=high).contains(&factor));
+                let room = 1e-9 * at(low).abs().max(at(high).abs());
+                assert!((at(factor) - value).abs() <= room, "{} {value}", at(factor));
+                for step in 0..=100 {
+                    assert!(at(low + (high - low) * f64::from(step) / 100.0) >= value - room);
+                }
+            }
+        }
+    }
+
+    const BOX: Walls = Walls { low: &[-1.0, 0.0], high: &[3.0, f64::INFINITY] };
+
+    #[test]
+    fn a_box_ends_at_its_walls() {
+        assert!(BOX.contain(&[0.0, 1.0]) && BOX.contain(&[2.999, 1e9]));
+        for x in [[-1.0, 1.0], [3.0, 1.0], [0.0, 0.0], [0.0, -1.0], [4.0, 1.0], [-2.0, 1.0]] {
+            assert!(!BOX.contain(&x), "{x:?}");
+            let inner = BOX.inside(&x);
+            assert!(BOX.contain(&inner), "{inner:?}");
+            assert!(x.iter().zip(&inner).all(|(x, inner)| (x - inner).abs() <= 1.0 + 1e-15));
+        }
+        assert_eq!(BOX.inside(&[0.5, 2.0]), [0.5, 2.0]);
+        let tight = Walls { low: &[1.0], high: &[1.0 + f64::EPSILON] };
+        assert!((tight.inside(&[7.0])[0] - 1.0).abs() <= f64::EPSILON);
+    }
+
+    #[test]
+    fn the_way_to_the_walls_by_hand() {
+        for (direction, room, hits) in [
+            ([1.0, 0.0], 2.0, [true, false]),
+            ([-4.0, 1.0], 0.5, [true, false]),
+            ([0.0, -2.0], 0.25, [false, true]),
+            ([1.0, -0.25], 2.0, [true, true]),
+            ([-2.0, -1.0], 0.5, [false, true]),
+        ] {
+            let found = BOX.reach(&[1.0, 0.5], &direction);
+            assert_eq!(found, (room, hits.to_vec()), "{direction:?}");
+        }
+        assert_eq!(BOX.reach(&[1.0, 0.5], &[0.0, 1.0]).0, f64::INFINITY);
+        assert_eq!(BOX.reach(&[1.0, 0.5], &[0.0, 0.0]).0, f64::INFINITY);
+    }
+
+    /// Inside box and ball, the model's value as said, and no worse than the step cut short of the wall or any point on the
+    /// gradient's ray.
+    #[test]
+    fn the_chosen_step_is_the_best_of_those_that_stay_inside() {
+        const SHARE: f64 = 0.995;
+        let mut generator = Seed::new(14).generator();
+        let (mut cut_short, mut better_than_cut) = (0, 0);
+        for model in models() {
+            let size = model.gradient.len();
+            let x: Vec<f64> = (0..size).map(|_| generator.random_range(0.05..0.95)).collect();
+            let scale: Vec<f64> = (0..size).map(|_| generator.random_range(0.2..2.0)).collect();
+            let (low, high) = (vec![0.0; size], vec![1.0; size]);
+            let walls = Walls { low: &low, high: &high };
+            let at = |s: &[f64]| x.iter().zip(times(&scale, s)).map(|(x, s)| x + s).collect::<Vec<f64>>();
+            for radius in [0.05, 0.5, 5.0] {
+                let (step, value) = select(&model, &walls, &x, &scale, radius, SHARE);
+                assert!(walls.contain(&at(&step)) && length(&step) <= radius * (1.0 + 1e-9), "{step:?}");
+                assert!((model.value(&step) - value).abs() <= 1e-9 * value.abs(), "{value}");
+                let whole = model.within(radius);
+                if walls.contain(&at(&whole)) {
+                    assert_eq!(step, whole);
+                    continue;
+                }
+                cut_short += 1;
+                let room = SHARE * walls.reach(&x, &times(&scale, &whole)).0;
+                let cut = model.value(&whole.iter().map(|s| s * room).collect::<Vec<f64>>());
+                assert!(value <= cut + 1e-12 * cut.abs(), "{value} {cut}");
+                better_than_cut += u32::from(value < cut - 1e-6 * cut.abs());
+                let down: Vec<f64> = model.gradient.iter().map(|g| -g).collect();
+                let most = f64::min(radius / length(&down), SHARE * walls.reach(&x, &times(&scale, &down)).0);
+                for part in 0..=50 {
+                    let factor = most * f64::from(part) / 50.0;
+                    let s: Vec<f64> = down.iter().map(|s| s * factor).collect();
+                    assert!(value <= model.value(&s) + 1e-12, "{value}");
+                }
+            }
+        }
+        assert!(cut_short > 100 && better_than_cut > 0, "{cut_short} {better_than_cut}");
+    }
+
+    /// m(s) = ½|s|² + g·s with a wall at s₁ = 1: straight to the wall and off it again.
+    #[test]
+    fn a_step_is_reflected_at_the_wall() {
+        let model = Model::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]], vec![-4.0, -4.0]);
+        let walls = Walls { low: &[f64::NEG_INFINITY; 2], high: &[1.0, f64::INFINITY] };
+        let (step, value) = select(&model, &walls, &[0.0, 0.0], &[1.0, 1.0], 1e3, 0.995);
+        // From (1, 1) along (−4, 4) the model only rises: all that is left is to stay next to the wall.
+        assert!(step.iter().all(|s| (s - 1.0).abs() < 1e-3) && step[0] < 1.0, "{step:?}");
+        assert!((value + 7.0).abs() < 1e-3, "{value}");
+        // A steeper slope along the wall is followed further.
+        let model = Model::new(vec![vec![1.0, 0.0], vec![0.0, 1.0]], vec![-4.0, -12.0]);
+        let (step, _) = select(&model, &walls, &[0.0, 0.0], &[1.0, 1.0], 1e3, 0.995);
+        // From (1, 3) along (−4, 12): slope −(1 − 4)·4 + (3 − 12)·12 = −96, curvature 160: t = 0.6.
+        assert!((step[0] + 1.4).abs() < 1e-9 && (step[1] - 10.2).abs() < 1e-9, "{step:?}");
     }
 }

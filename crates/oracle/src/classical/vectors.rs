@@ -82,3 +82,62 @@ pub(super) fn diagonal(entries: &[f64]) -> impl Iterator<Item = Vec<f64>> {
         column
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{add_scaled, combine, diagonal, dot, finite, length, minus, over, sum, times};
+
+    /// Whole numbers are added without rounding, however many and in whichever order.
+    #[test]
+    fn sums_hold_every_term_once() {
+        for count in [0, 1, 2, 63, 64, 65, 66, 127, 128, 129, 1000, 12_345_u32] {
+            let terms: Vec<f64> = (1..=count).map(f64::from).collect();
+            let n = f64::from(count);
+            assert_eq!(sum(&terms), n * (n + 1.0) / 2.0);
+            assert_eq!(dot(&terms, &terms), n * (n + 1.0) * (2.0 * n + 1.0) / 6.0);
+            assert_eq!(dot(&terms, &[]), 0.0);
+        }
+        // The shorter one ends the product.
+        assert_eq!(dot(&[1.0, 2.0, 3.0], &[4.0, 5.0]), 14.0);
+    }
+
+    /// A tenth has no double: a million of them one after the other are off by 1e-11, by halves by 1e-15.
+    #[test]
+    fn sums_by_halves_keep_their_digits() {
+        let tenths = vec![0.1; 1_000_000];
+        assert!((sum(&tenths) / 1e5 - 1.0).abs() < 2e-15);
+        assert!((dot(&tenths, &vec![1.0; 1_000_000]) / 1e5 - 1.0).abs() < 2e-15);
+    }
+
+    #[test]
+    fn lengths_beyond_the_squares_of_doubles_are_lengths() {
+        for unit in [1.0, 1e-300, 1e-150, 1e-139, 1e139, 1e150, 1e300] {
+            let found = length(&[3.0 * unit, 0.0, -4.0 * unit]);
+            assert!((found / (5.0 * unit) - 1.0).abs() < 1e-15, "{unit:e}: {found:e}");
+        }
+        assert_eq!(length(&[]), 0.0);
+        assert_eq!(length(&[0.0, -0.0]), 0.0);
+        assert_eq!(length(&[1.0, f64::NEG_INFINITY]), f64::INFINITY);
+    }
+
+    #[test]
+    fn entries_are_taken_one_by_one() {
+        let (a, b) = ([6.0, -8.0], [2.0, 4.0]);
+        assert_eq!(times(&a, &b), [12.0, -32.0]);
+        assert_eq!(over(&a, &b), [3.0, -2.0]);
+        assert_eq!(minus(&a, &b), [4.0, -12.0]);
+        let mut moved = a;
+        add_scaled(&mut moved, -0.5, &b);
+        assert_eq!(moved, [5.0, -10.0]);
+        assert!(finite(&a) && !finite(&[1.0, f64::NAN]) && !finite(&[f64::INFINITY, 1.0]));
+    }
+
+    #[test]
+    fn a_matrix_by_columns_times_a_vector() {
+        let columns = [vec![1.0, 2.0, 3.0], vec![0.0, -1.0, 1.0]];
+        assert_eq!(combine(&columns, &[2.0, 10.0]), [2.0, -6.0, 16.0]);
+        assert_eq!(combine(&[], &[]), [] as [f64; 0]);
+        let square: Vec<Vec<f64>> = diagonal(&[7.0, 8.0]).collect();
+        assert_eq!(square, [vec![7.0, 0.0], vec![0.0, 8.0]]);
+    }
+}
