@@ -3,6 +3,8 @@
 use crate::support::root;
 use registry::ESTIMATORS;
 
+#[path = "fuzz/checkpoints.rs"]
+mod checkpoints;
 #[path = "fuzz/targets.rs"]
 mod targets;
 
@@ -48,4 +50,11 @@ fn nominal_simulators() {
 #[test]
 fn results_of_runs() {
     replay("results", targets::results);
+}
+
+#[test]
+fn states_of_fits_in_progress() {
+    let networks =
+        ["pinn", "lstm-amortized"].map(|id| *ESTIMATORS.iter().find(|entry| entry.id == id).unwrap());
+    replay("checkpoint", |data| checkpoints::checkpoint(data, &networks));
 }

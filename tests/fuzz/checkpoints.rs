@@ -68,7 +68,8 @@ fn sealed(content: &[u8]) {
     assert_eq!(folder.read_checkpoint(&name).unwrap().as_deref(), Some(content));
     let path = folder.checkpoint_path(&name);
     let mut file = std::fs::read(&path).unwrap();
-    let at = content.iter().fold(content.len(), |sum, byte| sum * 31 % 65_521 + usize::from(*byte)) % file.len();
+    let at =
+        content.iter().fold(content.len(), |sum, byte| sum * 31 % 65_521 + usize::from(*byte)) % file.len();
     file[at] ^= 1 << (at % 8);
     std::fs::write(&path, file).unwrap();
     assert!(matches!(folder.read_checkpoint(&name), Err(RunError::Damaged { .. })));

@@ -377,4 +377,24 @@ mod tests {
         assert_eq!(digits(1.0, 0.0, &[1.0]), 15.65);
         assert_eq!(digits(1.0, 0.0, &[0.0]), 15.65);
     }
+
+    /// Where columns are nearly the same, residuals cost the digits that κ²·tan θ says.
+    #[test]
+    fn residuals_cost_digits() {
+        let near: Vec<f64> = (0..6).map(|x| 1.0 + 1e-9 * f64::from(x)).collect();
+        let fit = |off: f64| {
+            let y: Vec<f64> = (0..6).map(|x| f64::from(x) + off * f64::from(x * x % 3)).collect();
+            least_squares(&[&[1.0; 6], &near], &y, Intercept::Included).unwrap()
+        };
+        let scattered = fit(1.0);
+        let square = |values: &mut dyn Iterator<Item = f64>| values.map(|x| x * x).sum::<f64>();
+        let rest = square(&mut scattered.residuals.iter().copied());
+        let all = square(&mut (0..6).map(|x| f64::from(x) + f64::from(x * x % 3)));
+        let tangent = (rest / (all - rest)).sqrt();
+        let bound = 80.0 * UNIT_ROUNDOFF * scattered.condition.powi(2) * tangent;
+        // Both coefficients are of one size: the norm is √2 times either.
+        let expected = -(bound * 2_f64.sqrt()).log10();
+        assert!((scattered.promised_digits - expected).abs() < 1e-3, "{scattered:?} {expected}");
+        assert!(fit(0.0).promised_digits > expected + 2.0);
+    }
 }

@@ -6,8 +6,10 @@ use crate::cli::{ExperimentArguments, Output};
 use crate::error::TrainerError;
 use crate::run::run_until;
 use estimator::Cancel;
-use runs::Disk;
+use rand::RngExt;
 use runs::faults::{Faults, Lasts, Refusal};
+use runs::{Disk, RunFolder};
+use seed::Seed;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -283,4 +285,66 @@ fn a_checkpoint_of_another_run_is_refused() {
     let message =
         run(&[ESTIMATION, &["seed=7"]].concat(), &other, true, &Disk::default()).unwrap_err().to_string();
     assert!(message.contains("belongs to another run"), "{message}");
+}
+
+/// A copy of a run's folder.
+fn copied(from: &Path, to: &Path) {
+    for folder in [PathBuf::new(), PathBuf::from("checkpoints")] {
+        std::fs::create_dir_all(to.join(&folder)).unwrap();
+        for entry in std::fs::read_dir(from.join(&folder)).unwrap().map(Result::unwrap) {
+            if entry.path().is_file() {
+                std::fs::copy(entry.path(), to.join(&folder).join(entry.file_name())).unwrap();
+            }
+        }
+    }
+}
+
+/// The bytes with one of them changed, some left out, some twice, or the rest cut off.
+fn garbled(bytes: &[u8], generator: &mut impl rand::Rng) -> Vec<u8> {
+    let at = generator.random_range(0..bytes.len());
+    let to = generator.random_range(at..=bytes.len().min(at + 9));
+    let mut found = bytes.to_vec();
+    match generator.random_range(0..5) {
+        0 => found[at] ^= 1 << generator.random_range(0..8),
+        1 => found[at..to].fill(0xff),
+        2 => _ = found.drain(at..to),
+        3 => found.extend_from_slice(&bytes[at..]),
+        _ => found.truncate(at),
+    }
+    found
+}
+
+/// Behind the seal: what another build of the program, or a hand, has sealed is refused or gone on with. It ends no run in
+/// a panic.
+#[test]
+fn a_sealed_checkpoint_may_hold_anything() {
+    let root = scratch();
+    let half = half_done(root.path());
+    let names = RunFolder::open(&half).checkpoints().unwrap();
+    let mut generator = Seed::new(21).generator();
+    let mut refused = 0;
+    for number in 0..60 {
+        let out = root.path().join(number.to_string());
+        copied(&half, &out);
+        let folder = RunFolder::open(&out);
+        let name = &names[number % names.len()];
+        let content = folder.read_checkpoint(name).unwrap().unwrap();
+        folder.write_checkpoint(name, &garbled(&content, &mut generator)).unwrap();
+        if let Err(error) = run(ESTIMATION, &out, true, &Disk::default()) {
+            refused += 1;
+            assert_eq!(error.exit_code(), 2, "{error}");
+        }
+        std::fs::remove_dir_all(&out).unwrap();
+    }
+    assert!(refused > 30, "{refused}");
+}
+
+/// Checkpoints are numbered on from the last one; that there is none after it used to end the program.
+#[test]
+fn the_last_number_of_a_checkpoint_is_no_end() {
+    let root = scratch();
+    let out = half_done(root.path());
+    let folder = out.join("checkpoints");
+    std::fs::rename(folder.join("finished-000000"), folder.join(format!("finished-{}", u64::MAX))).unwrap();
+    run(ESTIMATION, &out, true, &Disk::default()).unwrap();
 }
