@@ -309,7 +309,7 @@ impl RunFolder {
     }
 
     /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
-    /// affair.
+    /// affair. A table of runs that no sweep made has neither a configuration nor an environment.
     ///
     /// # Errors
     /// [`RunError::Io`] with the file that is missing.
@@ -325,9 +325,11 @@ impl RunFolder {
         // `.` and `..` have a name only once resolved.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let diagnosis = self.path.join("diagnosis.json").exists();
-        let (config, result) = if diagnosis {
+        let has = |name: &str| self.path.join(name).exists();
+        let (config, result) = if has("diagnosis.json") {
             (table("repaired.toml")?, read("diagnosis.json")?)
+        } else if has("table.csv") {
+            (table("config.toml")?, read("result.json")?)
         } else {
             (read("config.toml")?, read("result.json")?)
         };
@@ -339,7 +341,11 @@ impl RunFolder {
             envelope: table("envelope.csv")?,
             predictions: table("predictions.csv")?,
             series: table("series.csv")?,
-            environment: read("environment.json")?,
+            environment: if has("table.csv") {
+                table("environment.json")?
+            } else {
+                read("environment.json")?
+            },
         })
     }
 }
