@@ -3,7 +3,7 @@
 use crate::atomic::{self, TEMPORARY};
 use crate::disk::Disk;
 use crate::error::RunError;
-use crate::events::{Event, EventLog};
+use crate::events::{EVENTS, Event, EventLog, readable};
 use crate::lock::{LOCK, Lock};
 use crate::sealed;
 use jiff::Timestamp;
@@ -11,9 +11,6 @@ use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Name of the log of events.
-const EVENTS: &str = "events.jsonl";
 
 /// Folder of the checkpoints; a finished run has none.
 const CHECKPOINTS: &str = "checkpoints";
@@ -289,21 +286,13 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Io`] where there is no such file; [`RunError::Encoding`] where it tells no time.
     pub fn span_ms(&self) -> Result<(i64, i64), RunError> {
-        #[derive(serde::Deserialize)]
-        struct Line {
-            time: String,
-        }
-        let name = "events.jsonl";
-        let path = self.path.join(name);
-        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path, "read"))?;
-        // A crash can have cut the last line short.
-        let times = text.lines().filter_map(|line| serde_json::from_str::<Line>(line).ok());
-        let times: Vec<i64> = times
-            .filter_map(|line| line.time.parse::<Timestamp>().ok())
-            .map(Timestamp::as_millisecond)
-            .collect();
-        times.first().copied().zip(times.last().copied()).ok_or_else(|| RunError::Encoding {
-            name: name.to_owned(),
+        let bytes = self.read(EVENTS)?;
+        let time = |event: Event| Some(event.time.parse::<Timestamp>().ok()?.as_millisecond());
+        let mut times = readable(&bytes).filter_map(time);
+        // Of a log with one line its first is its last.
+        let first = times.next();
+        first.map(|first| (first, times.next_back().unwrap_or(first))).ok_or_else(|| RunError::Encoding {
+            name: EVENTS.to_owned(),
             problem: "no line of it has a time".to_owned(),
         })
     }

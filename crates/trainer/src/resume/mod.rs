@@ -87,7 +87,7 @@ pub(crate) fn begin(
     arguments: &ExperimentArguments,
     beginning: &Beginning<'_>,
 ) -> Result<Begun, TrainerError> {
-    let Some(out) = arguments.out.as_ref().filter(|_| arguments.resume) else {
+    let Some(out) = arguments.run.out.as_ref().filter(|_| arguments.run.resume) else {
         return start(new_folder(arguments, beginning.name)?, beginning).map(Begun::Open);
     };
     let remark = |words: &str| {
