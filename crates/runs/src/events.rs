@@ -24,6 +24,7 @@ pub struct Event {
     /// What happened, such as `start`.
     pub event: String,
     /// What belongs to it.
+    #[serde(default)]
     pub details: Value,
 }
 

@@ -171,7 +171,7 @@ fn result(
     let pass = estimates().filter(|row| row.pass).count() == results.len();
     let derived = derived(run, comparison.inertia_kg_m2);
     let envelope = input.envelope_summary(experiment);
-    let pipelines = input.pipelines(experiment);
+    let pipelines = input.pipelines.clone();
     ComparisonResult {
         schema: RESULT_SCHEMA.to_owned(),
         task: "compare".to_owned(),

@@ -104,7 +104,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         parameters: estimate.parameters,
         seeds: rows,
         worst_error_percent: worst,
-        pipelines: input.pipelines(experiment),
+        pipelines: input.pipelines.clone(),
     }
 }
 

@@ -59,6 +59,7 @@ pub(crate) fn run_until(
         Begun::Finished(outcome) => return Ok(outcome),
     };
     let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    let input = input.with_pipelines(&experiment);
     let run = Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: arguments.output };
     run.perform()
 }

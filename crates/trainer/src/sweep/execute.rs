@@ -119,7 +119,7 @@ fn attempt(
     remark: &dyn Fn(&str),
 ) -> Result<Outcome, TrainerError> {
     let experiment = resolve(&Document::parse(&line.config, config)?, ESTIMATORS, &classical())?;
-    let input = Input::read(&experiment)?;
+    let input = Input::read(&experiment)?.with_pipelines(&experiment);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
