@@ -39,7 +39,7 @@ fn the_help_shows_the_exit_codes_and_examples() {
 }
 
 /// Cuts trials down to three short cases, wherever these come from.
-const FEW_TRIALS: &[&str] = &[
+pub(crate) const FEW_TRIALS: &[&str] = &[
     "trials.none=1",
     "trials.calibration=0",
     "trials.single=2",

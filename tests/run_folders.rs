@@ -88,8 +88,8 @@ fn an_interrupted_run_keeps_its_best_and_exits_with_130() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("run");
     let mut child = std::process::Command::new(env!("CARGO_BIN_EXE_trainer"))
-        .args(["configs/pinn.toml", "estimator.hidden=[32,32,32]", "estimator.loss_tolerance=0"])
-        .args(["estimator.max_steps=1000000", "estimator.collocation_points=2000", "fit.seeds=5"])
+        .args(["configs/pinn.toml", "estimator.hidden=[16,16]", "estimator.loss_tolerance=0"])
+        .args(["estimator.max_steps=1000000", "estimator.collocation_points=200", "fit.seeds=5"])
         .args(["--quiet", "--out", out.to_str().unwrap()])
         .current_dir(crate::support::root())
         .spawn()

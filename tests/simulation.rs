@@ -37,6 +37,24 @@ const OF_THE_MOMENT: &[&str] = &[".lock", "environment.json", "events.jsonl", "r
 
 const SMALL: &[&str] = &["configs/simulate.toml", "simulate.systems=3", "record.seconds=2"];
 
+/// What other runs keep and can do, these can: environment, verification, export.
+#[test]
+fn it_is_a_run_like_others() {
+    let (_, folder) = simulate(SMALL);
+    let run = folder.path().to_str().unwrap();
+    let text = std::fs::read_to_string(folder.path().join("environment.json")).unwrap();
+    let environment: Value = serde_json::from_str(&text).unwrap();
+    let libraries = environment["libraries"].as_array().unwrap();
+    let version = |name: &str| libraries.iter().find(|row| row["name"] == name).unwrap()["version"].as_str();
+    assert!(version("rand").unwrap().starts_with("0.10."), "{libraries:?}");
+    let verified = trainer(&["verify", run]);
+    assert!(String::from_utf8_lossy(&verified.stdout).contains("identical"), "{verified:?}");
+    let store = tempfile::tempdir().unwrap();
+    let options = ["--to", "tensorboard,mlflow", "--store", store.path().to_str().unwrap()];
+    let exported = trainer(&[&["export", run], &options[..]].concat());
+    assert_eq!(exported.status.code(), Some(0), "{}", String::from_utf8_lossy(&exported.stderr));
+}
+
 #[test]
 fn it_leaves_records_what_is_believed_and_the_truth_apart() {
     let (found, folder) = simulate(SMALL);

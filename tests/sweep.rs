@@ -1,6 +1,6 @@
 //! `trainer sweep`: every combination, frozen beforehand, resumable, the same bits however it is run.
 
-use crate::support::{result, root, trainer};
+use crate::support::{result, root, timeless_files, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -284,6 +284,66 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
     assert!(before.iter().all(|(path, time)| ends(&out)[path] == *time));
     assert_eq!(results(&out), results(&whole));
     assert_eq!(states(&out), ["done"; 6]);
+}
+
+/// The lines of a run's log by name.
+fn events(run: &Path) -> Vec<String> {
+    let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap_or_default();
+    let named = |line: &str| Some(serde_json::from_str::<Value>(line).ok()?["event"].as_str()?.to_owned());
+    text.lines().filter_map(named).collect()
+}
+
+/// Waits until a run of a sweep has kept the state of a fit, and kills the sweep.
+fn killed_within_a_fit(arguments: &[&str], out: &str, run: &Path) {
+    let mut child = start(arguments, out, &["--resume", "--threads", "1"]);
+    let since = Instant::now();
+    let kept = || std::fs::read_dir(run.join("checkpoints")).into_iter().flatten().flatten();
+    while !kept().any(|entry| entry.file_name().to_string_lossy().ends_with(".state")) {
+        assert!(child.try_wait().unwrap().is_none() && since.elapsed() < Duration::from_secs(120));
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+}
+
+/// A run that the sweep was killed in goes on in its own folder: from its last checkpoint, or as finished where the kill
+/// came before the sweep was told. Where that folder is damaged, the run begins again beside it.
+#[test]
+fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
+    let arguments = [SLOW, &["fit.seeds=3", "checkpoint.interval_s=0"]].concat();
+    let (_whole, whole) = scratch();
+    assert_eq!(code(&sweep(&arguments, &whole, &["--quiet"])), 0);
+    let (_folder, out) = scratch();
+    let runs = Path::new(&out).join("runs");
+    let names = ["0001-seed-0", "0002-seed-1", "0003-seed-2"];
+    killed_within_a_fit(&arguments, &out, &runs.join(names[0]));
+    killed_within_a_fit(&arguments, &out, &runs.join(names[1]));
+    assert_eq!(events(&runs.join(names[0])), ["start", "resume", "end"]);
+    killed_within_a_fit(&arguments, &out, &runs.join(names[2]));
+    // As if it had been killed between the end of a run and the line about it.
+    let state = ends(&out).into_keys().next().unwrap();
+    std::fs::remove_file(state).unwrap();
+    let damaged =
+        std::fs::read_dir(runs.join(names[2]).join("checkpoints")).unwrap().next().unwrap().unwrap().path();
+    let whole_file = std::fs::read(&damaged).unwrap();
+    std::fs::write(&damaged, &whole_file[..whole_file.len() / 2]).unwrap();
+    let output = sweep(&arguments, &out, &["--resume"]);
+    assert_eq!(code(&output), 0, "{}", said(&output));
+    let says = format!("runs/{} cannot be gone on with, so the run begins again beside it: ", names[2]);
+    assert!(said(&output).contains(&says), "{}", said(&output));
+    assert_eq!(results(&out), results(&whole));
+    let mut found: Vec<String> = std::fs::read_dir(&runs)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    found.sort();
+    let expected = [&names[..], &["0003-seed-2-2", "0004-seed-3", "0005-seed-4", "0006-seed-5"]].concat();
+    assert_eq!(found, expected);
+    for name in ["0001-seed-0", "0002-seed-1"] {
+        assert_eq!(events(&runs.join(name)), ["start", "resume", "end"], "{name}");
+        let files = |out: &str| timeless_files(&Path::new(out).join("runs").join(name));
+        assert_eq!(files(&out), files(&whole), "{name}");
+    }
 }
 
 /// Killed before its manifest was written, a sweep was not begun; the files that come first are no obstacle.

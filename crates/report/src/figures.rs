@@ -2,6 +2,7 @@
 
 use std::borrow::Cow;
 
+use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use runs::result::{EnvelopeRow, TraceRow};
 
 use crate::format;
@@ -23,11 +24,33 @@ pub(crate) struct Figure {
     /// What is missing from it.
     pub(crate) notes: Vec<String>,
     pub(crate) legend: Vec<LegendEntry>,
+    /// The plot as an SVG file.
+    pub(crate) file: String,
     pub(crate) wide: String,
     pub(crate) narrow: String,
     /// What is drawn, as a table, and how many rows that is.
     pub(crate) csv: String,
     pub(crate) rows: String,
+}
+
+impl Figure {
+    /// An address that holds the plot itself: the page is one file, and what it offers is in it.
+    pub(crate) fn svg_address(&self) -> String {
+        address("image/svg+xml", &self.file)
+    }
+
+    /// An address that holds the plot's data.
+    pub(crate) fn csv_address(&self) -> String {
+        address("text/csv", &self.csv)
+    }
+}
+
+/// What is in an address as it is; everything else is two hexadecimal digits for each byte.
+const IN_AN_ADDRESS: &AsciiSet =
+    &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'<').add(b'>').add(b'\'').add(b'`');
+
+fn address(kind: &str, content: &str) -> String {
+    format!("data:{kind};charset=utf-8,{}", utf8_percent_encode(content, IN_AN_ADDRESS))
 }
 
 pub(crate) fn figures(run: &Run) -> Vec<Figure> {
@@ -171,7 +194,7 @@ pub(crate) fn figure(
 ) -> Option<Figure> {
     let (id, title) = (id.into(), title.into());
     let description = format!("{title}: {} against {}.", plot.y.label, plot.x.label);
-    let Drawing { wide, narrow, mut legend, left_out, thinned } = plot.draw(&description)?;
+    let Drawing { file, wide, narrow, mut legend, left_out, thinned } = plot.draw(&description)?;
     let mut notes = Vec::new();
     if legend.len() > MOST_ENTRIES {
         notes.push(format!("{} more phases are not in the legend.", legend.len() - MOST_ENTRIES));
@@ -190,7 +213,18 @@ pub(crate) fn figure(
                 .to_owned(),
         );
     }
-    Some(Figure { id, title, explanation: explanation.to_owned(), notes, legend, wide, narrow, csv, rows })
+    Some(Figure {
+        id,
+        title,
+        explanation: explanation.to_owned(),
+        notes,
+        legend,
+        file,
+        wide,
+        narrow,
+        csv,
+        rows,
+    })
 }
 
 pub(crate) fn time_axis() -> Axis {
@@ -311,6 +345,16 @@ mod tests {
     fn every_other_phase_is_shaded_up_to_the_next() {
         let trace = [row(0, "a"), row(1, "b"), row(2, "b"), row(3, "c"), row(4, "d"), row(5, "d")];
         assert_eq!(shaded(&trace), [(1.0, 3.0), (4.0, 5.0)]);
+    }
+
+    #[test]
+    fn an_address_gives_back_what_was_put_into_it() {
+        let content = "a,\"b\"\n100 %,<'&#`>,\u{3b6}\r\n";
+        let address = address("text/csv", content);
+        let (kind, data) = address.split_once(',').unwrap();
+        assert_eq!(kind, "data:text/csv;charset=utf-8");
+        assert!(!data.contains([' ', '"', '<', '>', '\'', '&', '#', '\n']), "{data}");
+        assert_eq!(percent_encoding::percent_decode_str(data).decode_utf8().unwrap(), content);
     }
 
     #[test]

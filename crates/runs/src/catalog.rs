@@ -1,6 +1,7 @@
 //! Reading run folders that others have left: whatever is in them, one answer each.
 
 use crate::error::RunError;
+use crate::events::{EVENTS, Event, readable};
 use crate::result::{
     ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA, RunState,
     RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
@@ -67,15 +68,6 @@ struct Diagnosed {
 struct Verdict {
     status: String,
     effects: Vec<String>,
-}
-
-/// A line of `events.jsonl`.
-#[derive(Deserialize)]
-struct Event {
-    time: String,
-    event: String,
-    #[serde(default)]
-    details: Value,
 }
 
 /// What a result was found to say.
@@ -330,11 +322,10 @@ fn text(path: &Path, name: &str) -> Result<Option<String>, String> {
     }
 }
 
-/// The first and the last event. A crash may have cut the last line short; it is passed over then.
+/// The first and the last event that can be read.
 fn events(path: &Path) -> Option<(Event, Event)> {
-    let text = std::fs::read_to_string(path.join("events.jsonl")).ok()?;
-    let read = |line: &str| serde_json::from_str::<Event>(line).ok();
-    Some((text.lines().find_map(read)?, text.lines().rev().find_map(read)?))
+    let bytes = std::fs::read(path.join(EVENTS)).ok()?;
+    Some((readable(&bytes).next()?, readable(&bytes).next_back()?))
 }
 
 fn changed(path: &Path) -> Option<Timestamp> {

@@ -13,6 +13,9 @@ use sha2::{Digest, Sha256};
 use std::io::ErrorKind;
 use std::path::Path;
 
+/// Name of the file.
+pub(crate) const EVENTS: &str = "events.jsonl";
+
 /// A line of the log.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Event {
@@ -21,6 +24,7 @@ pub struct Event {
     /// What happened, such as `start`.
     pub event: String,
     /// What belongs to it.
+    #[serde(default)]
     pub details: Value,
 }
 
@@ -55,7 +59,7 @@ impl EventLog {
 
     fn parse(path: &Path, bytes: &[u8]) -> Result<Self, RunError> {
         let mut log = Self::default();
-        for (at, line) in bytes.split_inclusive(|byte| *byte == b'\n').enumerate() {
+        for (at, line) in lines(bytes).enumerate() {
             let Some(line) = line.strip_suffix(b"\n") else {
                 log.torn_line = Some(at + 1);
                 break;
@@ -74,9 +78,7 @@ impl EventLog {
             if digest != stated {
                 return Err(refused("its digest is not that of what it says"));
             }
-            let event =
-                serde_json::from_str(&format!("{body}}}")).map_err(|error| refused(&error.to_string()))?;
-            log.events.push(event);
+            log.events.push(event(line.as_bytes()).map_err(|error| refused(&error.to_string()))?);
             log.text.push_str(line);
             log.text.push('\n');
             log.digest = digest;
@@ -112,6 +114,21 @@ impl EventLog {
     }
 }
 
+/// Each with its line break, where it has one.
+fn lines(bytes: &[u8]) -> impl DoubleEndedIterator<Item = &[u8]> {
+    bytes.split_inclusive(|byte| *byte == b'\n')
+}
+
+fn event(line: &[u8]) -> Result<Event, serde_json::Error> {
+    serde_json::from_slice(line)
+}
+
+/// What of a log can be read, for whoever shows what there is: a line that is damaged or cut short is passed over. To go on
+/// with a run takes [`EventLog::read`].
+pub(crate) fn readable(bytes: &[u8]) -> impl DoubleEndedIterator<Item = Event> {
+    lines(bytes).filter_map(|line| event(line).ok())
+}
+
 /// The first 64 bits of the digest of a line's text after the digest of the line before.
 fn chained(before: &str, body: &str) -> String {
     let whole = hexadecimal(&Sha256::digest(format!("{before}\n{body}")));
@@ -120,7 +137,7 @@ fn chained(before: &str, body: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{Event, EventLog};
+    use super::{Event, EventLog, readable};
     use crate::disk::Disk;
     use crate::error::RunError;
     use crate::faults::Faults;
@@ -229,6 +246,22 @@ mod tests {
         let log = EventLog::read(&path).unwrap();
         let names: Vec<&str> = log.events.iter().map(|event| event.event.as_str()).collect();
         assert_eq!((names, log.torn_line), (vec!["start", "one\ntwo", "resume"], None));
+    }
+
+    #[test]
+    fn whoever_only_shows_a_log_gets_the_lines_that_are_left() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("events.jsonl");
+        let mut bytes = three_lines(&path);
+        assert!(readable(&bytes).eq(EventLog::read(&path).unwrap().events));
+        let second = bytes.iter().position(|byte| *byte == b'\n').unwrap() + 1;
+        bytes[second] = b'!';
+        bytes.truncate(bytes.len() - 1);
+        let names = |bytes: &[u8]| readable(bytes).map(|event| event.event).collect::<Vec<_>>();
+        assert_eq!(names(&bytes), ["start", "end"]);
+        bytes.truncate(bytes.len() - 1);
+        assert_eq!(names(&bytes), ["start"]);
+        assert!(names(b"").is_empty());
     }
 
     #[test]

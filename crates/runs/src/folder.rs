@@ -3,7 +3,7 @@
 use crate::atomic::{self, TEMPORARY};
 use crate::disk::Disk;
 use crate::error::RunError;
-use crate::events::{Event, EventLog};
+use crate::events::{EVENTS, Event, EventLog, readable};
 use crate::lock::{LOCK, Lock};
 use crate::sealed;
 use jiff::Timestamp;
@@ -11,9 +11,6 @@ use serde::Serialize;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Name of the log of events.
-const EVENTS: &str = "events.jsonl";
 
 /// Folder of the checkpoints; a finished run has none.
 const CHECKPOINTS: &str = "checkpoints";
@@ -289,27 +286,19 @@ impl RunFolder {
     /// # Errors
     /// [`RunError::Io`] where there is no such file; [`RunError::Encoding`] where it tells no time.
     pub fn span_ms(&self) -> Result<(i64, i64), RunError> {
-        #[derive(serde::Deserialize)]
-        struct Line {
-            time: String,
-        }
-        let name = "events.jsonl";
-        let path = self.path.join(name);
-        let text = std::fs::read_to_string(&path).map_err(RunError::io(&path, "read"))?;
-        // A crash can have cut the last line short.
-        let times = text.lines().filter_map(|line| serde_json::from_str::<Line>(line).ok());
-        let times: Vec<i64> = times
-            .filter_map(|line| line.time.parse::<Timestamp>().ok())
-            .map(Timestamp::as_millisecond)
-            .collect();
-        times.first().copied().zip(times.last().copied()).ok_or_else(|| RunError::Encoding {
-            name: name.to_owned(),
+        let bytes = self.read(EVENTS)?;
+        let time = |event: Event| Some(event.time.parse::<Timestamp>().ok()?.as_millisecond());
+        let mut times = readable(&bytes).filter_map(time);
+        // Of a log with one line its first is its last.
+        let first = times.next();
+        first.map(|first| (first, times.next_back().unwrap_or(first))).ok_or_else(|| RunError::Encoding {
+            name: EVENTS.to_owned(),
             problem: "no line of it has a time".to_owned(),
         })
     }
 
     /// Reads what a report is made of. The tables may be absent: which of them a run has is its task's
-    /// affair.
+    /// affair. A table of runs that no sweep made has neither a configuration nor an environment.
     ///
     /// # Errors
     /// [`RunError::Io`] with the file that is missing.
@@ -325,9 +314,11 @@ impl RunFolder {
         // `.` and `..` have a name only once resolved.
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let diagnosis = self.path.join("diagnosis.json").exists();
-        let (config, result) = if diagnosis {
+        let has = |name: &str| self.path.join(name).exists();
+        let (config, result) = if has("diagnosis.json") {
             (table("repaired.toml")?, read("diagnosis.json")?)
+        } else if has("table.csv") {
+            (table("config.toml")?, read("result.json")?)
         } else {
             (read("config.toml")?, read("result.json")?)
         };
@@ -339,7 +330,11 @@ impl RunFolder {
             envelope: table("envelope.csv")?,
             predictions: table("predictions.csv")?,
             series: table("series.csv")?,
-            environment: read("environment.json")?,
+            environment: if has("table.csv") {
+                table("environment.json")?
+            } else {
+                read("environment.json")?
+            },
         })
     }
 }

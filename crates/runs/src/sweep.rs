@@ -9,8 +9,8 @@
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
 //! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
-//! was not begun or one that goes on where it was. A run killed between its result and its state file is made again,
-//! in another folder. Several processes may work on one sweep: only the files of `state/` say what is done.
+//! was not begun or one that goes on where it was. A run that was killed goes on in its folder; one that failed is made again
+//! in another one. Several processes may work on one sweep: only the files of `state/` say what is done.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -135,8 +135,8 @@ impl SweepFolder {
     pub fn begin_run(&self, label: &str) -> Result<(String, RunFolder), RunError> {
         let root = self.path().join(RUNS);
         std::fs::create_dir_all(&root).map_err(RunError::io(&root, "create"))?;
-        let mut name = label.to_owned();
-        for attempt in 2..MOST_ATTEMPTS {
+        for attempt in 1..MOST_ATTEMPTS {
+            let name = attempt_name(label, attempt);
             let path = root.join(&name);
             match std::fs::create_dir(&path) {
                 Ok(()) => {
@@ -144,11 +144,18 @@ impl SweepFolder {
                     flushed.map_err(RunError::io(&root, "flush"))?;
                     return Ok((format!("{RUNS}/{name}"), RunFolder::open(&path)));
                 }
-                Err(error) if error.kind() == ErrorKind::AlreadyExists => name = format!("{label}-{attempt}"),
+                Err(error) if error.kind() == ErrorKind::AlreadyExists => (),
                 Err(error) => return Err(RunError::io(&path, "create")(error)),
             }
         }
         Err(RunError::Occupied { path: root.join(label) })
+    }
+
+    /// The folder, from the sweep's, that a run of this label was begun in last; `None` where it never was.
+    #[must_use]
+    pub fn last_begun(&self, label: &str) -> Option<String> {
+        let names = (1..MOST_ATTEMPTS).map(|attempt| format!("{RUNS}/{}", attempt_name(label, attempt)));
+        names.take_while(|name| self.path().join(name).is_dir()).last()
     }
 
     /// Says what became of a run: one small file, there as a whole or not at all.
@@ -202,6 +209,11 @@ impl SweepFolder {
         };
         Ok(entries.filter_map(read).map(|end| (end.digest.clone(), end)).collect())
     }
+}
+
+/// What the folder of an attempt at a run is called.
+fn attempt_name(label: &str, attempt: u32) -> String {
+    if attempt == 1 { label.to_owned() } else { format!("{label}-{attempt}") }
 }
 
 fn state_name(digest: &str) -> String {
@@ -309,8 +321,12 @@ mod tests {
     fn a_run_begun_again_gets_another_folder() {
         let root = tempfile::tempdir().unwrap();
         let sweep = frozen(root.path(), 1);
-        let names: Vec<String> = (0..3).map(|_| sweep.begin_run("0001-seed-1").unwrap().0).collect();
-        assert_eq!(names, ["runs/0001-seed-1", "runs/0001-seed-1-2", "runs/0001-seed-1-3"]);
+        assert_eq!(sweep.last_begun("0001-seed-1"), None);
+        let expected = ["runs/0001-seed-1", "runs/0001-seed-1-2", "runs/0001-seed-1-3"];
+        for name in expected {
+            assert_eq!(sweep.begin_run("0001-seed-1").unwrap().0, name);
+            assert_eq!(sweep.last_begun("0001-seed-1").as_deref(), Some(name));
+        }
     }
 
     #[test]

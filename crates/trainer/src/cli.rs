@@ -67,23 +67,30 @@ pub(crate) struct ExperimentArguments {
     /// Values that override the file's, by dotted key: estimator.hidden=[64] seed=3
     #[arg(value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Folder for this run's files: new or empty [default: a new one below reports/runs]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Overrides the configuration's seed
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Goes on with the run in --out where it stopped; begins it where there is none
-    #[arg(long, requires = "out")]
-    pub(crate) resume: bool,
-    /// Threads over seeds or records; results do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) run: RunOptions,
     #[command(flatten)]
     pub(crate) output: Output,
     /// Where folders are made: the system's disk, and in tests one that fails.
     #[arg(skip)]
     pub(crate) disk: Disk,
+}
+
+/// What every command that runs a configuration takes.
+#[derive(Debug, Clone, Default, Args)]
+pub(crate) struct RunOptions {
+    /// Folder for what comes out: new or empty [default: a new one below reports/runs]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Goes on in the folder of --out where it stopped, with the same bits; begins there where nothing was begun
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+    /// Overrides the configuration's seed
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Threads over seeds, records, cases or runs; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
 }
 
 /// What is printed.

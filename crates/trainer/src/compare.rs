@@ -4,6 +4,7 @@ use crate::Outcome;
 use crate::cautions::cautions;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
+use crate::interrupt::Saving;
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
@@ -31,6 +32,7 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
     let methods = choose(comparison)?;
     let start = Instant::now();
     let fits = fit_all(run, &methods)?;
+    let _saving = Saving::begin();
     let interrupted = run.cancel.is_requested() && fits.iter().flatten().any(is_interrupted);
     let result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
     keep(run, &result, interrupted)?;
@@ -169,7 +171,7 @@ fn result(
     let pass = estimates().filter(|row| row.pass).count() == results.len();
     let derived = derived(run, comparison.inertia_kg_m2);
     let envelope = input.envelope_summary(experiment);
-    let pipelines = input.pipelines(experiment);
+    let pipelines = input.pipelines.clone();
     ComparisonResult {
         schema: RESULT_SCHEMA.to_owned(),
         task: "compare".to_owned(),

@@ -3,6 +3,7 @@
 use crate::Outcome;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
+use crate::interrupt::Saving;
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
@@ -17,6 +18,7 @@ use serde_json::json;
 /// Fits every seed, keeps the first one's fit, reports the worst.
 pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, TrainerError> {
     let fits = fit_all(run, method)?;
+    let _saving = Saving::begin();
     let Some((first, _)) = fits.split_first() else {
         return Err(TrainerError::TooManySeeds { seed: run.experiment.seed });
     };
@@ -102,7 +104,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         parameters: estimate.parameters,
         seeds: rows,
         worst_error_percent: worst,
-        pipelines: input.pipelines(experiment),
+        pipelines: input.pipelines.clone(),
     }
 }
 

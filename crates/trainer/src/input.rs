@@ -17,6 +17,9 @@ pub(crate) struct Input {
     pub(crate) believed: Clock,
     pub(crate) extraction: Extraction,
     pub(crate) oracle: DecayFit,
+    /// The same record through each pipeline and each clock that makes a difference; that in force first; none before
+    /// [`Self::with_pipelines`]. That comes before any fit: of a long record it takes seconds, which nobody who stops a fit should wait for.
+    pub(crate) pipelines: Vec<PipelineRow>,
 }
 
 impl Input {
@@ -32,53 +35,41 @@ impl Input {
             .map_err(|error| TrainerError::Envelope { file: data.path.clone(), source: error })?;
         let oracle = oracle::decay_rate(&extraction.envelope)
             .map_err(|error| TrainerError::Oracle { file: data.path.clone(), source: error })?;
-        Ok(Self { record, source, clock, believed, extraction, oracle })
+        Ok(Self { record, source, clock, believed, extraction, oracle, pipelines: Vec::new() })
+    }
+
+    /// The same, put through the other pipelines as well.
+    pub(crate) fn with_pipelines(self, experiment: &Experiment) -> Self {
+        Self { pipelines: self.all_pipelines(experiment), ..self }
+    }
+
+    fn all_pipelines(&self, experiment: &Experiment) -> Vec<PipelineRow> {
+        let settings = &experiment.envelope;
+        let in_force = (settings.pipeline.name(), self.clock.kind.name());
+        let mut rows = vec![row(in_force, Ok(fit(&self.extraction, &self.oracle)))];
+        let host = Clock::new(&self.record, ClockChoice::Host).ok();
+        for (pipeline, clock) in [
+            (Pipeline::Paper, host.as_ref()),
+            (Pipeline::Paper, Some(&self.believed)),
+            (Pipeline::Recommended, Some(&self.believed)),
+        ] {
+            let Some(clock) = clock else { continue };
+            let names = (pipeline.name(), clock.kind.name());
+            if rows.iter().any(|row| (row.pipeline.as_str(), row.clock.as_str()) == names) {
+                continue;
+            }
+            let extraction = settings.extract(pipeline, &self.record, clock);
+            let outcome = extraction.map_err(|error| error.to_string()).and_then(|extraction| {
+                let oracle = oracle::decay_rate(&extraction.envelope).map_err(|error| error.to_string())?;
+                Ok(fit(&extraction, &oracle))
+            });
+            rows.push(PipelineRow { in_force: false, ..row(names, outcome) });
+        }
+        rows
     }
 
     pub(crate) fn data_summary(&self, experiment: &Experiment) -> DataSummary {
         summarize(&self.record, &self.source, &self.clock, &self.believed, experiment.data.statements())
-    }
-
-    /// The same record through each pipeline and each clock that makes a difference.
-    pub(crate) fn pipelines(&self, experiment: &Experiment) -> Vec<PipelineRow> {
-        let settings = &experiment.envelope;
-        let mut rows: Vec<PipelineRow> = Vec::new();
-        for (pipeline, choice) in [
-            (settings.pipeline, experiment.data.clock),
-            (Pipeline::Paper, ClockChoice::Host),
-            (Pipeline::Paper, ClockChoice::Auto),
-            (Pipeline::Recommended, ClockChoice::Auto),
-        ] {
-            let Ok(clock) = Clock::new(&self.record, choice) else { continue };
-            let (name, clock_name) = (pipeline.name(), clock.kind.name());
-            if rows.iter().any(|row| row.pipeline == name && row.clock == clock_name) {
-                continue;
-            }
-            let outcome = settings
-                .extract(pipeline, &self.record, &clock)
-                .map_err(|error| error.to_string())
-                .and_then(|extraction| {
-                    let fit = oracle::decay_rate(&extraction.envelope);
-                    Ok((extraction, fit.map_err(|error| error.to_string())?))
-                });
-            rows.push(PipelineRow {
-                pipeline: name.to_owned(),
-                clock: clock_name.to_owned(),
-                in_force: rows.is_empty(),
-                outcome: match outcome {
-                    Ok((extraction, fit)) => PipelineOutcome::Fit {
-                        peaks: extraction.envelope.len(),
-                        omega_rad_s: extraction.envelope.omega_rad_s(),
-                        decay_rate: fit.decay_rate,
-                        zeta: fit.zeta,
-                        zeta_std_error: fit.zeta_std_error,
-                        r_squared: fit.r_squared,
-                    },
-                    Err(reason) => PipelineOutcome::Failed { reason },
-                },
-            });
-        }
-        rows
     }
 
     pub(crate) fn envelope_summary(&self, experiment: &Experiment) -> EnvelopeSummary {
@@ -126,6 +117,27 @@ impl Input {
                 estimate,
             })
             .collect()
+    }
+}
+
+/// What a pipeline came to under a clock; the row in force.
+fn row((pipeline, clock): (&str, &str), outcome: Result<PipelineOutcome, String>) -> PipelineRow {
+    PipelineRow {
+        pipeline: pipeline.to_owned(),
+        clock: clock.to_owned(),
+        in_force: true,
+        outcome: outcome.unwrap_or_else(|reason| PipelineOutcome::Failed { reason }),
+    }
+}
+
+fn fit(extraction: &Extraction, oracle: &DecayFit) -> PipelineOutcome {
+    PipelineOutcome::Fit {
+        peaks: extraction.envelope.len(),
+        omega_rad_s: extraction.envelope.omega_rad_s(),
+        decay_rate: oracle.decay_rate,
+        zeta: oracle.zeta,
+        zeta_std_error: oracle.zeta_std_error,
+        r_squared: oracle.r_squared,
     }
 }
 

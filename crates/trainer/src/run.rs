@@ -59,13 +59,14 @@ pub(crate) fn run_until(
         Begun::Finished(outcome) => return Ok(outcome),
     };
     let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    let input = input.with_pipelines(&experiment);
     let run = Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: arguments.output };
     run.perform()
 }
 
 /// The folder that the arguments name, or a new one below the default root.
 pub(crate) fn new_folder(arguments: &ExperimentArguments, name: &str) -> Result<RunFolder, TrainerError> {
-    Ok(match &arguments.out {
+    Ok(match &arguments.run.out {
         Some(path) => RunFolder::create_at_on(&arguments.disk, path)?,
         None => RunFolder::create_on(&arguments.disk, &default_root(), name)?,
     })
@@ -74,7 +75,7 @@ pub(crate) fn new_folder(arguments: &ExperimentArguments, name: &str) -> Result<
 /// As many threads as asked for.
 pub(crate) fn thread_pool(arguments: &ExperimentArguments) -> Result<ThreadPool, TrainerError> {
     rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.map_or(0, usize::from))
+        .num_threads(arguments.run.threads.map_or(0, usize::from))
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })
 }
@@ -130,7 +131,7 @@ impl Output {
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
     let mut document = read_document(path, &arguments.overrides)?;
-    if let Some(seed) = arguments.seed {
+    if let Some(seed) = arguments.run.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
     Ok(document)

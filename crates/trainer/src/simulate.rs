@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::cli::ExperimentArguments;
 use crate::error::TrainerError;
-use crate::interrupt;
+use crate::interrupt::{self, Saving};
 use crate::progress::Progress;
 use crate::resume::{Beginning, Begun, begin, end};
 use crate::run::{read_config, thread_pool};
@@ -88,6 +88,7 @@ pub(crate) fn simulate(
             .collect::<Result<_, TrainerError>>()
     })?;
     progress.finish();
+    let _saving = Saving::begin();
     let written: Vec<Written> = written.into_iter().flatten().collect();
     let result = result(plan, count, &written, start.elapsed().as_secs_f64());
     let manifest = Manifest {

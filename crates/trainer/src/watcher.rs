@@ -8,6 +8,9 @@ use runs::result::TraceRow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+/// A step that takes longer may be left in its middle (see [`crate::interrupt`]): so much work is worth a write.
+const LONG_STEP: Duration = Duration::from_millis(300);
+
 /// Where the state of a fit is kept, and under which name.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<'a> {
@@ -30,6 +33,8 @@ struct Seen {
     /// The state to go on from; taken once.
     latest: Option<Vec<u8>>,
     kept_at: Instant,
+    /// When it was last asked whether the state should be kept: before every step.
+    asked_at: Instant,
     steps_since: u64,
     /// Why a state could not be kept.
     failure: Option<TrainerError>,
@@ -47,7 +52,14 @@ impl<'a> Watcher<'a> {
             place,
             begun,
             earlier: Duration::try_from_secs_f64(seconds).unwrap_or_default(),
-            seen: Mutex::new(Seen { trace, latest, kept_at: begun, steps_since: 0, failure: None }),
+            seen: Mutex::new(Seen {
+                trace,
+                latest,
+                kept_at: begun,
+                asked_at: begun,
+                steps_since: 0,
+                failure: None,
+            }),
         })
     }
 
@@ -91,9 +103,10 @@ impl Checkpoints for Watcher<'_> {
         let Some(Place { ledger, .. }) = self.place else { return false };
         let mut seen = self.seen();
         seen.steps_since += 1;
+        let took = std::mem::replace(&mut seen.asked_at, Instant::now()).elapsed();
         match ledger.settings.interval_steps {
             Some(steps) => seen.steps_since >= steps,
-            None => seen.kept_at.elapsed().as_secs_f64() >= ledger.settings.interval_s,
+            None => took >= LONG_STEP || seen.kept_at.elapsed().as_secs_f64() >= ledger.settings.interval_s,
         }
     }
 

@@ -69,7 +69,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         level: Some(("stated tolerance".into(), result.tolerance_percent)),
     };
     let title = "(c) Error by method";
-    let Drawing { wide, narrow, legend, left_out, .. } =
+    let Drawing { file, wide, narrow, legend, left_out, .. } =
         plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
     let mut notes = Vec::new();
     if errors_of(&result.results).any(|error| error < LEAST_PERCENT) {
@@ -109,6 +109,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         explanation,
         notes,
         legend,
+        file,
         wide,
         narrow,
         csv,

@@ -27,6 +27,7 @@ pub(super) fn framed(
         explanation,
         notes,
         legend: drawing.legend,
+        file: drawing.file,
         wide: drawing.wide,
         narrow: drawing.narrow,
         csv,

@@ -10,6 +10,7 @@ use kuva::render::plots::Plot as KuvaPlot;
 use kuva::render::render::{Primitive, Scene, render_multiple};
 
 use super::axis::Ticks;
+use super::file::file;
 use super::svg::{self, Canvas};
 use super::{Axis, Drawing, Hue, LegendEntry};
 use crate::format;
@@ -63,10 +64,12 @@ impl HeatMap {
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let left_out = self.cells.iter().filter(|cell| !cell.is_shown(self)).count();
+        let (wide, legend) = (self.render(&svg::WIDE, description)?, self.legend());
         Some(Drawing {
-            wide: self.render(&svg::WIDE, description)?,
+            file: file(&wide, svg::WIDE.height, &legend, description),
+            wide,
             narrow: self.render(&svg::NARROW, description)?,
-            legend: self.legend(),
+            legend,
             left_out,
             thinned: false,
         })

@@ -9,6 +9,7 @@
 //! names in it, which come from files, are escaped like all other text.
 
 mod axis;
+mod file;
 mod heat;
 mod hue;
 mod rows;
@@ -86,6 +87,8 @@ pub struct Drawing {
     pub wide: String,
     /// SVG for a phone, which gives it about 350.
     pub narrow: String,
+    /// The wide one with its legend as an SVG file.
+    pub file: String,
     /// The entries of the legend, in the order of the series.
     pub legend: Vec<LegendEntry>,
     /// How many points the axes could not show.
@@ -121,10 +124,12 @@ impl Plot {
                 *run = kept;
             }
         }
+        let (wide, legend) = (svg::render(self, &runs, &svg::WIDE, description)?, self.legend());
         Some(Drawing {
-            wide: svg::render(self, &runs, &svg::WIDE, description)?,
+            file: file::file(&wide, svg::WIDE.height, &legend, description),
+            wide,
             narrow: svg::render(self, &runs, &svg::NARROW, description)?,
-            legend: self.legend(),
+            legend,
             left_out,
             thinned,
         })

@@ -10,6 +10,7 @@ use kuva::render::plots::Plot as KuvaPlot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use super::axis::Ticks;
+use super::file::file;
 use super::svg::{self, Canvas};
 use super::{Axis, Drawing, Hue, LegendEntry};
 
@@ -75,10 +76,12 @@ impl DotRows {
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let rows = self.rows.get(..self.rows.len().min(MOST_ROWS)).unwrap_or_default();
         let left_out = rows.iter().flat_map(DotRow::values).filter(|value| !self.x.can_show(*value)).count();
+        let (wide, legend) = (self.render(rows, &WIDE, description)?, self.legend());
         Some(Drawing {
-            wide: self.render(rows, &WIDE, description)?,
+            file: file(&wide, WIDE.height(rows), &legend, description),
+            wide,
             narrow: self.render(rows, &NARROW, description)?,
-            legend: self.legend(),
+            legend,
             left_out,
             thinned: false,
         })
@@ -93,7 +96,7 @@ impl DotRows {
         values.extend(self.level.iter().map(|level| level.1).filter(|level| self.x.can_show(*level)));
         let ticks = self.x.ticks(values.into_iter(), form.canvas.x_ticks)?;
 
-        let height = rows.len() as f64 * form.row_height + form.bottom() + TOP;
+        let height = form.height(rows);
         let layout = self.layout(rows, form, &ticks, height);
         let computed = ComputedLayout::from_layout(&layout);
         // kuva draws axes only around a plot; the marks are drawn below, from the same layout.
@@ -240,6 +243,10 @@ const TOP: f64 = 8.0;
 const RIGHT: f64 = 24.0;
 
 impl Form {
+    fn height(&self, rows: &[DotRow]) -> f64 {
+        rows.len() as f64 * self.row_height + self.bottom() + TOP
+    }
+
     /// Below the last row: ticks, their labels and the axis's label.
     fn bottom(&self) -> f64 {
         26.0 + f64::from(self.canvas.tick_size) + f64::from(self.canvas.label_size)

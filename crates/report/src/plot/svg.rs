@@ -207,6 +207,6 @@ pub(super) fn plain(label: &str) -> String {
     label.chars().filter(|c| *c != '$').take(60).collect()
 }
 
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

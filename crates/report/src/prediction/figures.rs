@@ -218,7 +218,7 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
         level: Some(("best exponential, beyond".into(), study.exponential.extrapolation.rms_log_error)),
     };
     let title = format!("Errors by method: {}", named(problem));
-    let Drawing { wide, narrow, legend, left_out, .. } =
+    let Drawing { file, wide, narrow, legend, left_out, .. } =
         plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
     let mut notes = Vec::new();
     let silent = study.methods.iter().filter(|row| inside(row).or(beyond(row)).is_none()).count();
@@ -241,6 +241,7 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
                 .to_owned(),
         notes,
         legend,
+        file,
         wide,
         narrow,
         csv,

@@ -173,7 +173,7 @@ fn figure(
     mut notes: Vec<String>,
     (csv, rows): (String, String),
 ) -> Option<Figure> {
-    let Drawing { wide, narrow, legend, left_out, .. } =
+    let Drawing { file, wide, narrow, legend, left_out, .. } =
         plot.draw(&format!("{title}: {}, one row each.", plot.x.label))?;
     if plot.rows.len() > MOST_ROWS {
         notes.push(format!("The first {MOST_ROWS} of {} rows.", plot.rows.len()));
@@ -187,6 +187,7 @@ fn figure(
         explanation: explanation.to_owned(),
         notes,
         legend,
+        file,
         wide,
         narrow,
         csv,

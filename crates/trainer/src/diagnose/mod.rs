@@ -12,6 +12,7 @@ mod summary;
 use crate::Outcome;
 use crate::environment::Environment;
 use crate::error::TrainerError;
+use crate::interrupt::{self, Saving};
 use crate::rerender::write_report;
 use arguments::{DiagnoseArguments, Reading};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
@@ -79,8 +80,10 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    interrupt::watch_impatiently()?;
     let question = Question::read(&arguments.records, nominal, &arguments.reading)?;
     let answer = pool.install(|| question.answer(&settings(arguments), arguments.seed))?;
+    let _saving = Saving::begin();
     let folder = match &arguments.out {
         Some(path) => RunFolder::create_at(path)?,
         None => RunFolder::create(&default_root(), "diagnosis")?,

@@ -11,6 +11,7 @@ use crate::Outcome;
 use crate::cli::{ExperimentArguments, Output};
 use crate::console;
 use crate::error::TrainerError;
+use crate::interrupt::Saving;
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
@@ -82,6 +83,7 @@ pub(crate) fn predict(
     let start = Instant::now();
     let methods = pretrain(study, methods, &pool, cancel, &ledger)?;
     let trials = run_all(study, &problems, &methods, &pool, cancel, &ledger, output)?;
+    let _saving = Saving::begin();
     // A request that comes after the last trial interrupts nothing.
     let interrupted = cancel.is_requested() && trials.iter().any(ProblemTrials::is_interrupted);
     if interrupted {

@@ -17,15 +17,18 @@ use difference::differences;
 pub(crate) use error::ResumeError;
 use experiment::Experiment;
 pub(crate) use ledger::{Ledger, Resumed};
-use runs::{RunFolder, digest};
+use runs::{Disk, RunFolder, digest};
 use serde::{Deserialize, Serialize};
 use serde_json::json;
+use std::path::Path;
 
 /// The events that say how far a run is.
 const START: &str = "start";
 const RESUME: &str = "resume";
 const INTERRUPTED: &str = "interrupted";
 const END: &str = "end";
+/// The event of a run that failed, of which another attempt is made elsewhere.
+pub(crate) const FAILED: &str = "failed";
 
 /// A record file of a run.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -71,43 +74,68 @@ pub(crate) enum Begun {
     Finished(Outcome),
 }
 
+/// The folder of a run that was taken up again.
+pub(crate) enum TakenUp {
+    /// There is work left.
+    Open(RunFolder),
+    /// The run is finished.
+    Finished(RunFolder),
+}
+
 /// Makes the run's folder, or goes on with the one that the arguments name and `--resume` allows.
 pub(crate) fn begin(
     arguments: &ExperimentArguments,
     beginning: &Beginning<'_>,
 ) -> Result<Begun, TrainerError> {
-    let Some(out) = arguments.out.as_ref().filter(|_| arguments.resume) else {
+    let Some(out) = arguments.run.out.as_ref().filter(|_| arguments.run.resume) else {
         return start(new_folder(arguments, beginning.name)?, beginning).map(Begun::Open);
     };
-    let folder = RunFolder::resume_on(&arguments.disk, out)?;
+    let remark = |words: &str| {
+        if !arguments.output.quiet {
+            console::remark(words);
+        }
+    };
+    match take_up(&arguments.disk, out, beginning, &remark)? {
+        TakenUp::Open(folder) => Ok(Begun::Open(folder)),
+        TakenUp::Finished(folder) => finished(arguments, &folder).map(Begun::Finished),
+    }
+}
+
+/// Goes on with the run in a folder, or begins it there where it was killed before it had begun. `remark` is given what
+/// the user should know.
+pub(crate) fn take_up(
+    disk: &Disk,
+    path: &Path,
+    beginning: &Beginning<'_>,
+    remark: &dyn Fn(&str),
+) -> Result<TakenUp, TrainerError> {
+    let folder = RunFolder::resume_on(disk, path)?;
     let log = folder.events()?;
-    if let (Some(line), false) = (log.torn_line, arguments.output.quiet) {
-        let path = out.display();
-        console::remark(&format!(
-            "{path}/events.jsonl:{line}: a crash cut the last line short; it is left out"
-        ));
+    let shown = path.display();
+    if let Some(line) = log.torn_line {
+        remark(&format!("{shown}/events.jsonl:{line}: a crash cut the last line short; it is left out"));
     }
     let Some(begun) = started(&folder)? else {
         // Killed before anything was computed, or nothing there yet.
         return match folder.holds_only(&["config.toml", "environment.json", "events.jsonl"])? {
-            true => start(folder, beginning).map(Begun::Open),
-            false => Err(ResumeError::NoRun { folder: out.display().to_string() }.into()),
+            true => start(folder, beginning).map(TakenUp::Open),
+            false => Err(ResumeError::NoRun { folder: shown.to_string() }.into()),
         };
     };
     check(&folder, &begun, beginning)?;
     if log.last(END).is_some() {
-        return finished(arguments, &folder).map(Begun::Finished);
+        // A kill after the last event may have left some.
+        folder.remove_checkpoints()?;
+        return Ok(TakenUp::Finished(folder));
     }
     check_data(&begun, &beginning.data)?;
     let ground = environment::changes(&folder.read("environment.json")?, &environment_of(beginning));
-    if !arguments.output.quiet {
-        console::remark(&format!("resuming {}", out.display()));
-        for change in &ground {
-            console::remark(&format!("note: {change}; last digits may differ from those of a run in one go"));
-        }
+    remark(&format!("resuming {shown}"));
+    for change in &ground {
+        remark(&format!("note: {change}; last digits may differ from those of a run in one go"));
     }
     folder.record_event(RESUME, &json!({ "changes": ground }))?;
-    Ok(Begun::Open(folder))
+    Ok(TakenUp::Open(folder))
 }
 
 /// Begins a run in a folder of its own.
@@ -183,9 +211,8 @@ pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeE
     Ok(())
 }
 
-/// A finished run is shown as it is; checkpoints that a kill left after its last event are taken away.
+/// A finished run is shown as it is.
 fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
-    folder.remove_checkpoints()?;
     if arguments.output.json {
         console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
     } else if !arguments.output.quiet {

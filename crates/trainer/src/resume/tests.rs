@@ -2,7 +2,7 @@
 //! this process, so that the disk can be handed in.
 
 use crate::Outcome;
-use crate::cli::{ExperimentArguments, Output};
+use crate::cli::{ExperimentArguments, Output, RunOptions};
 use crate::error::TrainerError;
 use crate::run::run_until;
 use estimator::Cancel;
@@ -27,10 +27,7 @@ fn arguments(overrides: &[&str], out: &Path, resume: bool, disk: Disk) -> Experi
     ExperimentArguments {
         config: Some(root.join(format!("configs/{file}.toml"))),
         overrides: all,
-        out: Some(out.to_owned()),
-        seed: None,
-        resume,
-        threads: Some(1),
+        run: RunOptions { out: Some(out.to_owned()), resume, seed: None, threads: Some(1) },
         output: Output { quiet: true, json: false },
         disk,
     }

@@ -7,6 +7,7 @@ mod error;
 use crate::Outcome;
 use crate::console;
 use crate::error::TrainerError;
+use crate::rerender::write_report;
 use crate::summary::table as aligned;
 use crate::sweep::{SweepCommandError, entries};
 use arguments::{CompareArguments, Format};
@@ -39,13 +40,12 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
     if let Some(key) = &arguments.sort {
         build::sort(&mut table, key, arguments.reverse)?;
     }
-    let page = || page(&table);
     if let Some(path) = &arguments.out {
         let folder = RunFolder::create_at(path)?;
         folder.write_json("result.json", &table)?;
         folder.write("table.csv", run_table_csv(&table).as_bytes())?;
         folder.write("table.md", run_table_markdown(&table).as_bytes())?;
-        folder.write("report.html", page()?.as_bytes())?;
+        write_report(&folder)?;
     }
     if arguments.output.json {
         arguments.output.print(&table, String::new)?;
@@ -53,7 +53,7 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
         match arguments.format {
             Some(Format::Csv) => console::result(run_table_csv(&table).trim_end()),
             Some(Format::Markdown) => console::result(run_table_markdown(&table).trim_end()),
-            Some(Format::Html) => console::result(&page()?),
+            Some(Format::Html) => console::result(&page(&table)?),
             Some(Format::Text) | None => print_table(&table),
         }
     }
@@ -74,7 +74,7 @@ pub(crate) fn print_table(table: &RunTable) {
     console::table(&text, &RED);
 }
 
-/// The page on a table that is no sweep's.
+/// The page on a table that is not kept.
 fn page(table: &RunTable) -> Result<String, TrainerError> {
     let result = serde_json::to_string_pretty(table)
         .map_err(|error| TrainerError::System { what: "the table", problem: error.to_string() })?;

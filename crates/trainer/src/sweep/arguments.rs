@@ -1,6 +1,6 @@
 //! The arguments of `trainer sweep`.
 
-use crate::cli::Output;
+use crate::cli::{Output, RunOptions};
 use clap::{Args, ValueEnum};
 use experiment::sweep::Shard;
 use std::path::PathBuf;
@@ -37,12 +37,8 @@ pub(crate) struct SweepArguments {
     /// What to vary: KEY=V1,V2 or KEY=A..B, both ends included
     #[arg(value_name = "KEY=VALUES")]
     pub(crate) axes: Vec<String>,
-    /// The sweep's folder: new or empty [default: a new one below reports/runs]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Goes on with the sweep in --out: runs what is missing
-    #[arg(long, requires = "out")]
-    pub(crate) resume: bool,
+    #[command(flatten)]
+    pub(crate) run: RunOptions,
     /// With --resume, runs again what failed
     #[arg(long, requires = "resume")]
     pub(crate) failed: bool,
@@ -56,12 +52,6 @@ pub(crate) struct SweepArguments {
     #[arg(long, value_name = "N", requires = "launcher", default_value_t = 8,
           value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub(crate) shards: u16,
-    /// Overrides the configuration's seed
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Threads over runs; results do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
 }

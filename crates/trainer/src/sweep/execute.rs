@@ -8,13 +8,13 @@ use crate::console;
 use crate::error::TrainerError;
 use crate::input::Input;
 use crate::progress::Progress;
-use crate::resume::{Beginning, Ledger, start};
+use crate::resume::{Beginning, FAILED, Ledger, TakenUp, start, take_up};
 use crate::run::Run;
 use estimator::Cancel;
-use experiment::resolve;
+use experiment::{CheckpointSettings, resolve};
 use registry::ESTIMATORS;
 use runs::result::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
-use runs::{RunError, read_run};
+use runs::{Disk, RunError, RunFolder, read_run};
 use serde_json::json;
 use settings::Document;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -49,7 +49,12 @@ pub(super) fn execute(
     let work = || {
         while !cancel.is_requested() && !is_some(&fault) {
             let Some(&(line, config)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-            let end = make(sweep, line, config, cancel);
+            let remark = |words: &str| {
+                if !output.quiet {
+                    progress.aside(|| console::remark(words));
+                }
+            };
+            let end = make(sweep, line, config, cancel, &remark);
             if let Err(error) = sweep.folder.end_run(&end) {
                 *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
                 break;
@@ -75,10 +80,16 @@ fn is_some<T>(shared: &Mutex<Option<T>>) -> bool {
 }
 
 /// Makes one run and says what became of it.
-fn make(sweep: &FrozenSweep, line: &SweepLine, config: &str, cancel: &'static Cancel) -> SweepEnd {
+fn make(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    config: &str,
+    cancel: &'static Cancel,
+    remark: &dyn Fn(&str),
+) -> SweepEnd {
     let mut run = None;
     // A panic would be a fault of the program; even so the other runs go on.
-    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, line, config, cancel, &mut run)));
+    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, line, config, cancel, &mut run, remark)));
     let (state, message) = match made {
         Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
         Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
@@ -92,32 +103,85 @@ fn make(sweep: &FrozenSweep, line: &SweepLine, config: &str, cancel: &'static Ca
     };
     if let (Some(folder), Some(message)) = (&run, &message) {
         // The sweep's own state file says so too; that this one cannot be written is no failure of its own.
-        let folder = runs::RunFolder::open(&sweep.folder.path().join(folder));
-        let _ = folder.record_event("failed", &json!({ "message": message }));
+        let folder = RunFolder::open(&sweep.folder.path().join(folder));
+        let _ = folder.record_event(FAILED, &json!({ "message": message }));
     }
     SweepEnd { digest: line.digest.clone(), state, run, message }
 }
 
-/// Reads, fits and keeps; the run's folder is made once its record is read.
+/// Reads, fits and keeps; the run's folder is made, or taken up, once its record is read.
 fn attempt(
     sweep: &FrozenSweep,
     line: &SweepLine,
     config: &str,
     cancel: &'static Cancel,
     run: &mut Option<String>,
+    remark: &dyn Fn(&str),
 ) -> Result<Outcome, TrainerError> {
     let experiment = resolve(&Document::parse(&line.config, config)?, ESTIMATORS, &classical())?;
-    let input = Input::read(&experiment)?;
+    let input = Input::read(&experiment)?.with_pipelines(&experiment);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
     let beginning = Beginning::of(&experiment, &input, config.to_owned(), 1);
-    let (name, folder) = sweep.folder.begin_run(&label(&sweep.manifest, line))?;
-    *run = Some(name);
-    let folder = start(folder, &beginning)?;
-    let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+    let label = label(&sweep.manifest, line);
+    let (folder, ledger) = match begun_before(sweep, &label, &beginning, experiment.checkpoint, remark) {
+        Some((name, Before::Finished)) => {
+            *run = Some(name);
+            return Ok(Outcome::Done);
+        }
+        Some((name, Before::Open(folder, ledger))) => {
+            *run = Some(name);
+            (folder, ledger)
+        }
+        None => {
+            let (name, folder) = sweep.folder.begin_run(&label)?;
+            *run = Some(name);
+            let folder = start(folder, &beginning)?;
+            let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+            (folder, ledger)
+        }
+    };
     Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: SILENT }.perform()
+}
+
+/// What an earlier attempt left of a run.
+enum Before {
+    /// All of it: it was killed before the sweep was told.
+    Finished,
+    /// Its finished fits, and the state of the one that it was killed in.
+    Open(RunFolder, Ledger),
+}
+
+/// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or where it failed
+/// there. One that is damaged or in another process's hands is left alone, and said.
+fn begun_before(
+    sweep: &FrozenSweep,
+    label: &str,
+    beginning: &Beginning<'_>,
+    checkpoint: CheckpointSettings,
+    remark: &dyn Fn(&str),
+) -> Option<(String, Before)> {
+    let name = sweep.folder.last_begun(label)?;
+    let path = sweep.folder.path().join(&name);
+    let open = || {
+        if RunFolder::open(&path).events()?.last(FAILED).is_some() {
+            return Ok(None);
+        }
+        Ok(Some(match take_up(&Disk::default(), &path, beginning, &|_| ())? {
+            TakenUp::Finished(_) => Before::Finished,
+            TakenUp::Open(folder) => {
+                let ledger = Ledger::open(&folder, checkpoint)?;
+                Before::Open(folder, ledger)
+            }
+        }))
+    };
+    let before = open().unwrap_or_else(|error: TrainerError| {
+        remark(&format!("{name} cannot be gone on with, so the run begins again beside it: {error}"));
+        None
+    });
+    before.map(|before| (name, before))
 }
 
 /// What a run's folder is called: its number and what is special about it. What all runs share is left out.

@@ -31,19 +31,19 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
         Some(path) => Some((path.display().to_string(), planned(arguments, path)?)),
         None => None,
     };
-    let joins = arguments.resume || arguments.shard.is_some();
-    if let Some(path) = arguments.out.as_ref().filter(|path| SweepFolder::is_one(path)) {
+    let joins = arguments.run.resume || arguments.shard.is_some();
+    if let Some(path) = arguments.run.out.as_ref().filter(|path| SweepFolder::is_one(path)) {
         if !joins {
             return Err(SweepCommandError::Begun { folder: path.display().to_string() }.into());
         }
         return take_up(arguments, SweepFolder::open(path), planned.map(|(_, planned)| planned));
     }
     let Some((config, planned)) = planned else {
-        let folder = arguments.out.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
+        let folder = arguments.run.out.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
         return Err(SweepCommandError::NoSweep { folder }.into());
     };
     let manifest = manifest(config, &planned)?;
-    let folder = match &arguments.out {
+    let folder = match &arguments.run.out {
         Some(path) if arguments.shard.is_some() => beginning(path)?,
         Some(path) if joins => {
             beginning(path)?;
@@ -80,7 +80,7 @@ struct Planned {
 
 fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
     let (text, mut document) = read_with_text(config)?;
-    if let Some(seed) = arguments.seed {
+    if let Some(seed) = arguments.run.seed {
         document.apply_override(&format!("seed={seed}"))?;
     }
     let axes: Vec<Axis> = arguments

@@ -10,7 +10,7 @@ mod table;
 use crate::Outcome;
 use crate::console;
 use crate::error::TrainerError;
-use crate::interrupt;
+use crate::interrupt::{self, Saving};
 use crate::rerender::write_report;
 use crate::side_by_side::print_table;
 use arguments::{Launcher, SweepArguments};
@@ -57,6 +57,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     }
     let made = jobs.len();
     execute::execute(&sweep, &jobs, threads(arguments), output, cancel)?;
+    let _saving = Saving::begin();
     let table = finish(&mut sweep)?;
     let event = if cancel.is_requested() { "interrupted" } else { "end" };
     sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
@@ -81,7 +82,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
 /// As many threads as asked for, or one for each core.
 fn threads(arguments: &SweepArguments) -> usize {
     let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    arguments.threads.map_or_else(cores, usize::from)
+    arguments.run.threads.map_or_else(cores, usize::from)
 }
 
 fn is_missing(line: &SweepLine, failed_too: bool) -> bool {

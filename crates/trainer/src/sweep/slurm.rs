@@ -25,7 +25,7 @@ pub(super) fn launch(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<
         here: std::env::current_dir().map_err(system("the current folder"))?,
         folder: absolute(folder.path())?,
         shares,
-        threads: arguments.threads.unwrap_or(1),
+        threads: arguments.run.threads.unwrap_or(1),
         failed: arguments.failed,
     };
     folder.write(SCRIPT, job.script().as_bytes())?;

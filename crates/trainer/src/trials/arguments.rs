@@ -1,6 +1,6 @@
 //! The arguments of `trainer trials`.
 
-use crate::cli::{ExperimentArguments, Output};
+use crate::cli::{ExperimentArguments, Output, RunOptions};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -32,24 +32,14 @@ pub(crate) struct TrialsArguments {
     /// Values that override the file's, by dotted key: trials.single=100 seed=3
     #[arg(value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
-    /// Folder for everything: new or empty [default: a new one below reports/runs]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Goes on in the folder of --out: the cases are made again and compared, missing answers are computed
-    #[arg(long, requires = "out")]
-    pub(crate) resume: bool,
+    #[command(flatten)]
+    pub(crate) run: RunOptions,
     /// Opens the seals of these trials and scores their answers again
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed"])]
     pub(crate) score: Option<PathBuf>,
     /// Exit code 1 where the whole 95 % interval of a bar's measure lies on the wrong side
     #[arg(long)]
     pub(crate) check: bool,
-    /// Overrides the configuration's seed
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Threads over cases; results do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
     #[command(flatten)]
     pub(crate) output: Output,
 }
@@ -60,12 +50,9 @@ impl From<&ExperimentArguments> for TrialsArguments {
         Self {
             config: arguments.config.clone(),
             overrides: arguments.overrides.clone(),
-            out: arguments.out.clone(),
-            resume: arguments.resume,
+            run: arguments.run.clone(),
             score: None,
             check: false,
-            seed: arguments.seed,
-            threads: arguments.threads,
             output: arguments.output,
         }
     }

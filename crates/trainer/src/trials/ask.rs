@@ -17,9 +17,10 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// How often finished answers are counted.
-const LOOK: Duration = Duration::from_millis(200);
-/// How long a process that was asked to stop may go on; its answers are written whole or not at all.
-const GRACE: Duration = Duration::from_secs(10);
+const LOOK: Duration = Duration::from_millis(50);
+/// How long a process that was asked to stop may go on, shorter than this one's own patience; its answers are written
+/// whole or not at all.
+const GRACE: Duration = Duration::from_millis(300);
 
 /// Has every case without an answer diagnosed; gives the messages of those that failed, `None` where interrupted.
 pub(crate) fn ask(
@@ -84,7 +85,7 @@ fn group_answers(
     let mut command = Command::new(program);
     command.arg("diagnose").arg("--batch").arg(folder.join("cases").join(group));
     command.arg("--out").arg(&answers).arg("--json");
-    if let Some(threads) = arguments.threads {
+    if let Some(threads) = arguments.run.threads {
         command.args(["--threads", &threads.to_string()]);
     }
     if let Some(effect) = group.strip_prefix(WITHOUT) {

@@ -71,10 +71,7 @@ fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
     ExperimentArguments {
         config: arguments.config.clone(),
         overrides: arguments.overrides.clone(),
-        out: arguments.out.clone(),
-        seed: arguments.seed,
-        resume: arguments.resume,
-        threads: arguments.threads,
+        run: arguments.run.clone(),
         output: arguments.output,
         disk: Disk::default(),
     }
@@ -87,9 +84,9 @@ fn begin(
     pool: &ThreadPool,
 ) -> Result<RunFolder, TrainerError> {
     let config = plan.resolved.to_toml();
-    if let Some(path) = arguments.out.as_ref().filter(|path| path.join("config.toml").exists()) {
+    if let Some(path) = arguments.run.out.as_ref().filter(|path| path.join("config.toml").exists()) {
         let shown = path.display().to_string();
-        if !arguments.resume {
+        if !arguments.run.resume {
             return Err(TrialsError::Begun { folder: shown }.into());
         }
         let folder = RunFolder::resume_on(&Disk::default(), path)?;

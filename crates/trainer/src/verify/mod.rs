@@ -3,7 +3,7 @@
 mod difference;
 
 use crate::Outcome;
-use crate::cli::{ExperimentArguments, Output};
+use crate::cli::{ExperimentArguments, Output, RunOptions};
 use crate::console;
 use crate::error::TrainerError;
 use crate::interrupt;
@@ -34,10 +34,7 @@ pub(crate) fn verify(run: &Path, threads: Option<u16>, output: Output) -> Result
     let arguments = ExperimentArguments {
         config: Some(run.join("config.toml")),
         overrides: Vec::new(),
-        out: Some(again.clone()),
-        seed: None,
-        resume: false,
-        threads,
+        run: RunOptions { out: Some(again.clone()), threads, ..RunOptions::default() },
         output: Output { quiet: true, json: false },
         disk: Disk::default(),
     };

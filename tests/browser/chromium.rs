@@ -1,0 +1,211 @@
+//! A headless Chromium, driven by its DevTools protocol through a pipe: JSON messages with a zero byte between them.
+
+use report::plot::Hue;
+use serde_json::{Value, json};
+use std::io::{BufRead, BufReader, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use tempfile::TempDir;
+
+const NAMES: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
+
+/// Where the protocol speaks through the third and the fourth file, which the shell makes of the first two. A browser that
+/// hangs is ended.
+const START: &str = "exec 3<&0 4>&1 </dev/null >/dev/null 2>&1; exec timeout 600 \"$@\"";
+
+const AUDIT: &str = include_str!("audit.js");
+
+/// How a page is looked at.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct View {
+    /// In CSS pixels.
+    pub(super) width: u32,
+    /// `light` or `dark`.
+    pub(super) scheme: &'static str,
+}
+
+/// A phone and a desk, by day and by night.
+pub(super) const VIEWS: [View; 4] = [
+    View { width: 390, scheme: "light" },
+    View { width: 390, scheme: "dark" },
+    View { width: 1440, scheme: "light" },
+    View { width: 1440, scheme: "dark" },
+];
+
+/// A browser with one page.
+pub(super) struct Chromium {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+    calls: u64,
+    session: String,
+    /// What it said since the page was opened last.
+    events: Vec<Value>,
+    _profile: TempDir,
+}
+
+impl Chromium {
+    /// `None`, said loudly, where there is no browser.
+    pub(super) fn start() -> Option<Self> {
+        let is_there = |name: &&&str| {
+            let asked = "command -v timeout && command -v \"$0\"";
+            let answer = Command::new("sh").args(["-c", asked, name]).output();
+            answer.is_ok_and(|answer| answer.status.success())
+        };
+        let Some(name) = NAMES.iter().find(is_there) else {
+            let line = "SKIPPED: there is no Chromium here (Debian: apt-get install chromium), so no report was opened in a browser\n";
+            std::io::stderr().write_all(line.as_bytes()).unwrap();
+            return None;
+        };
+        let profile = tempfile::tempdir().unwrap();
+        let mut child = Command::new("sh")
+            .args(["-c", START, "sh", name, "--headless", "--remote-debugging-pipe", "--no-sandbox"])
+            .args(["--disable-gpu", "--disable-dev-shm-usage", "--disable-extensions", "--no-first-run"])
+            .args(["--disable-background-networking", "--force-color-profile=srgb"])
+            .arg(format!("--user-data-dir={}", profile.path().display()))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let (input, output) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+        let mut browser = Self {
+            child,
+            input,
+            output,
+            calls: 0,
+            session: String::new(),
+            events: Vec::new(),
+            _profile: profile,
+        };
+        let target = browser.call("Target.createTarget", json!({ "url": "about:blank" }));
+        let attached =
+            browser.call("Target.attachToTarget", json!({ "targetId": target["targetId"], "flatten": true }));
+        browser.session = attached["sessionId"].as_str().unwrap().to_owned();
+        for domain in ["Page", "Runtime", "Log", "Network"] {
+            browser.call(&format!("{domain}.enable"), json!({}));
+        }
+        Some(browser)
+    }
+
+    /// Opens a page and says what is wrong with it: in the console, asked of a network, or to be seen.
+    pub(super) fn faults(&mut self, page: &Path, view: View) -> Vec<String> {
+        self.open(page, view);
+        let decoration = [Hue::Grid.light(), Hue::Shade.light()];
+        let given = json!({ "width": view.width, "decoration": decoration });
+        let seen = self.evaluate(&format!("({AUDIT})({given})"));
+        let mut faults: Vec<String> = self.events.iter().filter_map(|event| said(event, page)).collect();
+        faults.extend(seen.as_array().unwrap().iter().map(|fault| fault.as_str().unwrap().to_owned()));
+        faults
+    }
+
+    /// Opens a page and waits until it is loaded.
+    pub(super) fn open(&mut self, page: &Path, view: View) {
+        self.call(
+            "Emulation.setDeviceMetricsOverride",
+            json!({ "width": view.width, "height": 900, "deviceScaleFactor": 1, "mobile": view.width < 600 }),
+        );
+        let scheme = json!([{ "name": "prefers-color-scheme", "value": view.scheme }]);
+        self.call("Emulation.setEmulatedMedia", json!({ "features": scheme }));
+        self.events.clear();
+        let opened = self.call("Page.navigate", json!({ "url": address(page) }));
+        assert!(opened.get("errorText").is_none(), "{}: {opened}", page.display());
+        self.wait_for("Page.loadEventFired");
+    }
+
+    /// The value of an expression, or of what it promises.
+    pub(super) fn evaluate(&mut self, expression: &str) -> Value {
+        let asked = json!({ "expression": expression, "awaitPromise": true, "returnByValue": true });
+        let answer = self.call("Runtime.evaluate", asked);
+        assert!(answer.get("exceptionDetails").is_none(), "{answer}");
+        answer["result"]["value"].clone()
+    }
+
+    /// Where what a page's links offer is put.
+    pub(super) fn download_to(&mut self, folder: &Path) {
+        let asked = json!({ "behavior": "allow", "downloadPath": folder, "eventsEnabled": true });
+        self.call("Browser.setDownloadBehavior", asked);
+    }
+
+    /// Waits until a download has come to its end.
+    pub(super) fn wait_for_download(&mut self) {
+        loop {
+            let event = self.wait_for("Browser.downloadProgress");
+            match event["params"]["state"].as_str() {
+                Some("completed") => return,
+                Some("inProgress") => (),
+                other => panic!("{other:?}"),
+            }
+        }
+    }
+
+    fn call(&mut self, method: &str, params: Value) -> Value {
+        self.calls += 1;
+        let mut message = json!({ "id": self.calls, "method": method, "params": params });
+        if !self.session.is_empty() {
+            message["sessionId"] = self.session.clone().into();
+        }
+        let mut text = message.to_string().into_bytes();
+        text.push(0);
+        self.input.write_all(&text).unwrap();
+        loop {
+            let message = self.read();
+            if message["id"] == self.calls {
+                assert!(message.get("error").is_none(), "{method}: {message}");
+                return message["result"].clone();
+            }
+            self.events.push(message);
+        }
+    }
+
+    /// The next event of a name; those that were kept count.
+    fn wait_for(&mut self, method: &str) -> Value {
+        if let Some(at) = self.events.iter().position(|event| event["method"] == method) {
+            return self.events.remove(at);
+        }
+        loop {
+            let message = self.read();
+            if message["method"] == method {
+                return message;
+            }
+            self.events.push(message);
+        }
+    }
+
+    fn read(&mut self) -> Value {
+        let mut text = Vec::new();
+        self.output.read_until(0, &mut text).unwrap();
+        assert_eq!(text.pop(), Some(0), "the browser ended");
+        serde_json::from_slice(&text).unwrap()
+    }
+}
+
+impl Drop for Chromium {
+    fn drop(&mut self) {
+        let _ = self.input.write_all(b"{\"id\":0,\"method\":\"Browser.close\"}\0");
+        let _ = self.child.wait();
+    }
+}
+
+fn address(page: &Path) -> String {
+    let safe = |byte: u8| byte.is_ascii_alphanumeric() || b"/-._~".contains(&byte);
+    let bytes = page.as_os_str().as_encoded_bytes().iter();
+    let path: String = bytes
+        .map(|&byte| if safe(byte) { char::from(byte).to_string() } else { format!("%{byte:02X}") })
+        .collect();
+    format!("file://{path}")
+}
+
+/// What an event says against a page, if it does.
+fn said(event: &Value, page: &Path) -> Option<String> {
+    let params = &event["params"];
+    match event["method"].as_str()? {
+        "Runtime.exceptionThrown" => Some(format!("console: {}", params["exceptionDetails"])),
+        "Runtime.consoleAPICalled" => Some(format!("console: {}", params["args"])),
+        "Log.entryAdded" => Some(format!("console: {}", params["entry"]["text"])),
+        "Network.requestWillBeSent" => {
+            let url = params["request"]["url"].as_str()?;
+            (url != address(page) && !url.starts_with("data:")).then(|| format!("request: {url}"))
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,249 @@
+//! Reports in a real browser: nothing in the console, nothing asked of a network, nothing that overflows or cannot be
+//! read, on a phone and at a desk, in light and in dark. Skipped loudly where there is no Chromium.
+
+mod chromium;
+
+use crate::support::{measured, root, trainer};
+use chromium::{Chromium, VIEWS, View};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use tempfile::TempDir;
+
+/// Runs the program into a new folder below `scratch`, whose report comes out of its other files to the byte.
+fn made(scratch: &TempDir, name: &str, arguments: &[&str]) -> PathBuf {
+    let out = scratch.path().join(name);
+    let output = trainer(&[arguments, &["--quiet", "--out", out.to_str().unwrap()]].concat());
+    assert!(output.status.code().unwrap() <= 1, "{}", String::from_utf8_lossy(&output.stderr));
+    let page = out.join("report.html");
+    let before = std::fs::read(&page).unwrap();
+    std::fs::remove_file(&page).unwrap();
+    assert!(trainer(&["report", out.to_str().unwrap(), "--quiet"]).status.success());
+    assert!(std::fs::read(&page).unwrap() == before, "{}: another page", page.display());
+    out
+}
+
+/// Looks at a page in every view.
+fn look_at(browser: &mut Chromium, page: &Path) {
+    let mut faults = Vec::new();
+    for view in VIEWS {
+        faults.extend(browser.faults(page, view).into_iter().map(|fault| format!("{view:?} {fault}")));
+    }
+    assert!(faults.is_empty(), "{}:\n{}", page.display(), faults.join("\n"));
+}
+
+/// Every plot of the page that is open, by its name: what its links offer as SVG and as CSV, and the CSV that stands in
+/// the page.
+const OFFERED: &str = "[...document.querySelectorAll('figure')].map((figure) => ({
+    id: figure.id,
+    offered: ['svg', 'csv'].map((kind) => {
+        const links = figure.querySelectorAll(`a[download=\"${figure.id}.${kind}\"]`);
+        return links.length === 1 ? decodeURIComponent(links[0].href.replace(/^[^,]*,/, '')) : `${links.length} links`;
+    }),
+    csv: figure.querySelector('pre').textContent,
+}))";
+
+/// What the plots of a page offer to take along: the CSV is the page's, and the SVG is sound in the browser by itself. A
+/// click, on the first plot's, gives the file.
+fn take_along(browser: &mut Chromium, page: &Path, least: usize) {
+    let scratch = tempfile::tempdir().unwrap();
+    browser.open(page, VIEWS[0]);
+    let figures = browser.evaluate(OFFERED);
+    let figures = figures.as_array().unwrap();
+    assert!(figures.len() >= least, "{}: {} plots", page.display(), figures.len());
+    let text = |value: &Value| value.as_str().unwrap().to_owned();
+    browser.download_to(scratch.path());
+    for (index, figure) in figures.iter().enumerate() {
+        let id = text(&figure["id"]);
+        let [svg, csv] = [0, 1].map(|at| text(&figure["offered"][at]));
+        assert_eq!(csv, text(&figure["csv"]), "{id}");
+        let mut rows = csv::Reader::from_reader(csv.as_bytes());
+        let width = rows.headers().unwrap().len();
+        assert!(width > 1 && rows.records().all(|row| row.unwrap().len() == width), "{id}");
+        let file = scratch.path().join(format!("{id}.svg"));
+        std::fs::write(&file, &svg).unwrap();
+        for view in VIEWS.iter().filter(|view| view.width > 720) {
+            let faults = browser.faults(&file, *view);
+            assert!(faults.is_empty(), "{}, {id}.svg: {view:?} {faults:?}", page.display());
+        }
+        if index > 0 {
+            continue;
+        }
+        std::fs::remove_file(&file).unwrap();
+        browser.open(page, VIEWS[0]);
+        for (kind, content) in [("svg", svg), ("csv", csv)] {
+            browser.evaluate(&format!("document.querySelector('a[download=\"{id}.{kind}\"]').click()"));
+            browser.wait_for_download();
+            assert_eq!(
+                std::fs::read_to_string(scratch.path().join(format!("{id}.{kind}"))).unwrap(),
+                content
+            );
+        }
+    }
+}
+
+/// Makes a run and looks at its report, which has so many plots or more.
+fn report_of(arguments: &[&str], plots: usize) {
+    let scratch = tempfile::tempdir().unwrap();
+    let page = made(&scratch, "run", arguments).join("report.html");
+    let Some(mut browser) = Chromium::start() else { return };
+    look_at(&mut browser, &page);
+    take_along(&mut browser, &page, plots);
+}
+
+#[test]
+fn the_report_of_an_estimation() {
+    report_of(&["configs/pinn.toml", "fit.seeds=3"], 5);
+}
+
+#[test]
+fn the_report_of_a_comparison() {
+    report_of(&["configs/compare.toml", "fit.seeds=2"], 3);
+}
+
+#[test]
+fn the_report_of_the_papers_suite() {
+    if measured("horizontal-pendulum/80P.txt").is_some() {
+        report_of(&["configs/paper.toml"], 3);
+    }
+}
+
+#[test]
+fn the_report_of_a_study_of_prediction() {
+    let few = ["predict.problems=dry-friction,shipped-record", "predict.draws=2", "predict.draws_seeded=1"];
+    report_of(&[&["configs/beyond.toml", "predict.max_steps=20"], &few[..]].concat(), 4);
+}
+
+#[test]
+fn the_report_of_a_diagnosis() {
+    let folder = "experiments/default-record";
+    let (record, nominal) = (format!("{folder}/record.csv"), format!("{folder}/nominal.toml"));
+    report_of(&["diagnose", &record, "--nominal", &nominal], 11);
+}
+
+#[test]
+fn the_report_of_trials() {
+    report_of(&[&["configs/trials-quick.toml"], crate::documents::FEW_TRIALS].concat(), 1);
+}
+
+/// A sweep with a run that fails, and its runs beside another one.
+#[test]
+fn the_tables_of_runs() {
+    let scratch = tempfile::tempdir().unwrap();
+    let axes =
+        ["sweep", "configs/pinn.toml", "estimator=pinn,lstm,gaussian-process", "seed=0..2", "fit.seeds=1,2"];
+    let sweep = made(&scratch, "sweep", &axes);
+    let bad = scratch.path().join("bad.csv");
+    std::fs::write(&bad, "time_s,angle_rad\n0,1\n0.1,x\n").unwrap();
+    let paths = format!("data.path={},experiments/default-record/record.csv", bad.display());
+    let failing = made(&scratch, "failing", &["sweep", "configs/ols.toml", &paths]);
+    let arguments = ["compare", sweep.to_str().unwrap(), failing.to_str().unwrap()];
+    let table = made(&scratch, "table", &arguments);
+    let Some(mut browser) = Chromium::start() else { return };
+    for folder in [&sweep, &failing, &table] {
+        look_at(&mut browser, &folder.join("report.html"));
+    }
+    take_along(&mut browser, &sweep.join("report.html"), 2);
+}
+
+/// Names as hostile as a file system lets them be, and as long.
+#[test]
+fn hostile_names_are_text() {
+    let scratch = tempfile::tempdir().unwrap();
+    let evil = "<script>throw 1<&script>\"'$x$&lt;<img src=x onerror=throw(2)>";
+    let record = scratch.path().join(format!("{evil}{}.csv", "long".repeat(30)));
+    std::fs::copy(root().join("experiments/default-record/record.csv"), &record).unwrap();
+    let config = |base: &str| {
+        let config = scratch.path().join(format!("{evil}-{base}"));
+        // A string of JSON is one of TOML.
+        let text = |path: &Path| serde_json::to_string(path.to_str().unwrap()).unwrap();
+        let base = text(&root().join("configs").join(base));
+        let name = text(Path::new(evil));
+        std::fs::write(&config, format!("base = {base}\nname = {name}\ndata.path = {}\n", text(&record)))
+            .unwrap();
+        config.to_str().unwrap().to_owned()
+    };
+    let run = made(&scratch, &format!("{evil}-run"), &[&config("pinn.toml"), "fit.max_steps=5"]);
+    let comparison = made(&scratch, &format!("{evil}-all"), &[&config("compare.toml")]);
+    let both = [run.to_str().unwrap(), comparison.to_str().unwrap()];
+    let table = made(&scratch, &format!("{evil}-table"), &[&["compare"], &both[..]].concat());
+    let sweep = made(&scratch, &format!("{evil}-sweep"), &["sweep", &config("ols.toml"), "seed=0,1"]);
+    let nominal = "experiments/default-record/nominal.toml";
+    let asked = ["diagnose", record.to_str().unwrap(), "--nominal", nominal];
+    let diagnosis = made(&scratch, &format!("{evil}-gap"), &asked);
+    let Some(mut browser) = Chromium::start() else { return };
+    for folder in [&run, &comparison, &table, &sweep, &diagnosis] {
+        look_at(&mut browser, &folder.join("report.html"));
+        let title = browser.evaluate("document.querySelector('h1').textContent");
+        assert_eq!(title.as_str(), folder.file_name().unwrap().to_str());
+    }
+    take_along(&mut browser, &run.join("report.html"), 5);
+}
+
+/// A page with one fault of each kind: what was not found here would not be found in a report.
+#[test]
+fn broken_pages_are_seen() {
+    let Some(mut browser) = Chromium::start() else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let page = scratch.path().join("page.html");
+    let narrow = View { width: 390, scheme: "light" };
+    let dark = View { width: 1440, scheme: "dark" };
+    let head = "<!DOCTYPE html><meta charset=\"utf-8\"><meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\
+                <meta name=\"color-scheme\" content=\"light dark\">";
+    let mut faults = |body: &str, view: View| {
+        std::fs::write(&page, format!("{head}{body}")).unwrap();
+        browser.faults(&page, view)
+    };
+    for view in [narrow, dark] {
+        let sound = "<p>sound</p><svg width=\"200\" height=\"50\"><text x=\"9\" y=\"20\" fill=\"CanvasText\">1</text></svg>";
+        assert_eq!(faults(sound, view), Vec::<String>::new());
+    }
+    for (body, view, kind) in [
+        ("<div style=\"width:600px\">wide</div>", narrow, "overflow: the page is"),
+        ("<div style=\"position:absolute;left:-50px\">out</div>", narrow, "overflow: div"),
+        ("<div style=\"overflow:hidden;width:9px;white-space:nowrap\">cut off</div>", dark, "overflow: div"),
+        (
+            "<script>console.error('spoken')</script>",
+            narrow,
+            "console: [{\"type\":\"string\",\"value\":\"spoken\"}]",
+        ),
+        ("<script>throw new Error('thrown')</script>", narrow, "console: "),
+        ("<img src=\"http://127.0.0.1:9/absent.png\">", narrow, "request: http://127.0.0.1:9/absent.png"),
+        ("<link rel=stylesheet href=absent.css>", narrow, "request: file://"),
+        ("<p style=\"color:#777\">pale</p>", dark, "pale: p \"pale\""),
+        ("<p style=\"background:#222\">inverse</p>", narrow, "pale: p \"inverse\""),
+        (
+            "<svg width=\"200\" height=\"50\"><text x=\"9\" y=\"20\">black</text></svg>",
+            dark,
+            "pale: text \"black\"",
+        ),
+        (
+            "<svg width=\"200\" height=\"50\"><line x2=\"90\" y2=\"9\" stroke=\"#ccc\"/></svg>",
+            narrow,
+            "pale: svg",
+        ),
+        (
+            "<svg width=\"200\" height=\"50\"><path d=\"M0 0L90 9\" fill=\"none\" stroke=\"#333\"/></svg>",
+            dark,
+            "pale: svg",
+        ),
+        (
+            "<svg width=\"200\" viewBox=\"0 0 800 50\"><text x=\"9\" y=\"20\">tiny</text></svg>",
+            narrow,
+            "small: text",
+        ),
+        (
+            "<svg width=\"200\" height=\"50\"><text x=\"180\" y=\"20\">beyond</text></svg>",
+            narrow,
+            "cut: text",
+        ),
+        (
+            "<svg width=\"200\" height=\"50\"><text y=\"20\">one</text><text x=\"9\" y=\"20\">two</text></svg>",
+            narrow,
+            "overlap: ",
+        ),
+        ("<figure><svg class=\"plot\" style=\"display:none\"></svg></figure>", narrow, "absent: figure"),
+    ] {
+        let found = faults(body, view);
+        assert!(found.iter().any(|fault| fault.starts_with(kind)), "{body}: {found:?}");
+    }
+}
