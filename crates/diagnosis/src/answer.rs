@@ -61,7 +61,8 @@ pub struct ParameterEstimate {
 pub struct EffectProbability {
     /// An id of the vocabulary, or `none`, `calibration`, `unknown`.
     pub id: &'static str,
-    /// Its probability. Several effects can act at once: those of effects need not add up to 1.
+    /// Its probability, as often as such effects were there in withheld-effect trials. Several can act at once: they need not
+    /// add up to 1.
     pub probability: f64,
     /// Parameters in the best set that has it; empty for what has none.
     pub parameters: Vec<ParameterEstimate>,

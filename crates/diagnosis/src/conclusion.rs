@@ -3,7 +3,7 @@
 use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
 use crate::candidate::Candidate;
 use crate::coefficients::parameters;
-use crate::confidence::{confidence, stand_in};
+use crate::confidence::{confidence, of_effect, stand_in};
 use crate::fit::Fit;
 use crate::verdict::{Weighed, marginal};
 use crate::work::{Shift, Work};
@@ -74,7 +74,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         let source = if place.is_some() { Some(repaired) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),
-            probability,
+            probability: of_effect(place.map(|_| parts.named.len()), probability, parts.left_over),
             parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
             gap_share: place.and_then(|place| shares.get(place)).map(|share| share.1),
         });

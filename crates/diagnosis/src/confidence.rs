@@ -30,6 +30,12 @@ const EFFECTS: [Line; 4] = [
     Line { at_even: -2.02, by_odds: 0.36 },
 ];
 
+/// Of an effect by itself: of one or two that are named, of three or more, where the step from one set to the other is the
+/// same, and of one that is not named.
+const NAMED: Line = Line { at_even: -0.28, by_odds: 0.51 };
+const OF_MANY: Line = Line { at_even: -2.02, by_odds: 0.36 };
+const NOT_NAMED: Line = Line { at_even: -0.41, by_odds: 0.84 };
+
 /// Log odds beyond which the bank has nothing more to say.
 const MOST_ODDS: f64 = 4.0;
 
@@ -46,23 +52,38 @@ pub(crate) fn stand_in(fitted: usize) -> f64 {
     STAND_IN.get(fitted).copied().unwrap_or(last)
 }
 
+impl Line {
+    /// The probability that goes with that of a set, and with that of anything being left beside it.
+    fn at(&self, probability: f64, left_over: f64) -> f64 {
+        let odds = (probability / (1.0 - probability)).ln().clamp(-MOST_ODDS, MOST_ODDS);
+        1.0 / (1.0 + (-(self.at_even + self.by_odds * odds + LEFT_OVER * left_over)).exp())
+    }
+}
+
 /// The probability that a verdict is right, status and effects together, from that of its set and from the probability that
 /// anything is left beside it.
 pub(crate) fn confidence(status: Status, fitted: usize, probability: f64, left_over: f64) -> f64 {
     let [.., last] = &EFFECTS;
-    let line = match status {
-        Status::None | Status::Calibration => &NOTHING_MISSING,
-        Status::Unknown => &UNKNOWN,
-        Status::Effect => EFFECTS.get(fitted).unwrap_or(last),
+    match status {
+        Status::None | Status::Calibration => NOTHING_MISSING.at(probability, 0.0),
+        Status::Unknown => UNKNOWN.at(probability, 0.0),
+        Status::Effect => EFFECTS.get(fitted).unwrap_or(last).at(probability, left_over),
+    }
+}
+
+/// The probability that an effect acts, from that of all sets with it: one of so many that are named, or none of them.
+pub(crate) fn of_effect(named: Option<usize>, probability: f64, left_over: f64) -> f64 {
+    let line = match named {
+        Some(..=2) => NAMED,
+        Some(_) => OF_MANY,
+        None => NOT_NAMED,
     };
-    let odds = (probability / (1.0 - probability)).ln().clamp(-MOST_ODDS, MOST_ODDS);
-    let left = if status == Status::Effect { LEFT_OVER * left_over } else { 0.0 };
-    1.0 / (1.0 + (-(line.at_even + line.by_odds * odds + left)).exp())
+    line.at(probability, left_over)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{MOST_ODDS, confidence};
+    use super::{MOST_ODDS, confidence, of_effect};
     use crate::answer::Status;
 
     /// Surer sets are surer verdicts, and more effects less sure ones.
@@ -78,5 +99,15 @@ mod tests {
         let most = 1.0 / (1.0 + (-MOST_ODDS).exp());
         assert_eq!(confidence(Status::Effect, 2, most, 0.0), confidence(Status::Effect, 2, 1.0, 0.0));
         assert!(confidence(Status::Effect, 1, 0.9, 1.0) < confidence(Status::Effect, 1, 0.9, 0.0));
+    }
+    /// Named effects rank above what could stand in their place, and less sure ones below.
+    #[test]
+    fn an_effects_probability_follows_that_of_its_sets() {
+        for named in [Some(1), Some(3), None] {
+            let values = [0.0, 0.02, 0.3, 0.6, 0.9, 1.0].map(|p| of_effect(named, p, 0.0));
+            assert!(values.is_sorted() && values.iter().all(|p| (0.0..=1.0).contains(p)), "{values:?}");
+            assert!(of_effect(named, 0.9, 1.0) < of_effect(named, 0.9, 0.0));
+        }
+        assert!(of_effect(Some(1), 0.6, 0.0) > of_effect(None, 0.4, 0.0));
     }
 }
