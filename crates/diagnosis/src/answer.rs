@@ -81,7 +81,7 @@ pub struct Gap {
     pub recalibrated: f64,
     /// With the named effects.
     pub repaired: f64,
-    /// With a free latent torque on top.
+    /// With a free latent torque on top, where that predicts better than none.
     pub ceiling: f64,
     /// The noise floor.
     pub noise_floor: NoiseFloor,

@@ -104,7 +104,8 @@ pub(crate) fn gap(
         nominal: r0.sqrt(),
         recalibrated: rc.sqrt(),
         repaired: rm.sqrt(),
-        ceiling: (left / freedom.max(1.0)).sqrt(),
+        // Where a free torque predicts worse than none, none is the better choice.
+        ceiling: (left / freedom.max(1.0)).min(rm).sqrt(),
         closure: closed(&nominal, closure(rm, r0, noise)),
         closure_of_recalibrated: closed(&recalibrated, closure(rm, rc, noise)),
         ratio_to_floor: Interval {
