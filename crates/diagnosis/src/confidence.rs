@@ -3,7 +3,7 @@
 //! The probabilities of sets come from a likelihood of Gaussian noise and a vocabulary that is taken to be complete. Records
 //! keep to neither: where the cause has no name, two or three effects together often stand in for it, and are sure of
 //! themselves. How often that happens only trials can say. So the stated confidence is a logistic function of a set's
-//! own log odds, by status and by how many fitted effects it names, learned from a bank of withheld-effect trials:
+//! own log odds and of whether anything is left beside it, by status and by how many fitted effects it names, learned from a bank of withheld-effect trials:
 //!
 //! 522 cases of `trainer trials configs/trials-quick.toml` with the seeds 202 and 303, at sizes of 12, 25, 50 and 100 and
 //! in two to three times the numbers, and 704 with the seeds 404 and 405 once the search had changed: the lines of the
@@ -20,20 +20,20 @@ struct Line {
 
 const NOTHING_MISSING: Line = Line { at_even: -0.39, by_odds: 0.63 };
 const UNKNOWN: Line = Line { at_even: 1.20, by_odds: 0.12 };
+/// Of three effects or more. The banks hide two at most, so that they cannot show three to be right (of 25 such answers none
+/// was): the step from one to two, as the first banks had it, is taken once more.
+const OF_MANY: Line = Line { at_even: -2.02, by_odds: 0.36 };
 /// By the number of fitted effects that are named, the last for more; none are fitted where stamps and values show what is
-/// missing. The banks hide two effects at most, so that they cannot show three to be right (of 26 such answers none was):
-/// for three the step from one to two, as the first banks had it, is taken once more.
+/// missing.
 const EFFECTS: [Line; 4] = [
     Line { at_even: -0.49, by_odds: 0.88 },
     Line { at_even: -0.33, by_odds: 0.57 },
     Line { at_even: -0.51, by_odds: 0.54 },
-    Line { at_even: -2.02, by_odds: 0.36 },
+    OF_MANY,
 ];
 
-/// Of an effect by itself: of one or two that are named, of three or more, where the step from one set to the other is the
-/// same, and of one that is not named.
+/// Of an effect by itself: of one or two that are named, and of one that is not named.
 const NAMED: Line = Line { at_even: -0.28, by_odds: 0.51 };
-const OF_MANY: Line = Line { at_even: -2.02, by_odds: 0.36 };
 const NOT_NAMED: Line = Line { at_even: -0.41, by_odds: 0.84 };
 
 /// Log odds beyond which the bank has nothing more to say.
@@ -100,6 +100,7 @@ mod tests {
         assert_eq!(confidence(Status::Effect, 2, most, 0.0), confidence(Status::Effect, 2, 1.0, 0.0));
         assert!(confidence(Status::Effect, 1, 0.9, 1.0) < confidence(Status::Effect, 1, 0.9, 0.0));
     }
+
     /// Named effects rank above what could stand in their place, and less sure ones below.
     #[test]
     fn an_effects_probability_follows_that_of_its_sets() {

@@ -11,6 +11,7 @@ use crate::spectrum::{decaying_lines, frequencies, lines};
 use crate::tangent::{Path, matrix, plain_moment, stack};
 use dynamics::{Coefficients, DynamicsError, MOST_PARAMETERS, SystemEffect};
 use nalgebra::{DMatrix, DVector};
+use record::Quantity;
 use std::ops::Range;
 
 /// A candidate at one shape: columns whose coefficients are its linear parameters.
@@ -386,16 +387,15 @@ pub(crate) enum Acting {
 
 /// The change of what is observed by functions of the motion, not projected: for what has no name.
 pub(crate) fn columns_of(
-    data: &Data,
-    fit: &Fit,
+    paths: &[Path],
+    quantity: Quantity,
     functions: &[Smooth],
     acting: Acting,
-) -> Result<Vec<Vec<f64>>, DynamicsError> {
-    let paths = Path::of(data, fit)?;
-    Ok(functions
+) -> Vec<Vec<f64>> {
+    functions
         .iter()
         .map(|function| {
-            stack(&paths, |path| {
+            stack(paths, |path| {
                 let motion = path.motion.position.iter().zip(&path.motion.velocity);
                 let along: Vec<f64> = motion
                     .zip(path.times.iter().zip(&path.input))
@@ -404,10 +404,10 @@ pub(crate) fn columns_of(
                     })
                     .collect();
                 match acting {
-                    Acting::Torque => path.response(&along, data.quantity),
+                    Acting::Torque => path.response(&along, quantity),
                     Acting::Sensor => along,
                 }
             })
         })
-        .collect())
+        .collect()
 }

@@ -9,7 +9,7 @@ use crate::fit::{Fit, solve};
 use crate::matrices::ridged;
 use crate::projection::{Projection, jacobians};
 use crate::segments::Data;
-use crate::tangent::matrix;
+use crate::tangent::{Path, matrix};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 
@@ -72,7 +72,7 @@ pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
 /// ones, and the other way round.
 pub(crate) fn ceiling(data: &Data, fit: &Fit) -> Result<Vec<DVector<f64>>, DynamicsError> {
     let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
-    let latent = columns_of(data, fit, &basis(data, rest), Acting::Torque)?;
+    let latent = columns_of(&Path::of(data, fit)?, data.quantity, &basis(data, rest), Acting::Torque);
     let jacobians = jacobians(data, &fit.hypothesis, &fit.point)?;
     let starts = fit.hypothesis.start_length();
     let globals = fit.globals();

@@ -16,7 +16,7 @@ use crate::latent::basis;
 use crate::matrices::{element, entry};
 use crate::projection::Projection;
 use crate::segments::{Data, PERIODS};
-use crate::tangent::matrix;
+use crate::tangent::{Path, matrix};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
@@ -147,17 +147,9 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
 }
 
-/// What free functions of the motion would take away of a fit's residual, as a torque or in the sensor: squares and how many
-/// independent directions they lie in.
-fn taken(
-    data: &Data,
-    fit: &Fit,
-    projection: &Projection,
-    acting: Acting,
-) -> Result<(f64, f64), DynamicsError> {
-    let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
-    let columns = columns_of(data, fit, &basis(data, rest), acting)?;
-    let mut columns = matrix(projection.rows(), &columns);
+/// What columns would take away of a fit's residual: squares and how many independent directions they lie in.
+fn taken(fit: &Fit, projection: &Projection, columns: &[Vec<f64>]) -> (f64, f64) {
+    let mut columns = matrix(projection.rows(), columns);
     let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     projection.apply(&mut columns);
     for (mut column, raw) in columns.column_iter_mut().zip(raw) {
@@ -182,7 +174,7 @@ fn taken(
             count += 1.0;
         }
     }
-    Ok((squares, count))
+    (squares, count)
 }
 
 /// What a fit leaves without a name.
@@ -196,9 +188,12 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
         Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
     let noise = if around.worth > 0.0 { around } else { whole };
     let projection = Projection::at(data, fit)?;
+    let paths = Path::of(data, fit)?;
+    let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
     let mut found = spectrum;
     for acting in [Acting::Torque, Acting::Sensor] {
-        let (squares, directions) = taken(data, fit, &projection, acting)?;
+        let columns = columns_of(&paths, data.quantity, &free, acting);
+        let (squares, directions) = taken(fit, &projection, &columns);
         let mean = squares / directions.max(1.0);
         let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
         if evidence > found.evidence {

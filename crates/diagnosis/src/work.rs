@@ -91,21 +91,21 @@ impl<'a> Work<'a> {
             fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL).ok()
         };
         let shifted = with(vec![Coefficient::RestAngle])?;
-        let bare = if effects.is_empty() { self.base.nominal.clone() } else { with(Vec::new())? };
         let time = repaired.autocorrelation_time();
-        let enough = !significant(repaired, &shifted, time, own.calibrated.len() - 1, OFF_BY_CHANCE);
-        let needed = significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE);
+        if significant(repaired, &shifted, time, own.calibrated.len() - 1, OFF_BY_CHANCE) {
+            return None;
+        }
+        let bare = if effects.is_empty() { self.base.nominal.clone() } else { with(Vec::new())? };
+        if !significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE) {
+            return None;
+        }
         let nominal = &own.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
         let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
         let reach = normal_above(0.025) * error;
-        (enough && needed).then(|| Shift {
-            torque: Interval {
-                value: torque(angle),
-                interval_95: [torque(angle - reach), torque(angle + reach)],
-            },
-        })
+        let interval_95 = [torque(angle - reach), torque(angle + reach)];
+        Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
     /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts: better
