@@ -66,6 +66,22 @@ const MOST_DAMPED: f64 = 0.7;
 const SMALLEST_BODY: f64 = 1e-9;
 const LARGEST_BODY: f64 = 1e2;
 
+/// Factor in the decay rate beyond which a line at a harmonic is another body's. Those by which a second body
+/// stands in for a sensor that is not linear decayed 0.9 to 1.2 times as fast as the harmonic (training banks).
+const FASTER: f64 = 2.0;
+
+/// The swing that a second body is told from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Swing {
+    /// Angular frequency in rad/s.
+    pub(crate) frequency: f64,
+    /// Decay rate of its amplitude in 1/s.
+    pub(crate) decay_rate: f64,
+    pub(crate) inertia: f64,
+    /// Whether each record has one start state, at its beginning.
+    pub(crate) starts_once: bool,
+}
+
 /// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Polar {
@@ -326,18 +342,21 @@ impl Candidate {
         ]
     }
 
-    /// Whether fitted values are what the effect's name says, for a swing of an angular frequency.
+    /// Whether fitted values are what the effect's name says, beside a swing.
     ///
     /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its own half-width of
-    /// the swing's or of a harmonic is no second line: it shows a damping or a force that changes with amplitude. At the
-    /// ends of its parameters' ranges one whose mode does not decay within the records is a forcing, one much
-    /// slower than the swing a drift.
-    pub(crate) fn is_itself(self, fitted: &[f64], swing: f64, inertia: f64) -> bool {
+    /// the swing's or of a harmonic is no second line: it shows a damping or a force that changes with amplitude. Only where
+    /// it is struck once, at a record's beginning, does its decay tell it from the harmonic of order n: that one
+    /// decays n times as fast as the swing. At the ends of its parameters' ranges one whose mode does not decay within
+    /// the records is a forcing, one much slower than the swing a drift.
+    pub(crate) fn is_itself(self, fitted: &[f64], swing: &Swing) -> bool {
         match (self, fitted) {
             (Self::System(SystemEffect::FlexibleCoupling), &[body, mode, rate]) => {
-                let line = mode * (1.0 + body / inertia).sqrt();
-                let harmonic = (line / swing).round().max(1.0) * swing;
-                rate <= MOST_DAMPED * mode && (line - harmonic).abs() > rate
+                let line = mode * (1.0 + body / swing.inertia).sqrt();
+                let order = (line / swing.frequency).round().max(1.0);
+                let apart = (line - order * swing.frequency).abs() > rate;
+                let faster = order > 1.0 && rate > FASTER * order * swing.decay_rate;
+                rate <= MOST_DAMPED * mode && (apart || swing.starts_once && faster)
             }
             _ => true,
         }
@@ -354,8 +373,9 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use super::Candidate;
+    use super::{Candidate, Swing};
     use crate::facts::Facts;
+    use dynamics::SystemEffect;
 
     const FACTS: Facts = Facts {
         amplitude: 0.7,
@@ -385,6 +405,22 @@ mod tests {
                 assert_eq!(names, fitted, "{}", candidate.id());
             }
         }
+    }
+
+    /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third harmonic, which decays
+    /// at 0.3/s.
+    #[test]
+    fn a_harmonic_is_no_second_body() {
+        let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
+        let swing = Swing { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true };
+        let is_itself = |line: f64, rate: f64, swing: &Swing| coupling.is_itself(&[0.0, line, rate], swing);
+        assert!(!is_itself(66.0, 0.3, &swing));
+        assert!(is_itself(66.0, 0.61, &swing));
+        assert!(!is_itself(66.0, 0.61, &Swing { starts_once: false, ..swing }));
+        assert!(is_itself(66.5, 0.3, &swing));
+        // Near the swing itself no decay tells it apart, and a body that hardly swings is none.
+        assert!(!is_itself(22.0, 2.0, &swing));
+        assert!(!is_itself(60.0, 50.0, &swing));
     }
 
     #[test]

@@ -142,6 +142,32 @@ fn evaluate(
     Ok(Evaluation { predictions, squares })
 }
 
+/// The same for a trial that is of use only below a bound on the weighted squares; `None` as soon as these are above it, which
+/// spares the rest of the segments.
+fn evaluate_below(
+    simulator: &mut Simulator<'_>,
+    segments: &[Segment],
+    point: &Point,
+    weights: &[f64],
+    bound: f64,
+) -> Option<Evaluation> {
+    simulator.set(&point.globals).ok()?;
+    let mut predictions = Vec::with_capacity(segments.len());
+    let (mut squares, mut total) = (0.0, 0.0);
+    for ((segment, start), weight) in segments.iter().zip(&point.starts).zip(weights) {
+        let prediction = simulator.predict(segment, start).ok()?;
+        let own = prediction.residual.norm_squared();
+        squares += own;
+        total += weight * own;
+        // A residual that is not a number is no gain either.
+        if total.is_nan() || total > bound {
+            return None;
+        }
+        predictions.push(prediction);
+    }
+    Some(Evaluation { predictions, squares })
+}
+
 /// The damping falls by this at most after a step that gained what was promised; it stays where a step gained less than half.
 const LOWEST_CUT: f64 = 1.0 / 3.0;
 
@@ -316,11 +342,12 @@ pub(crate) fn fit(
         // Nothing more to be had: no need to try.
         let done = damping <= SHORT && promised <= effort.small * weighted(&at, &weights);
         let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
-            let evaluation = evaluate(&mut simulator, &data.segments, &next).ok()?;
+            let bound = weighted(&at, &weights);
+            let evaluation = evaluate_below(&mut simulator, &data.segments, &next, &weights, bound)?;
             Some((next, evaluation))
         });
         match outcome {
-            Some((next, evaluation)) if weighted(&evaluation, &weights) <= weighted(&at, &weights) => {
+            Some((next, evaluation)) => {
                 let before = weighted(&at, &weights);
                 let decrease = before - weighted(&evaluation, &weights);
                 small = if damping <= SHORT && decrease <= effort.small * before { small + 1 } else { 0 };

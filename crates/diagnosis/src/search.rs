@@ -5,7 +5,7 @@
 //! best sets found so far and proposes what to add there, what to put in another's place, and what each member
 //! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
 
-use crate::candidate::Candidate;
+use crate::candidate::{Candidate, Swing};
 use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
@@ -88,11 +88,22 @@ impl Pool {
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
-    let (swing, inertia) = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
-        Ok(nominal) => ((nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(), nominal.inertia()),
-        Err(_) => (data.facts.frequency, data.facts.inertia),
+    let starts_once = data.segments.len() <= data.inputs.len();
+    let swing = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
+        Ok(nominal) => Swing {
+            frequency: (nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(),
+            decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
+            inertia: nominal.inertia(),
+            starts_once,
+        },
+        Err(_) => Swing {
+            frequency: data.facts.frequency,
+            decay_rate: f64::INFINITY,
+            inertia: data.facts.inertia,
+            starts_once,
+        },
     };
-    if members.any(|(candidate, part)| !candidate.is_itself(part, swing, inertia)) {
+    if members.any(|(candidate, part)| !candidate.is_itself(part, &swing)) {
         return true;
     }
     let parameters = fit.hypothesis.parameters(&data.facts);

@@ -196,7 +196,7 @@ const CASES: &[(&str, &[f64])] = &[
     ("damping_drift", &[0.03]),
     ("periodic_forcing", &[1.0, 31.0, 0.3]),
     ("gravity", &[150.0, 1.2]),
-    ("flexible_coupling", &[0.05, 180.0, 0.2]),
+    ("flexible_coupling", &[0.1, 180.0, 0.2]),
 ];
 
 /// `cargo test --release -p diagnosis trials::every_effect_is_found -- --ignored --nocapture`
