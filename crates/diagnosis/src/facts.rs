@@ -38,11 +38,16 @@ const OF_NOISE: f64 = 1e-3;
 const SLOWEST_MODE: f64 = 0.3;
 const FASTEST: f64 = 12.0;
 
+/// The highest angular frequency at which samples so far apart tell frequencies from their images, with room for a line's
+/// width: 0.8 of half their rate.
+pub(crate) fn below_images(interval: f64) -> f64 {
+    0.8 * std::f64::consts::PI / interval
+}
+
 impl Facts {
-    /// The highest angular frequency looked at in samples so far apart: short of half their rate, where frequencies are told
-    /// from their images.
+    /// The highest angular frequency looked at in samples so far apart.
     pub(crate) fn highest_frequency(&self, interval: f64) -> f64 {
-        (FASTEST * self.frequency).min(0.8 * std::f64::consts::PI / interval)
+        (FASTEST * self.frequency).min(below_images(interval))
     }
 
     /// Angular frequencies that a second body may have, lowest and highest.

@@ -11,6 +11,7 @@
 //! counts for nothing, and few samples say little.
 
 use crate::dictionary::{Acting, columns_of};
+use crate::facts::below_images;
 use crate::fit::Fit;
 use crate::latent::basis;
 use crate::matrices::{element, entry};
@@ -99,7 +100,7 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
 /// Bands about every half harmonic, from half the swing's frequency up, summed over the segments as they were cut.
 fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
-    let highest = 0.8 * TAU / (2.0 * data.facts.interval);
+    let highest = below_images(data.facts.interval);
     for (segment, residual) in data.segments.iter().zip(residuals) {
         for part in segment.part_ranges() {
             let Some(times) = segment.times.get(part.clone()) else { continue };

@@ -7,7 +7,7 @@ use runs::result::{EnvelopeRow, TraceRow};
 
 use crate::format;
 use crate::parse::Run;
-use crate::plot::{Axis, Drawing, Hue, LegendEntry, Mark, Plot, Series};
+use crate::plot::{Axis, Drawing, Hue, Mark, Plot, Series};
 
 /// Rows of CSV under one plot, beyond which only every so-manieth is kept.
 const MOST_ROWS: usize = 3_000;
@@ -23,11 +23,7 @@ pub(crate) struct Figure {
     pub(crate) explanation: String,
     /// What is missing from it.
     pub(crate) notes: Vec<String>,
-    pub(crate) legend: Vec<LegendEntry>,
-    /// The plot as an SVG file.
-    pub(crate) file: String,
-    pub(crate) wide: String,
-    pub(crate) narrow: String,
+    pub(crate) drawing: Drawing,
     /// What is drawn, as a table, and how many rows that is.
     pub(crate) csv: String,
     pub(crate) rows: String,
@@ -36,7 +32,7 @@ pub(crate) struct Figure {
 impl Figure {
     /// An address that holds the plot itself: the page is one file, and what it offers is in it.
     pub(crate) fn svg_address(&self) -> String {
-        address("image/svg+xml", &self.file)
+        address("image/svg+xml", &self.drawing.file)
     }
 
     /// An address that holds the plot's data.
@@ -194,37 +190,27 @@ pub(crate) fn figure(
 ) -> Option<Figure> {
     let (id, title) = (id.into(), title.into());
     let description = format!("{title}: {} against {}.", plot.y.label, plot.x.label);
-    let Drawing { file, wide, narrow, mut legend, left_out, thinned } = plot.draw(&description)?;
+    let mut drawing = plot.draw(&description)?;
     let mut notes = Vec::new();
-    if legend.len() > MOST_ENTRIES {
-        notes.push(format!("{} more phases are not in the legend.", legend.len() - MOST_ENTRIES));
-        legend.truncate(MOST_ENTRIES);
+    if drawing.legend.len() > MOST_ENTRIES {
+        notes.push(format!("{} more phases are not in the legend.", drawing.legend.len() - MOST_ENTRIES));
+        drawing.legend.truncate(MOST_ENTRIES);
     }
+    let left_out = drawing.left_out;
     if left_out > 0 {
         notes.push(format!(
             "Values without a place on these axes (not finite, or not positive on a logarithmic \
              axis) are left out: {left_out}."
         ));
     }
-    if thinned {
+    if drawing.thinned {
         notes.push(
             "Drawn with fewer points than there are; of every stretch the lowest and the highest \
              are kept."
                 .to_owned(),
         );
     }
-    Some(Figure {
-        id,
-        title,
-        explanation: explanation.to_owned(),
-        notes,
-        legend,
-        file,
-        wide,
-        narrow,
-        csv,
-        rows,
-    })
+    Some(Figure { id, title, explanation: explanation.to_owned(), notes, drawing, csv, rows })
 }
 
 pub(crate) fn time_axis() -> Axis {

@@ -6,7 +6,7 @@ use super::estimate;
 use crate::figures::{Figure, csv, figure, number, oracle, time_axis};
 use crate::format;
 use crate::parse::Comparison;
-use crate::plot::{Axis, DotRow, DotRows, Drawing, Hue, Mark, Plot, Series};
+use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 
 /// Errors below this, in percent, are drawn at it: the spacing of doubles, where digits end.
 const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
@@ -69,8 +69,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         level: Some(("stated tolerance".into(), result.tolerance_percent)),
     };
     let title = "(c) Error by method";
-    let Drawing { file, wide, narrow, legend, left_out, .. } =
-        plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
+    let drawing = plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
     let mut notes = Vec::new();
     if errors_of(&result.results).any(|error| error < LEAST_PERCENT) {
         notes.push(format!(
@@ -82,8 +81,8 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
     if silent > 0 {
         notes.push(format!("Rows without a mark gave no estimate: {silent}."));
     }
-    if left_out > 0 {
-        notes.push(format!("Errors that are not finite have no mark: {left_out}."));
+    if drawing.left_out > 0 {
+        notes.push(format!("Errors that are not finite have no mark: {}.", drawing.left_out));
     }
     let header =
         ["number", "method", "error_percent", "median_error_percent", "worst_error_percent", "seeds"];
@@ -103,18 +102,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
                        least squares. How close they come tells how well they solve the fit, and nothing \
                        about the oscillator."
         .to_owned();
-    Some(Figure {
-        id: "errors".into(),
-        title: title.into(),
-        explanation,
-        notes,
-        legend,
-        file,
-        wide,
-        narrow,
-        csv,
-        rows,
-    })
+    Some(Figure { id: "errors".into(), title: title.into(), explanation, notes, drawing, csv, rows })
 }
 
 fn dot_row(row: &MethodRow) -> DotRow {

@@ -21,18 +21,7 @@ pub(super) fn framed(
                 .to_owned(),
         );
     }
-    Figure {
-        id: id.into(),
-        title: title.into(),
-        explanation,
-        notes,
-        legend: drawing.legend,
-        file: drawing.file,
-        wide: drawing.wide,
-        narrow: drawing.narrow,
-        csv,
-        rows,
-    }
+    Figure { id: id.into(), title: title.into(), explanation, notes, drawing, csv, rows }
 }
 
 /// The simulator that a series is of.

@@ -5,7 +5,7 @@ use runs::result::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
 use super::scored;
 use super::scores::error;
 use crate::figures::{Figure, csv, figure, number, time_axis};
-use crate::plot::{Axis, DotRow, DotRows, Drawing, Hue, Mark, Plot, Series};
+use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 
 /// Methods whose functions are drawn.
 const MOST_FUNCTIONS: usize = 3;
@@ -218,15 +218,14 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
         level: Some(("best exponential, beyond".into(), study.exponential.extrapolation.rms_log_error)),
     };
     let title = format!("Errors by method: {}", named(problem));
-    let Drawing { file, wide, narrow, legend, left_out, .. } =
-        plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
+    let drawing = plot.draw(&format!("{title}: {}, one row for each method.", plot.x.label))?;
     let mut notes = Vec::new();
     let silent = study.methods.iter().filter(|row| inside(row).or(beyond(row)).is_none()).count();
     if silent > 0 {
         notes.push(format!("Rows without a mark made no prediction: {silent}."));
     }
-    if left_out > 0 {
-        notes.push(format!("Errors that are not finite have no mark: {left_out}."));
+    if drawing.left_out > 0 {
+        notes.push(format!("Errors that are not finite have no mark: {}.", drawing.left_out));
     }
     let (csv, rows) = csv(&["method", "error_inside", "error_beyond"], &study.methods, |row| {
         let cell = |value: Option<f64>| value.map_or_else(String::new, number);
@@ -240,10 +239,7 @@ fn errors(anchor: &str, problem: &ProblemRow, study: &ProblemStudy) -> Option<Fi
                       ring left of the dashed line predicts beyond it better than the best exponential."
                 .to_owned(),
         notes,
-        legend,
-        file,
-        wide,
-        narrow,
+        drawing,
         csv,
         rows,
     })

@@ -5,7 +5,7 @@ use runs::result::{RunTable, RunTableRow};
 use super::cells::{setting, short_name};
 use crate::figures::{Figure, csv, number};
 use crate::format;
-use crate::plot::{Axis, DotRow, DotRows, Drawing};
+use crate::plot::{Axis, DotRow, DotRows};
 
 /// Errors below this, in percent, are drawn at it: the spacing of doubles, where digits end.
 const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
@@ -173,23 +173,19 @@ fn figure(
     mut notes: Vec<String>,
     (csv, rows): (String, String),
 ) -> Option<Figure> {
-    let Drawing { file, wide, narrow, legend, left_out, .. } =
-        plot.draw(&format!("{title}: {}, one row each.", plot.x.label))?;
+    let drawing = plot.draw(&format!("{title}: {}, one row each.", plot.x.label))?;
     if plot.rows.len() > MOST_ROWS {
         notes.push(format!("The first {MOST_ROWS} of {} rows.", plot.rows.len()));
     }
-    if left_out > 0 {
-        notes.push(format!("Values that are not finite have no mark: {left_out}."));
+    if drawing.left_out > 0 {
+        notes.push(format!("Values that are not finite have no mark: {}.", drawing.left_out));
     }
     Some(Figure {
         id: id.into(),
         title: title.into(),
         explanation: explanation.to_owned(),
         notes,
-        legend,
-        file,
-        wide,
-        narrow,
+        drawing,
         csv,
         rows,
     })
