@@ -17,8 +17,8 @@ const HOPELESS: f64 = 30.0;
 /// Sets that are fitted again on every sample, and as many of their rivals.
 const MOST: usize = 6;
 
-/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ from the very
-/// best in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
+/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ from the best of
+/// their size in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
 pub(crate) fn refine(
     data: &Data,
     calibrated: &Fit,
@@ -43,9 +43,14 @@ pub(crate) fn refine(
             .count();
         let (batch, rest) = waiting.split_at(near);
         waiting = rest;
+        // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
         let rival = |fit: &Fit| {
-            let (own, best) = (&fit.hypothesis.candidates, &best.hypothesis.candidates);
-            own.len() == best.len() && own.iter().filter(|candidate| !best.contains(candidate)).count() == 1
+            let own = &fit.hypothesis.candidates;
+            let best = batch.iter().find(|other| other.hypothesis.candidates.len() == own.len());
+            best.is_some_and(|best| {
+                let others = &best.hypothesis.candidates;
+                own.iter().filter(|candidate| !others.contains(candidate)).count() == 1
+            })
         };
         let further = batch.iter().skip(MOST).filter(|fit| rival(fit)).take(MOST);
         let chosen: Vec<&Fit> = batch.iter().take(MOST).chain(further).copied().collect();
