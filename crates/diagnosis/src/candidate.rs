@@ -1,7 +1,7 @@
 //! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
 
 use crate::facts::Facts;
-use dynamics::{Class, Nominal, SystemEffect};
+use dynamics::{Class, Coordinate, Nominal, SystemEffect};
 use record::Quantity;
 use std::f64::consts::PI;
 
@@ -143,12 +143,12 @@ impl Candidate {
 
     /// Every candidate that can act on these records.
     pub(crate) fn that_apply(facts: &Facts, quantity: Quantity, nominal: &Nominal) -> Vec<Self> {
-        let (position, spring) = (quantity == Quantity::Position, nominal.stiffness() > 0.0);
-        Self::ALL.iter().copied().filter(|candidate| candidate.applies(facts, position, spring)).collect()
+        Self::ALL.iter().copied().filter(|candidate| candidate.applies(facts, quantity, nominal)).collect()
     }
 
     /// Whether it can act on these records at all.
-    fn applies(self, facts: &Facts, position: bool, spring: bool) -> bool {
+    fn applies(self, facts: &Facts, quantity: Quantity, nominal: &Nominal) -> bool {
+        let spring = nominal.stiffness() > 0.0;
         match self {
             Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => {
                 facts.input_torque > 0.0
@@ -157,8 +157,13 @@ impl Candidate {
                 SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
             ) => spring,
             // A lag of one frequency is an amplitude and a phase: inside the start state.
-            Self::Chain(Distortion::Lag) => facts.input_torque > 0.0,
-            Self::Chain(Distortion::Nonlinearity) => position,
+            Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
+            // Both move what is observed by its time derivative, which an acceleration has not.
+            Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
+            // What goes round with the shaft needs one.
+            Self::Chain(Distortion::Nonlinearity) => {
+                quantity == Quantity::Position && nominal.coordinate() == Coordinate::Angle
+            }
             _ => true,
         }
     }
@@ -269,7 +274,9 @@ impl Candidate {
                     ..between("change", -0.4 / facts.duration, 0.4 / facts.duration)
                 }]
             }
-            Self::Chain(Distortion::Saturation) => vec![positive("bound")],
+            Self::Chain(Distortion::Saturation) => {
+                vec![between("bound", 1e-3 * facts.reading, facts.reading)]
+            }
         }
     }
 
@@ -381,6 +388,7 @@ mod tests {
         amplitude: 0.7,
         highest: 0.7,
         lowest: -0.7,
+        reading: 0.7,
         speed: 15.0,
         frequency: 22.0,
         torque: 340.0,

@@ -74,7 +74,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         let source = if place.is_some() { Some(repaired) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),
-            probability: of_effect(place.map(|_| parts.named.len()), probability, parts.left_over),
+            probability: of_effect(parts.named.len(), place.is_some(), probability, parts.left_over),
             parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
             gap_share: place.and_then(|place| shares.get(place)).map(|share| share.1),
         });

@@ -71,12 +71,13 @@ pub(crate) fn confidence(status: Status, fitted: usize, probability: f64, left_o
     }
 }
 
-/// The probability that an effect acts, from that of all sets with it: one of so many that are named, or none of them.
-pub(crate) fn of_effect(named: Option<usize>, probability: f64, left_over: f64) -> f64 {
-    let line = match named {
-        Some(..=2) => NAMED,
-        Some(_) => OF_MANY,
-        None => NOT_NAMED,
+/// The probability that an effect acts, from that of all sets with it: one of so many that are named, or none of them. Where
+/// many are named, what could stand in one's place is one of many too.
+pub(crate) fn of_effect(fitted: usize, is_named: bool, probability: f64, left_over: f64) -> f64 {
+    let line = match (fitted, is_named) {
+        (..=2, true) => NAMED,
+        (..=2, false) => NOT_NAMED,
+        _ => OF_MANY,
     };
     line.at(probability, left_over)
 }
@@ -104,11 +105,12 @@ mod tests {
     /// Named effects rank above what could stand in their place, and less sure ones below.
     #[test]
     fn an_effects_probability_follows_that_of_its_sets() {
-        for named in [Some(1), Some(3), None] {
-            let values = [0.0, 0.02, 0.3, 0.6, 0.9, 1.0].map(|p| of_effect(named, p, 0.0));
+        for (fitted, is_named) in [(1, true), (1, false), (3, true), (3, false)] {
+            let of = |probability, left_over| of_effect(fitted, is_named, probability, left_over);
+            let values = [0.0, 0.02, 0.3, 0.6, 0.9, 1.0].map(|p| of(p, 0.0));
             assert!(values.is_sorted() && values.iter().all(|p| (0.0..=1.0).contains(p)), "{values:?}");
-            assert!(of_effect(named, 0.9, 1.0) < of_effect(named, 0.9, 0.0));
+            assert!(of(0.9, 1.0) < of(0.9, 0.0));
+            assert!(of_effect(fitted, true, 0.6, 0.0) > of_effect(fitted, false, 0.4, 0.0));
         }
-        assert!(of_effect(Some(1), 0.6, 0.0) > of_effect(None, 0.4, 0.0));
     }
 }

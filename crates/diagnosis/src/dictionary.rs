@@ -99,9 +99,7 @@ pub(crate) fn shapes(candidate: Candidate, facts: &Facts) -> Vec<Vec<f64>> {
             SystemEffect::PeriodicForcing | SystemEffect::FlexibleCoupling => Vec::new(),
             _ => vec![vec![1.0]],
         },
-        Candidate::Chain(Distortion::Saturation) => {
-            of(grid(facts.highest.abs().max(facts.lowest.abs()), &CLIPS), &|bound| vec![bound])
-        }
+        Candidate::Chain(Distortion::Saturation) => of(grid(facts.reading, &CLIPS), &|bound| vec![bound]),
         Candidate::Chain(Distortion::Nonlinearity) => vec![vec![1.0, 0.0]],
         Candidate::Chain(_) => vec![vec![1.0]],
     }

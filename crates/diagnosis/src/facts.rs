@@ -8,6 +8,8 @@ pub(crate) struct Facts {
     /// Largest and smallest position, in rad or m.
     pub(crate) highest: f64,
     pub(crate) lowest: f64,
+    /// Largest absolute value that the sensor shows, in its own unit.
+    pub(crate) reading: f64,
     /// Largest speed.
     pub(crate) speed: f64,
     /// Angular frequency in rad/s; without a spring one over the time constant.
@@ -20,7 +22,7 @@ pub(crate) struct Facts {
     pub(crate) duration: f64,
     /// Median time between samples in seconds.
     pub(crate) interval: f64,
-    /// Nominal inertia, stiffness (or what would give the frequency) and damping.
+    /// Nominal inertia, and the stiffness that gives the frequency with it.
     pub(crate) inertia: f64,
     pub(crate) stiffness: f64,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.

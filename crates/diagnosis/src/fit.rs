@@ -168,6 +168,21 @@ fn evaluate_below(
     Some(Evaluation { predictions, squares })
 }
 
+/// Lets segments that are behind begin again, at the coefficients of `point`.
+fn begin_again(
+    simulator: &mut Simulator<'_>,
+    hypothesis: &Hypothesis,
+    segments: &[Segment],
+    point: &mut Point,
+    at: &mut Evaluation,
+) -> Result<bool, DynamicsError> {
+    // A trial that came to nothing has left its coefficients behind.
+    simulator.set(&point.globals)?;
+    let better = settle(simulator, hypothesis, segments, &mut point.starts, &mut at.predictions)?;
+    at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+    Ok(better)
+}
+
 /// The damping falls by this at most after a step that gained what was promised; it stays where a step gained less than half.
 const LOWEST_CUT: f64 = 1.0 / 3.0;
 
@@ -375,16 +390,14 @@ pub(crate) fn fit(
         if wary && (ended || steps >= effort.steps / 2) {
             wary = false;
             weights = vec![1.0; data.segments.len()];
-            settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)?;
-            at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+            begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)?;
             system = equations(&at.predictions, &weights, starts, globals);
             (small, damping, settled) = (0, 1e-4, true);
             continue;
         }
         if uneven && !settled && (ended || damping > 1e-2) {
             settled = true;
-            if settle(&mut simulator, hypothesis, &data.segments, &mut point.starts, &mut at.predictions)? {
-                at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
+            if begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)? {
                 system = equations(&at.predictions, &weights, starts, globals);
                 (small, damping) = (0, 1e-4);
                 continue;

@@ -114,7 +114,7 @@ impl Both<'_> {
     /// Fitted to the first two thirds of the segments, scored on the last third: mean square.
     pub(crate) fn last_third(&self, moving: Moving) -> Result<f64, DynamicsError> {
         let count = self.segments.segments.len();
-        let first = count - (count / 3).max(1);
+        let first = count.saturating_sub((count / 3).max(1));
         let scored = self.scored(&|index| index < first, moving)?;
         Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
     }

@@ -118,7 +118,7 @@ pub(crate) fn maps(
 /// Root mean square of a residual within bands of frequency, by the periodogram of each segment.
 fn spectrum(data: &Data, recalibrated: &[DVector<f64>], repaired: &[DVector<f64>], noise: f64) -> Vec<Cell> {
     let omega = data.facts.frequency;
-    let highest = std::f64::consts::PI / data.facts.interval;
+    let highest = std::f64::consts::PI / data.interval();
     let edges: Vec<f64> = BANDS.iter().map(|band| (band * omega).min(highest)).collect();
     let bands: Vec<[f64; 2]> =
         edges.iter().zip(edges.iter().skip(1)).filter(|(a, b)| b > a).map(|(a, b)| [*a, *b]).collect();

@@ -201,12 +201,12 @@ impl<'a> Simulator<'a> {
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, width);
         let response = &self.response;
+        // The third derivative of the position is not integrated: what needs it is expanded one order less far, or does not apply.
+        let missing = Vec::new();
         let (x, rate, curvature) = match self.data.quantity {
             Quantity::Position => (&response.position, &response.velocity, &response.acceleration),
-            Quantity::Velocity => (&response.velocity, &response.acceleration, &response.acceleration),
-            Quantity::Acceleration => {
-                (&response.acceleration, &response.acceleration, &response.acceleration)
-            }
+            Quantity::Velocity => (&response.velocity, &response.acceleration, &missing),
+            Quantity::Acceleration => (&response.acceleration, &missing, &missing),
         };
         let (by_x, by_rate, by_curvature) = match self.data.quantity {
             Quantity::Position => (
@@ -214,16 +214,10 @@ impl<'a> Simulator<'a> {
                 &response.velocity_sensitivity,
                 &response.acceleration_sensitivity,
             ),
-            Quantity::Velocity => (
-                &response.velocity_sensitivity,
-                &response.acceleration_sensitivity,
-                &response.acceleration_sensitivity,
-            ),
-            Quantity::Acceleration => (
-                &response.acceleration_sensitivity,
-                &response.acceleration_sensitivity,
-                &response.acceleration_sensitivity,
-            ),
+            Quantity::Velocity => {
+                (&response.velocity_sensitivity, &response.acceleration_sensitivity, &missing)
+            }
+            Quantity::Acceleration => (&response.acceleration_sensitivity, &missing, &missing),
         };
         let total = response.columns;
         let start_time = segment.times.first().copied().unwrap_or_default();

@@ -104,6 +104,13 @@ impl Data {
         Self { segments: segments.map(|(_, segment)| segment.clone()).collect(), ..self.clone() }
     }
 
+    /// Mean time between the samples of a segment: longer than between those of the record where only every so many are taken.
+    pub(crate) fn interval(&self) -> f64 {
+        let steps: usize = self.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum();
+        let spans = self.segments.iter().filter_map(|s| Some(s.times.last()? - s.times.first()?));
+        spans.sum::<f64>() / steps.max(1) as f64
+    }
+
     /// Every second sample or fewer, to at most so many, but no fewer in a period than a search looks at.
     pub(crate) fn sparser(&self, most: usize) -> Self {
         let wanted = self.samples().div_ceil(most.max(1));
@@ -205,6 +212,11 @@ pub(crate) fn cut(
             let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
             segments.push(Segment { record: number, first: at == 0, times, values, parts: vec![0], guess });
         }
+    }
+    if segments.is_empty() {
+        let reason =
+            format!("no stretch of {PERIODS} periods holds {} samples in motion", FEWEST_PER_SEGMENT / 2);
+        return Err(DiagnosisError::NotFitted { reason });
     }
     let resolution = first.resolution;
     Ok(Data { segments, inputs, quantity: first.quantity, facts, period_s, resolution })
@@ -355,10 +367,12 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         Quantity::Velocity => 1.0 / frequency,
         Quantity::Acceleration => 1.0 / (frequency * frequency),
     };
-    let rest = if quantity == Quantity::Position { nominal.rest_angle() } else { 0.0 };
-    let all = || records.iter().flat_map(|record| record.values.iter().map(|value| value * to_position));
-    let highest = all().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = all().fold(f64::INFINITY, f64::min);
+    let rest = nominal.rest_angle();
+    // Rates swing about zero, positions about where the spring rests.
+    let center = if quantity == Quantity::Position { 0.0 } else { rest };
+    let values = || records.iter().flat_map(|record| record.values.iter().copied());
+    let highest = center + to_position * values().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = center + to_position * values().fold(f64::INFINITY, f64::min);
     let amplitude = (highest - rest).abs().max((lowest - rest).abs());
     let steps: Vec<f64> = records
         .iter()
@@ -370,11 +384,12 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
     let gain = nominal.input_gain().abs();
     let inertia = nominal.inertia();
     let stiffness = inertia * frequency * frequency;
-    let speed = if omega == 0.0 { speed(records, quantity) } else { amplitude * frequency };
+    let speed = if omega == 0.0 { speed(records, quantity, frequency) } else { amplitude * frequency };
     Facts {
         amplitude,
         highest,
         lowest,
+        reading: values().fold(0.0, |most: f64, value| most.max(value.abs())),
         speed,
         frequency,
         torque: stiffness * amplitude,
@@ -388,9 +403,12 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
 }
 
 /// Large speeds of a drive without a spring, from differences over stretches of samples.
-fn speed(records: &[Observations], quantity: Quantity) -> f64 {
-    if quantity != Quantity::Position {
-        return records.iter().flat_map(|r| &r.values).fold(0.0, |most: f64, v| most.max(v.abs()));
+fn speed(records: &[Observations], quantity: Quantity, frequency: f64) -> f64 {
+    let largest = || records.iter().flat_map(|r| &r.values).fold(0.0, |most: f64, v| most.max(v.abs()));
+    match quantity {
+        Quantity::Position => {}
+        Quantity::Velocity => return largest(),
+        Quantity::Acceleration => return largest() / frequency,
     }
     let mut speeds = Vec::new();
     for record in records {
@@ -444,6 +462,8 @@ fn guess(
         // v = −A·ω·sin + B·ω·cos about the rest angle.
         (Quantity::Velocity, true) => [nominal.rest_angle() - sine / omega, cosine],
         (Quantity::Velocity, false) => [nominal.rest_angle(), offset],
-        (Quantity::Acceleration, _) => [nominal.rest_angle() - cosine / (omega * omega), -sine / omega],
+        (Quantity::Acceleration, true) => [nominal.rest_angle() - cosine / (omega * omega), -sine / omega],
+        // Nothing swings: an acceleration says where the spring pulls and nothing of the speed.
+        (Quantity::Acceleration, false) => [nominal.rest_angle() - offset / (omega * omega), 0.0],
     }
 }

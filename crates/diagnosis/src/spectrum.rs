@@ -16,10 +16,7 @@ const MOST_FREQUENCIES: usize = 4000;
 
 /// The highest angular frequency looked at. A search looks at every so many samples only.
 fn highest(data: &Data) -> f64 {
-    let steps = data.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum::<usize>();
-    let spans =
-        data.segments.iter().filter_map(|segment| Some(segment.times.last()? - segment.times.first()?));
-    data.facts.highest_frequency(spans.sum::<f64>() / steps.max(1) as f64)
+    data.facts.highest_frequency(data.interval())
 }
 
 /// About how many independent frequencies the lines of a whole record are chosen from.

@@ -65,13 +65,14 @@ impl Path {
                 .map(|time| input.map_or(0.0, |input| gain * held(input, *time)))
                 .collect();
             let (x, rate, curvature) = observed(data.quantity, &motion);
+            let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(0.0);
             let slopes = x
                 .iter()
-                .zip(rate)
-                .zip(curvature)
                 .zip(&segment.times)
-                .map(|(((x, rate), curvature), time)| {
-                    let [slope, ..] = measurement.observe(*x, *rate, *curvature, *time, 0.0).by_motion;
+                .enumerate()
+                .map(|(index, (x, time))| {
+                    let (rate, curvature) = (at(rate, index), at(curvature, index));
+                    let [slope, ..] = measurement.observe(*x, rate, curvature, *time, 0.0).by_motion;
                     slope
                 })
                 .collect();
@@ -179,13 +180,13 @@ impl Path {
     }
 }
 
-/// What the sensor observes, with its first and second time derivative; zeros in place of the third and fourth
+/// What the sensor observes, with its first and second time derivative; nothing in place of the third and fourth
 /// derivative of the position.
 fn observed(quantity: Quantity, motion: &Motion) -> (&[f64], &[f64], &[f64]) {
     match quantity {
         Quantity::Position => (&motion.position, &motion.velocity, &motion.acceleration),
-        Quantity::Velocity => (&motion.velocity, &motion.acceleration, &motion.acceleration),
-        Quantity::Acceleration => (&motion.acceleration, &motion.acceleration, &motion.acceleration),
+        Quantity::Velocity => (&motion.velocity, &motion.acceleration, &[]),
+        Quantity::Acceleration => (&motion.acceleration, &[], &[]),
     }
 }
 

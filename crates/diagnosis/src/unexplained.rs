@@ -45,7 +45,7 @@ const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
 
 /// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the correlations 2/3
 /// and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
-const WORTH: f64 = 3.734;
+const WORTH: f64 = 108.0 / 29.0;
 
 /// Part of the largest eigenvalue below which a direction of the basis is one of the others once more.
 const DEPENDENT: f64 = 1e-8;
@@ -100,7 +100,7 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
 /// Bands about every half harmonic, from half the swing's frequency up, summed over the segments as they were cut.
 fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
-    let highest = below_images(data.facts.interval);
+    let highest = below_images(data.interval());
     for (segment, residual) in data.segments.iter().zip(residuals) {
         for part in segment.part_ranges() {
             let Some(times) = segment.times.get(part.clone()) else { continue };
