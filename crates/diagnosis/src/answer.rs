@@ -40,8 +40,6 @@ pub struct Verdict {
     pub left_over: f64,
     /// Classes of effects that these data cannot tell apart.
     pub equivalent: Vec<Vec<&'static str>>,
-    /// One plain sentence.
-    pub summary: String,
 }
 
 /// A parameter of an effect.
@@ -140,7 +138,7 @@ pub struct Where {
     pub amplitude: Vec<Cell>,
     /// Over position and velocity; two axes.
     pub phase: Vec<Cell>,
-    /// Over angular frequency in rad/s; one axis. Values are amplitudes within the band of frequencies.
+    /// Over angular frequency in rad/s; one axis. Values are root mean squares within the band of frequencies.
     pub frequency: Vec<Cell>,
 }
 
@@ -266,7 +264,8 @@ pub struct Stage {
 pub struct Diagnosis {
     /// What it comes to.
     pub verdict: Verdict,
-    /// Every id with a probability above 0.01, and `none`, `calibration` and `unknown`; best first.
+    /// `none`, `calibration`, `unknown`, every effect that is named, and every other whose sets have a probability above 0.01
+    /// together; best first.
     pub effects: Vec<EffectProbability>,
     /// How far the gap shrinks.
     pub gap: Gap,

@@ -11,8 +11,9 @@ use crate::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
 use record::{ClockKind, StampStatistics};
 
-/// Largest share of samples at one end of the range that a swing without a stop shows.
+/// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a stop shows.
 const FLAT: usize = 3;
+const LEAST_RUNS: usize = 3;
 
 /// What stamps and values of a record show.
 pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nominal) -> Vec<Finding> {
@@ -184,7 +185,7 @@ fn flat_top(values: &[f64]) -> Option<String> {
         }
         runs
     };
-    [highest, lowest].into_iter().find(|end| runs(*end) >= 3).map(|end| {
+    [highest, lowest].into_iter().find(|end| runs(*end) >= LEAST_RUNS).map(|end| {
         format!("the values stay at {end} several times: flat tops, as of a sensor at the end of its range")
     })
 }

@@ -32,7 +32,6 @@ pub(crate) struct Parts<'a> {
     pub(crate) shift: Option<Shift>,
     pub(crate) rivals: &'a [Rivalry],
     pub(crate) findings: &'a [Finding],
-    pub(crate) gap: &'a crate::answer::Gap,
 }
 
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
@@ -83,7 +82,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     list
 }
 
-/// The verdict in words.
+/// Status, names, classes and confidence.
 pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     let mut order: Vec<(Candidate, f64)> =
         parts.named.iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
@@ -132,24 +131,5 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     };
     let probability = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
     let confidence = confidence(status, parts.named.len(), probability, parts.left_over);
-    let gap = parts.gap;
-    let figures = format!(
-        "{:.3e} {} recalibrated, {:.3e} after, noise floor {:.3e}",
-        gap.recalibrated, gap.unit, gap.repaired, gap.noise_floor.value
-    );
-    let summary = match status {
-        Status::None => format!("The nominal simulator explains the record down to its noise ({figures})."),
-        Status::Calibration => {
-            format!(
-                "The nominal simulator's coefficients are off; recalibrated, nothing is missing ({figures})."
-            )
-        }
-        Status::Effect if parts.left_over > 0.5 => format!(
-            "The simulator lacks {}, and beside that something small without a name ({figures}).",
-            effects.join(", ")
-        ),
-        Status::Effect => format!("The simulator lacks {} ({figures}).", effects.join(", ")),
-        Status::Unknown => format!("What is missing has no name in the vocabulary ({figures})."),
-    };
-    Verdict { status, effects, confidence, left_over: parts.left_over, equivalent, summary }
+    Verdict { status, effects, confidence, left_over: parts.left_over, equivalent }
 }

@@ -220,7 +220,6 @@ pub fn diagnose(
         shift,
         rivals: &rivals,
         findings: &measuring_chain.findings,
-        gap: &figures,
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
     let calibration = calibration(&work, repaired)?;

@@ -429,3 +429,7 @@ pub(crate) fn fit(
         inverse,
     })
 }
+
+#[cfg(test)]
+#[path = "fit_tests.rs"]
+mod tests;

@@ -1,4 +1,4 @@
-//! Where the gap between a record and a nominal simulator lies, which unmodelled effect causes it, and how far it
+//! Where the gap between a record and a nominal simulator lies, which unmodeled effect causes it, and how far it
 //! shrinks once that effect is added.
 //!
 //! Blind by construction: all that goes in is [`Observations`] (times by a believed clock, values, input) and the nominal

@@ -11,7 +11,7 @@ use seed::Seed;
 /// Plays of every sample.
 const PLAYS: usize = 4;
 
-/// Bisections of the noise's size: to 1 part in 4000 of the floor.
+/// Bisections of the noise's size: to 1 part in 4000 of the floor or the step, whichever is larger.
 const BISECTIONS: usize = 12;
 
 /// A mean of squares that noise and rounding make, by how far it lies from that of the noise alone in the same draws: most of

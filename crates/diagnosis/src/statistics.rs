@@ -64,7 +64,7 @@ pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
     sum.max(1.0)
 }
 
-/// Draws without a generator's state in the type: mean of a list, and standard error of that mean.
+/// Mean of a list, and standard error of that mean.
 pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     let center = mean(values);
     let count = values.len() as f64;

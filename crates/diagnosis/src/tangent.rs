@@ -35,17 +35,18 @@ pub(crate) struct Path {
     pub(crate) input: Vec<f64>,
     /// ∂observed/∂(quantity observed).
     pub(crate) gain: Vec<f64>,
-    /// Hidden state of a bending contact in the system itself is not followed here.
+    /// What carries a small deviation from each sample to the next. A bending contact's hidden state is not followed.
     steps: Vec<Step>,
+    /// Slopes of the torque at the samples, by position and by velocity.
     stiffness: Vec<f64>,
     damping: Vec<f64>,
     inertia: f64,
-    /// Where the segment begins in its record.
+    /// The segment's record, and whether it is the first of it.
     pub(crate) record: usize,
     pub(crate) first: bool,
 }
 
-/// Largest frequency times sampling interval that the series for the exponential is made for.
+/// Terms of the exponential's series.
 const TERMS: usize = 26;
 
 impl Path {
@@ -229,7 +230,7 @@ fn moment(path: &Path, index: usize, system: &System, region: i8) -> Moment<Dual
     }
 }
 
-/// The region of an effect at a sample, and the moment that its law sees there.
+/// The moment that a law sees at a sample, in its first region.
 pub(crate) fn plain_moment(path: &Path, index: usize, coefficients: &Coefficients<f64>) -> Moment<f64> {
     let at = |list: &[f64]| list.get(index).copied().unwrap_or(0.0);
     let velocity = at(&path.motion.velocity);

@@ -29,6 +29,12 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
             "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
              on parts that were not fitted, and no effect is missing{rest}."
         ),
+        Status::Effect if by_kind(found).0.is_empty() => format!(
+            "{}; beside that nothing is missing: {} explains what was recorded down to {floor} on parts that were \
+             not fitted{rest}.",
+            lacking(found),
+            if is_off(found) { "recalibrated, the simulator" } else { "the simulator as given" }
+        ),
         Status::Effect => format!(
             "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
              that were not fitted{rest}.",
@@ -46,16 +52,27 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
     }
 }
 
-/// What is missing, and what the record shows without a fit: stamps in bursts, say.
-fn lacking(found: &Diagnosis) -> String {
+/// Whether the simulator's coefficients are more probably off than right.
+fn is_off(found: &Diagnosis) -> bool {
+    let probability =
+        |id: &str| found.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability);
+    probability("calibration") > probability("none")
+}
+
+/// Effects of the verdict that were fitted, and those that the record shows without a fit: stamps in bursts, say.
+fn by_kind(found: &Diagnosis) -> (Vec<&'static str>, Vec<&'static str>) {
     let is_fitted = |id: &&'static str| {
         found
             .effects
             .iter()
             .any(|row| row.id == *id && (row.gap_share.is_some() || !row.parameters.is_empty()))
     };
-    let (fitted, seen): (Vec<&'static str>, Vec<&'static str>) =
-        found.verdict.effects.iter().copied().partition(is_fitted);
+    found.verdict.effects.iter().copied().partition(is_fitted)
+}
+
+/// What is missing, and what the record shows.
+fn lacking(found: &Diagnosis) -> String {
+    let (fitted, seen) = by_kind(found);
     match (fitted.is_empty(), seen.is_empty()) {
         (false, true) => format!("The simulator lacks {}", names(&fitted)),
         (false, false) => {

@@ -22,7 +22,7 @@ pub const WEAK_FORM_METHOD: &str = "weak-form sparse regression with one term fo
 
 /// Exponent of the test function (1 − s²)^p.
 const EXPONENT: i32 = 6;
-/// Windows begin every so-manieth part of a period.
+/// Windows begin so many times in a period.
 const HOPS_PER_PERIOD: f64 = 4.0;
 /// Half the width of the window, in periods, over which a velocity is taken.
 const VELOCITY_WINDOW: f64 = 1.0 / 16.0;

@@ -350,14 +350,19 @@ fn apart(
 ) -> Result<Option<Vec<(Active, f64)>>, TrialError> {
     let Some(alone) = hidden(wanted)? else { return Ok(None) };
     let &[(one, first), (other, second)] = alone.as_slice() else { return Ok(Some(alone)) };
-    let (acting, sensing): (Vec<Active>, Vec<Active>) =
-        [one, other].into_iter().partition(|active| matches!(active.effect(), Effect::System(_)));
     let preload = [one, other].iter().any(|active| active.id() == "constant_torque");
     let absorbed = Absorbed { rest_angle: !preload, ..Absorbed::BY_RECALIBRATION };
-    let both = beyond_recalibration(setup, setup.situation.motions(&acting)?, sensing, absorbed)?;
+    let size = |effects: &[Active]| {
+        let (acting, sensing): (Vec<Active>, Vec<Active>) =
+            effects.iter().partition(|active| matches!(active.effect(), Effect::System(_)));
+        beyond_recalibration(setup, setup.situation.motions(&acting)?, sensing, absorbed)
+    };
+    let both = size(&[one, other])?;
+    // Beside a preload nothing shifts the rest angle: the other's own size is another one then.
+    let [first, second] = if preload { [size(&[one])?, size(&[other])?] } else { [first, second] };
     let correlation = (both * both - first * first - second * second) / (2.0 * first * second);
     let factor = (1.0 - correlation * correlation).max(0.0).sqrt().recip();
-    if factor.is_nan() || factor >= HARDLY_APART {
+    if factor >= HARDLY_APART {
         return Ok(None);
     }
     let own = |effects: Vec<(Active, f64)>| {

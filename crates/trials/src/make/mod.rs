@@ -8,8 +8,8 @@
 //! Hidden effects are as large as makes them as *detectable* as configured: d = ‖P·Δ‖/σ, where Δ is what the
 //! effect adds to the samples, P takes away what a recalibration of damping, stiffness, rest angle, starts
 //! (and inertia, where there is an input) makes up for, and σ is the standard deviation of all that is
-//! white: the sensor's noise, its rounding, what scattered stamps do. In a pair each is sized as if alone. A
-//! preload is sized with the rest angle held, as it would be nothing but another rest angle. For something
+//! white: the sensor's noise, its rounding, what scattered stamps do. In a pair P takes away the other effect
+//! too. A preload is sized with the rest angle held, as it would be nothing but another rest angle. For something
 //! foreign P takes away the nearest effects of the vocabulary too. For effects that are random the
 //! expectation of ‖Δ‖² is taken and nothing projected off; lost samples change no value and have a
 //! detectability of 0, bursts of a logger are as detectable as they are.
