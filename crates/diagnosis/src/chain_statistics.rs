@@ -57,6 +57,21 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
     findings
 }
 
+/// Part of the samples that belong to no segment, from which on it is said.
+const UNSEEN: f64 = 0.01;
+
+/// Samples that no segment has: a swing that has died out is not looked at.
+pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<Finding> {
+    let all = kept.iter().flatten().filter(|kept| **kept).count();
+    let unseen = all.saturating_sub(in_segments);
+    (unseen as f64 > UNSEEN * all as f64).then(|| Finding {
+        effect: None,
+        text: format!(
+            "{unseen} of {all} samples are left out: nothing moves there by more than the sensor's steps or the noise shows"
+        ),
+    })
+}
+
 /// Whether the stamps tell that samples are missing.
 fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
     let text = match (stamps.gaps, stamps.lost) {

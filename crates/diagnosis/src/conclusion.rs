@@ -3,7 +3,7 @@
 use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
 use crate::candidate::Candidate;
 use crate::coefficients::parameters;
-use crate::confidence::{confidence, of_effect, stand_in};
+use crate::confidence::{SHOWN, confidence, of_effect, stand_in};
 use crate::fit::Fit;
 use crate::verdict::{Weighed, marginal};
 use crate::work::{Shift, Work};
@@ -77,6 +77,12 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
             parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
             gap_share: place.and_then(|place| shares.get(place)).map(|share| share.1),
         });
+    }
+    for id in parts.findings.iter().filter_map(|finding| finding.effect) {
+        match list.iter_mut().find(|row| row.id == id) {
+            Some(row) => row.probability = row.probability.max(SHOWN),
+            None => list.push(plain(id, SHOWN)),
+        }
     }
     list.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     list

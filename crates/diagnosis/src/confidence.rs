@@ -36,6 +36,10 @@ const EFFECTS: [Line; 4] = [
 const NAMED: Line = Line { at_even: -0.28, by_odds: 0.51 };
 const NOT_NAMED: Line = Line { at_even: -0.41, by_odds: 0.84 };
 
+/// Of an effect that stamps or values show by themselves: all 385 of the later training banks were there. One more that is,
+/// and one that is not.
+pub(crate) const SHOWN: f64 = 386.0 / 387.0;
+
 /// Log odds beyond which the bank has nothing more to say.
 const MOST_ODDS: f64 = 4.0;
 

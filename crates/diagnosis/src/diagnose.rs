@@ -84,6 +84,7 @@ pub fn diagnose(
     };
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
     let all = cut(records, &kept, nominal)?;
+    let unseen = chain_statistics::without_motion(&kept, all.samples());
     let sparser = all.sparser(MOST_SEARCHED);
     let data = sparser.thinned(MOST_SEARCHED);
     let is_whole = data.samples() == sparser.samples();
@@ -204,6 +205,7 @@ pub fn diagnose(
     lap("maps");
 
     let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
+    measuring_chain.findings.extend(unseen);
     for finding in &mut measuring_chain.findings {
         finding.effect = finding.effect.filter(|id| settings.considers(id));
     }
