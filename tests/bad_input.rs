@@ -117,7 +117,19 @@ fn missing_column() {
 #[test]
 fn a_line_cut_short() {
     let text = decay(50) + "0.500\n";
-    refused(text.as_bytes(), &[], &["record.csv:52: ", "has 1 fields; expected 2"]);
+    refused(text.as_bytes(), &[], &["record.csv:52: ", "has 1 field; expected 2"]);
+}
+
+#[test]
+fn a_file_of_another_kind() {
+    let commas = decay(50).replace(',', ";").replace('.', ",").replace(';', ",");
+    refused(commas.as_bytes(), &[], &["record.csv:2: 4 fields under a header of 2", "decimal points"]);
+    let semicolons = decay(50).replace(',', ";");
+    refused(semicolons.as_bytes(), &[], &["record.csv:1: ", "is separated by semicolons; expected commas"]);
+    let headless: Vec<String> = decay(50).lines().skip(1).map(str::to_owned).collect();
+    refused(headless.join("\n").as_bytes(), &[], &["record.csv:1: the first line holds numbers, `0.000,"]);
+    let log = "Timestamp, Time_Elapsed(s), Angle(deg)\n----\n16:04:31.2, 1.0, 2.0\n";
+    refused(log.as_bytes(), &[], &["record.csv:1: ", "set data.format = \"host-log\""]);
 }
 
 #[test]

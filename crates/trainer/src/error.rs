@@ -142,6 +142,7 @@ fn options_in(error: &RecordError) -> String {
         ("`data.angle`", "--angle"),
         ("`data.input`", "--input"),
         ("data.format = \"csv\"", "--format csv"),
+        ("data.format = \"host-log\"", "--format host-log"),
     ] {
         text = text.replace(key, option);
     }
