@@ -42,7 +42,7 @@ fn not_simulated(arguments: &[&str], expected: &str) {
 #[test]
 fn what_cannot_be_simulated_is_refused() {
     not_simulated(&["effects.1.id=columb_friction"], "did you mean `coulomb_friction`?");
-    not_simulated(&["nominal.inertia=-1"], "`nominal.inertia` is -1; expected a finite number from 0 up");
+    not_simulated(&["nominal.inertia=-1"], "`nominal.inertia` is -1; expected a finite number above 0 (");
     not_simulated(&["nominal.damping.from=1e-4"], "expected a number, or a prior");
     not_simulated(&["sensor.noise=-1"], "`sensor.noise` is -1; expected a finite number from 0 up (rad)");
     not_simulated(&["effects.4.parameters.step=3"], "`step` is 3, but must be at most");
@@ -52,8 +52,12 @@ fn what_cannot_be_simulated_is_refused() {
     not_simulated(&["record.decimals=3"], "unknown key `record.decimals`");
     let message = refusal(&["simulate", "configs/no-such.toml"]);
     assert!(message.contains("configs/no-such.toml: cannot be read"), "{message}");
-    let message = refusal(&["simulate", "configs/pinn.toml"]);
-    assert!(message.contains("configs/pinn.toml:"), "{message}");
+    for command in ["simulate", "trials"] {
+        let message = refusal(&[command, "configs/pinn.toml"]);
+        let told =
+            "this is a configuration for the task \"estimate\", which `trainer configs/pinn.toml` runs";
+        assert!(message.contains("configs/pinn.toml:34:1: ") && message.contains(told), "{message}");
+    }
 }
 
 /// A record of a decaying oscillation, one sample a line.
@@ -117,7 +121,19 @@ fn missing_column() {
 #[test]
 fn a_line_cut_short() {
     let text = decay(50) + "0.500\n";
-    refused(text.as_bytes(), &[], &["record.csv:52: ", "has 1 fields; expected 2"]);
+    refused(text.as_bytes(), &[], &["record.csv:52: ", "has 1 field; expected 2"]);
+}
+
+#[test]
+fn a_file_of_another_kind() {
+    let commas = decay(50).replace(',', ";").replace('.', ",").replace(';', ",");
+    refused(commas.as_bytes(), &[], &["record.csv:2: 4 fields under a header of 2", "decimal points"]);
+    let semicolons = decay(50).replace(',', ";");
+    refused(semicolons.as_bytes(), &[], &["record.csv:1: ", "is separated by semicolons; expected commas"]);
+    let headless: Vec<String> = decay(50).lines().skip(1).map(str::to_owned).collect();
+    refused(headless.join("\n").as_bytes(), &[], &["record.csv:1: the first line holds numbers, `0.000,"]);
+    let log = "Timestamp, Time_Elapsed(s), Angle(deg)\n----\n16:04:31.2, 1.0, 2.0\n";
+    refused(log.as_bytes(), &[], &["record.csv:1: ", "set data.format = \"host-log\""]);
 }
 
 #[test]
@@ -177,6 +193,30 @@ fn unknown_key() {
     assert!(message.contains("unknown key `estimator.hiden`; did you mean `estimator.hidden`?"));
     let message = with_config("seed = 1\n[data]\nclok = \"host\"\n[estimator]\nname = \"pinn\"\n");
     assert!(message.contains(":3:1: unknown key `data.clok`; did you mean `data.clock`?"), "{message}");
+}
+
+#[test]
+fn an_estimator_chosen_by_name_alone_beside_the_files_keys() {
+    let message = refusal(&["configs/pinn.toml", "estimator.name=lstm"]);
+    assert!(
+        message.contains("`estimator.hidden` is no key of `lstm`; choose with estimator=lstm"),
+        "{message}"
+    );
+}
+
+#[test]
+fn networks_that_no_memory_holds() {
+    for name in ["pinn", "neural-ode"] {
+        let estimator = format!("estimator={name}");
+        let message = refusal(&["configs/pinn.toml", &estimator, "estimator.hidden=[256,256,256,256]"]);
+        assert!(
+            message.contains("`estimator.hidden` is [256, 256, 256, 256]; expected fewer or"),
+            "{message}"
+        );
+        assert!(message.contains("GiB of memory, of which there may be 16"), "{message}");
+    }
+    let output = trainer(&["check", "configs/pinn.toml", "estimator.hidden=[256,256,256,256]"]);
+    assert_eq!(output.status.code(), Some(2));
 }
 
 #[test]

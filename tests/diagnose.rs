@@ -276,6 +276,16 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &1.into(), &0.into()));
     assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
 
+    // Another record has come to lie in the case: neither is its answer kept as if it were on it, nor written over.
+    write(&cases, "good/record-000.csv", &decay(800, 0.7));
+    let (code, found, message) = batch();
+    assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &0.into(), &0.into()));
+    let changed = message.lines().find(|line| line.contains("good: ")).unwrap();
+    assert!(changed.contains("record-000.csv: is not the record that was diagnosed"), "{changed}");
+    assert_eq!(changed.matches("sha256:").count(), 2, "{changed}");
+    assert!(changed.contains("name another folder with --out"), "{changed}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
+
     let nothing = tempfile::tempdir().unwrap();
     let folder = nothing.path().to_str().unwrap();
     let message = refusal(&["diagnose", "--batch", folder, "--out", answers.to_str().unwrap()]);
@@ -359,6 +369,8 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
     refused(&decay(800, 0.7), &format!("{NOMINAL}mass = 2\n"), &[], "nominal.toml:5:1: unknown key `mass`");
     refused(&decay(800, 0.7), "inertia = 1.0\n", &[], "`damping` is missing");
     refused(&decay(800, 0.7), &NOMINAL.replace("0.3", "-0.3"), &[], "`damping` is -0.3");
+    let weightless = NOMINAL.replace("1.0", "0");
+    refused(&decay(800, 0.7), &weightless, &[], "`inertia` is 0; expected a finite number above 0 (SI");
     let scratch = tempfile::tempdir().unwrap();
     let record = write(scratch.path(), "record.csv", &decay(800, 0.7));
     let message = refusal(&["diagnose", &record, "--nominal", "no-such.toml"]);
@@ -370,6 +382,51 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
     let full = scratch.path().to_str().unwrap();
     let message = refusal(&["diagnose", &record, "--nominal", &nominal, "--out", full]);
     assert!(message.contains("is not empty"), "{message}");
+}
+
+#[test]
+fn a_record_counts_once() {
+    let scratch = tempfile::tempdir().unwrap();
+    let first = write(scratch.path(), "one.csv", &decay(800, 0.7));
+    let second = write(scratch.path(), "two.csv", &decay(800, 0.7));
+    let nominal = write(scratch.path(), "nominal.toml", NOMINAL);
+    for pair in [[&first, &second], [&first, &first]] {
+        let message = refusal(&["diagnose", pair[0], pair[1], "--nominal", &nominal]);
+        assert!(message.contains(&format!("{} and {} are the same record (sha256:", pair[0], pair[1])));
+    }
+}
+
+#[test]
+fn resumed_it_goes_on_or_gives_its_answer_again() {
+    let scratch = tempfile::tempdir().unwrap();
+    let record = write(scratch.path(), "record.csv", &decay(800, 0.7));
+    let nominal = write(scratch.path(), "nominal.toml", NOMINAL);
+    let out = scratch.path().join("answer");
+    let shown = out.to_str().unwrap();
+    let arguments = ["diagnose", &record, "--nominal", &nominal, "--out", shown, "--resume", "--json"];
+    let answer = |more: &[&str]| trainer(&[&arguments[..], more].concat());
+    let first = answer(&[]);
+    assert_eq!(first.status.code(), Some(0), "{}", String::from_utf8_lossy(&first.stderr));
+    let page = std::fs::metadata(out.join("report.html")).unwrap().modified().unwrap();
+    let again = answer(&["--threads", "1"]);
+    assert_eq!((again.status.code(), &again.stdout), (Some(0), &first.stdout), "given again");
+    assert_eq!(std::fs::metadata(out.join("report.html")).unwrap().modified().unwrap(), page);
+    let message = refusal(&[&arguments[..], &["--seed", "1"]].concat());
+    assert!(message.contains("was begun with another seed: 0, now 1"), "{message}");
+    assert!(refusal(&arguments[..6]).contains("is not empty"), "only --resume goes into it");
+
+    // What an interrupted diagnosis left.
+    let log = std::fs::read_to_string(out.join("events.jsonl")).unwrap();
+    std::fs::write(out.join("events.jsonl"), log.lines().next().unwrap().to_owned() + "\n").unwrap();
+    std::fs::remove_file(out.join("diagnosis.json")).unwrap();
+    std::fs::remove_file(out.join("report.html")).unwrap();
+    assert_eq!(answer(&[]).status.code(), Some(0));
+    assert!(out.join("diagnosis.json").exists() && out.join("report.html").exists());
+
+    let other = scratch.path().join("other");
+    write(&other, "mine.txt", "mine");
+    let into = ["diagnose", &record, "--nominal", &nominal, "--resume", "--out", other.to_str().unwrap()];
+    assert!(refusal(&into).contains("is not empty"));
 }
 
 #[test]

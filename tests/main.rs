@@ -16,6 +16,7 @@ mod architecture;
 mod bad_input;
 mod browser;
 mod cite;
+mod command_line;
 mod comparison;
 mod diagnose;
 mod documents;

@@ -6,7 +6,10 @@ use thiserror::Error;
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum EnvelopeError {
     /// Fewer peaks than a decay rate needs.
-    #[error("the {pipeline} pipeline finds {found} peaks; a decay rate needs at least {needed}. {remedy}")]
+    #[error(
+        "the {pipeline} pipeline finds {found} peak{}; a decay rate needs at least {needed}. {remedy}",
+        if *found == 1 { "" } else { "s" }
+    )]
     TooFewPeaks {
         /// The pipeline.
         pipeline: &'static str,

@@ -29,7 +29,7 @@ pub enum FitError {
         most: usize,
     },
     /// Every amplitude is the same, or the spread is not finite: nothing to scale by.
-    #[error("the amplitudes of the envelope have a spread of {spread:e}: there is no decay to learn from")]
+    #[error("the amplitudes of the envelope have a spread of {spread:?}: there is no decay to learn from")]
     NoSpread {
         /// Standard deviation of ln A.
         spread: f64,

@@ -214,7 +214,7 @@ pub fn resolve(
         std::iter::once(estimator_name_field()).chain(own_fields.iter().copied()).collect();
     let own = if compares { COMPARE } else { Section { name: "estimator", fields: &fields } };
     let sections: Vec<Section<'_>> = SECTIONS.iter().copied().chain([own]).collect();
-    let resolved = Resolved::new(document, &sections)?;
+    let resolved = Resolved::new(document, &sections).map_err(|error| of_another(error, document))?;
 
     let top: Top = resolved.section("")?;
     let pipeline: PipelineName = resolved.section("envelope")?;
@@ -275,6 +275,26 @@ enum Named {
 }
 
 /// The method that `estimator.name` names.
+/// Where the command line sets `estimator.name` alone, the file's keys for its own estimator are left over: an unknown key
+/// among these is told with the choice that leaves them out.
+fn of_another(error: SettingsError, document: &Document) -> SettingsError {
+    let name =
+        document.get("estimator.name").filter(|name| matches!(name.origin, settings::Origin::Override(_)));
+    match (error, name.and_then(|name| name.value.as_str())) {
+        (
+            SettingsError::UnknownKey { origin: origin @ settings::Origin::File { .. }, key, .. },
+            Some(chosen),
+        ) if key.starts_with("estimator.") => {
+            let remedy = format!(
+                "choose with estimator={chosen} instead of estimator.name={chosen}, which leaves out what the file sets for \
+                 another estimator"
+            );
+            SettingsError::ForeignKey { origin, key, chosen: chosen.to_owned(), remedy }
+        }
+        (error, _) => error,
+    }
+}
+
 fn find_method(document: &Document, registry: &[Entry], classical: &[&str]) -> Result<Named, SettingsError> {
     let ids = || {
         let learned = registry.iter().map(|entry| entry.id);

@@ -2,6 +2,7 @@
 
 use crate::error::Fault;
 use crate::file::Parsed;
+use crate::header::misread;
 use crate::statement::Statements;
 use crate::unit::{TimeUnit, Unit};
 
@@ -39,19 +40,21 @@ pub(crate) fn parse(text: &str, columns: &CsvColumns) -> Result<Parsed, Fault> {
         .from_reader(text.as_bytes());
     let unreadable = |error: csv::Error| Fault::Unreadable { problem: error.to_string() };
     let header = reader.headers().map_err(unreadable)?.clone();
-    let line = header.position().map_or(1, csv::Position::line);
+    // The reader's own position lies before comments and empty lines.
+    let is_header = |line: &str| !line.is_empty() && !line.starts_with('#');
+    let line = text.lines().zip(1..).find(|(line, _)| is_header(line)).map_or(1, |(_, line)| line);
     if header.is_empty() {
         return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
     }
     let find = |wanted: Option<&str>, usual: &[&str], key: &'static str| {
         let candidates = wanted.map_or_else(|| usual.to_vec(), |name| vec![name]);
         candidates.iter().find_map(|name| header.iter().position(|title| title == *name)).ok_or_else(|| {
-            Fault::MissingColumn {
+            misread(text, &header, line).unwrap_or_else(|| Fault::MissingColumn {
                 line,
                 wanted: candidates.join("` or `"),
                 found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
                 key,
-            }
+            })
         })
     };
     let time = match (find(columns.time.as_deref(), TIME_NAMES, "data.time"), columns.sample_rate_hz) {
@@ -77,6 +80,9 @@ pub(crate) fn parse(text: &str, columns: &CsvColumns) -> Result<Parsed, Fault> {
         let line = row.position().map_or(0, csv::Position::line);
         if row.len() < needed {
             return Err(Fault::MissingField { line, found: row.len(), expected: header.len() });
+        }
+        if row.iter().skip(header.len()).any(|field| !field.is_empty()) {
+            return Err(Fault::ExtraFields { line, found: row.len(), expected: header.len() });
         }
         let number = |at: usize| number(row.get(at).unwrap_or_default(), line, title(at));
         let stamp = match time {

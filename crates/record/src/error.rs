@@ -46,6 +46,38 @@ pub enum Fault {
         /// What the format prescribes.
         expected: String,
     },
+    /// The columns are not separated by commas.
+    #[error(
+        "the header `{found}` is separated by {separator}; expected commas between columns: replace them, and write \
+         decimal points"
+    )]
+    OtherSeparator {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The header as written, its beginning.
+        found: String,
+        /// What stands between its names.
+        separator: &'static str,
+    },
+    /// Numbers where the columns' names should be.
+    #[error(
+        "the first line holds numbers, `{found}`; expected a header with the columns' names above them, for example \
+         time_s,angle_rad"
+    )]
+    NoHeader {
+        /// The first line's number, from 1.
+        line: u64,
+        /// The line as written, its beginning.
+        found: String,
+    },
+    /// A host log that is read as a `csv`.
+    #[error("the header `{found}` is that of a host log; set data.format = \"host-log\"")]
+    HostLogHeader {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The header as written, its beginning.
+        found: String,
+    },
     /// A column is not there.
     #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]
     MissingColumn {
@@ -59,7 +91,7 @@ pub enum Fault {
         key: &'static str,
     },
     /// A line has fewer fields than the header.
-    #[error("the line has {found} fields; expected {expected}")]
+    #[error("the line has {found} field{}; expected {expected}", if *found == 1 { "" } else { "s" })]
     MissingField {
         /// Line, from 1.
         line: u64,
@@ -68,8 +100,21 @@ pub enum Fault {
         /// Fields expected.
         expected: usize,
     },
+    /// A line has more fields than the header: decimal commas, which would be read as other numbers.
+    #[error(
+        "{found} fields under a header of {expected}; expected a field for each column. Are there decimal commas? Write \
+         decimal points"
+    )]
+    ExtraFields {
+        /// Line, from 1.
+        line: u64,
+        /// Fields found.
+        found: usize,
+        /// Fields of the header.
+        expected: usize,
+    },
     /// A field is not a number.
-    #[error("`{text}` in column `{column}` is not a number")]
+    #[error("{}", no_number(.text, .column))]
     NotANumber {
         /// Line, from 1.
         line: u64,
@@ -130,8 +175,12 @@ impl Fault {
     fn place(&self) -> String {
         match self {
             Self::BadHeader { line, .. }
+            | Self::OtherSeparator { line, .. }
+            | Self::NoHeader { line, .. }
+            | Self::HostLogHeader { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::MissingField { line, .. }
+            | Self::ExtraFields { line, .. }
             | Self::NotANumber { line, .. }
             | Self::NotFinite { line, .. }
             | Self::TimeDecreases { line, .. } => format!(":{line}"),
@@ -143,5 +192,17 @@ impl Fault {
     #[must_use]
     pub fn in_file(self, file: &str) -> RecordError {
         RecordError { file: file.to_owned(), fault: self }
+    }
+}
+
+/// What is wrong with a cell that is no number.
+fn no_number(text: &str, column: &str) -> String {
+    let has_decimal_comma = text.replacen(',', ".", 1).parse::<f64>().is_ok();
+    match text {
+        "" => format!("an empty cell in column `{column}`; expected a number"),
+        _ if has_decimal_comma => {
+            format!("`{text}` in column `{column}` is not a number; write a decimal point")
+        }
+        _ => format!("`{text}` in column `{column}` is not a number"),
     }
 }

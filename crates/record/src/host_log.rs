@@ -13,11 +13,7 @@ const DAY_S: f64 = 86_400.0;
 pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     let mut lines = text.lines().zip(1_u64..);
     let (header, _) = lines.next().ok_or(Fault::Empty { needed: crate::FEWEST_SAMPLES })?;
-    let names: Vec<String> = header.split(',').map(|name| name.trim().to_lowercase()).collect();
-    let is_header = names.len() == FIELDS
-        && names.get(1).is_some_and(|name| name.contains("elapsed"))
-        && names.get(2).is_some_and(|name| name.contains("angle"));
-    if !is_header {
+    if !is_header(header.split(',')) {
         return Err(Fault::BadHeader {
             line: 1,
             found: header.chars().take(60).collect(),
@@ -32,7 +28,12 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     for (content, line) in lines.skip(1).filter(|(content, _)| !content.trim().is_empty()) {
         let fields: Vec<&str> = content.split(',').collect();
         let &[wall_clock, elapsed, angle] = fields.as_slice() else {
-            return Err(Fault::MissingField { line, found: fields.len(), expected: FIELDS });
+            let found = fields.len();
+            return Err(if found > FIELDS {
+                Fault::ExtraFields { line, found, expected: FIELDS }
+            } else {
+                Fault::MissingField { line, found, expected: FIELDS }
+            });
         };
         let stamp = number(elapsed, line, "Time_Elapsed(s)")?;
         let angle = number(angle, line, "Angle(deg)")?;
@@ -41,6 +42,12 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     }
     parsed.findings.extend(wall.finding());
     Ok(parsed)
+}
+
+/// Whether these are the columns of a host log.
+pub(crate) fn is_header<'a>(names: impl Iterator<Item = &'a str>) -> bool {
+    let names: Vec<String> = names.map(|name| name.trim().to_lowercase()).collect();
+    matches!(names.as_slice(), [_, elapsed, angle] if elapsed.contains("elapsed") && angle.contains("angle"))
 }
 
 /// Compares the log's two clocks as it is read.

@@ -11,6 +11,7 @@ mod clock;
 mod csv_file;
 mod error;
 mod file;
+mod header;
 mod host_log;
 mod lattice;
 mod line;

@@ -58,6 +58,18 @@ pub enum SettingsError {
         /// Every known name.
         known: Vec<String>,
     },
+    /// A key that the file has for something else than the command line chose.
+    #[error("{origin}: `{key}` is no key of `{chosen}`; {remedy}")]
+    ForeignKey {
+        /// Where it was written.
+        origin: Origin,
+        /// The dotted key.
+        key: String,
+        /// What was chosen.
+        chosen: String,
+        /// What to do.
+        remedy: String,
+    },
     /// A key that has to be given is absent.
     #[error("{file}: `{key}` is missing: {meaning} Expected {expected}.")]
     Missing {

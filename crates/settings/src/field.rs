@@ -207,27 +207,39 @@ fn float_within(value: &Value, min: f64, max: f64) -> Option<Value> {
     (number.is_finite() && (min..=max).contains(&number)).then_some(Value::Float(number))
 }
 
-/// `from MIN to MAX`, leaving out a bound that bounds nothing.
+/// `from MIN to MAX`, leaving out a bound that bounds nothing; `above 0` where everything positive is admitted.
 fn range<T: std::fmt::Display + Bound>(min: &T, max: &T) -> String {
     match (min.is_open(), max.is_open()) {
         (true, true) => "of any size".to_owned(),
         (true, false) => format!("up to {max}"),
+        (false, true) if min.is_least_positive() => "above 0".to_owned(),
+        (false, false) if min.is_least_positive() => format!("above 0, up to {max}"),
         (false, true) => format!("from {min} up"),
         (false, false) => format!("from {min} to {max}"),
     }
 }
 
 trait Bound {
+    /// Whether it leaves out only what is not positive, and no whole number.
+    fn is_least_positive(&self) -> bool;
     fn is_open(&self) -> bool;
 }
 
 impl Bound for i64 {
+    fn is_least_positive(&self) -> bool {
+        false
+    }
+
     fn is_open(&self) -> bool {
         matches!(*self, i64::MIN | i64::MAX)
     }
 }
 
 impl Bound for f64 {
+    fn is_least_positive(&self) -> bool {
+        *self > 0.0 && *self <= f64::MIN_POSITIVE
+    }
+
     fn is_open(&self) -> bool {
         self.abs() == f64::MAX || self.is_infinite()
     }

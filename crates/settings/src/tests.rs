@@ -126,6 +126,13 @@ fn a_bad_value_names_what_was_expected() {
 }
 
 #[test]
+fn a_bound_that_leaves_out_zero_alone_is_said_in_words() {
+    let expected = |max| crate::Kind::Float { min: f64::MIN_POSITIVE, max }.expected();
+    assert_eq!(expected(f64::MAX), "a finite number above 0");
+    assert_eq!(expected(3.0), "a finite number above 0, up to 3");
+}
+
+#[test]
 fn a_missing_key_says_what_it_means() {
     assert_eq!(
         message("seed = 1", &[]),

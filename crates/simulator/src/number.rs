@@ -65,9 +65,14 @@ pub(crate) fn declare(
             let prior = PRIOR.iter().map(|field| Field { unit: unit(field), ..*field });
             sections.push((dotted(table, key.key), prior.collect()));
         } else {
+            // A kind's bounds are included.
+            let min = match key.range {
+                Range { minimum: 0.0, closed: false, .. } => f64::MIN_POSITIVE,
+                Range { minimum, .. } => minimum,
+            };
             fields.push(Field {
                 key: key.key,
-                kind: Kind::Float { min: key.range.minimum, max: key.range.maximum },
+                kind: Kind::Float { min, max: key.range.maximum },
                 default: key.default,
                 unit: key.unit,
                 meaning: key.meaning,

@@ -44,7 +44,7 @@ fn line(what: impl Into<String>, text: impl Into<String>) -> Line {
 
 /// Checks and says what would run.
 pub(crate) fn command(arguments: &ConfigArguments) -> Result<Outcome, TrainerError> {
-    let document = read_document(&arguments.config, &arguments.overrides)?;
+    let document = read_document(&arguments.config, &arguments.overrides, arguments.seed)?;
     let configured = Configured::resolve(&document)?;
     let (task, name, seed, plan) = match &configured {
         Configured::Experiment(experiment) => {

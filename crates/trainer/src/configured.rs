@@ -22,9 +22,15 @@ pub(crate) struct ConfigArguments {
     /// Values that override the file's, by dotted key: estimator.hidden=[64] seed=3
     #[arg(value_name = "KEY=VALUE")]
     pub(crate) overrides: Vec<String>,
+    /// Overrides the configuration's seed
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
     #[command(flatten)]
     pub(crate) output: Output,
 }
+
+/// The tasks that configurations are for.
+const TASKS: [&str; 5] = ["estimate", "compare", "predict", "simulate", "trials"];
 
 /// A checked configuration.
 pub(crate) enum Configured {
@@ -64,16 +70,49 @@ impl Configured {
     }
 }
 
+/// That a document is for the task that a command runs, or names none that there is.
+///
+/// # Errors
+/// [`TrainerError::OtherTask`] with the place that tells.
+pub(crate) fn check_task(
+    document: &Document,
+    wanted: &'static str,
+    example: &'static str,
+) -> Result<(), TrainerError> {
+    let told = match document.get("task") {
+        Some(leaf) => leaf.value.as_str().map(|task| (leaf, task)),
+        // What names no task and chooses an estimator is an estimation.
+        None => document.get("estimator.name").map(|leaf| (leaf, "estimate")),
+    };
+    match told.filter(|(_, task)| *task != wanted && TASKS.contains(task)) {
+        None => Ok(()),
+        Some((leaf, task)) => Err(TrainerError::OtherTask {
+            origin: leaf.origin.clone(),
+            file: document.file().to_owned(),
+            task: task.to_owned(),
+            wanted,
+            example,
+        }),
+    }
+}
+
 /// Ids of the classical methods.
 pub(crate) fn classical() -> Vec<&'static str> {
     CLASSICAL.iter().map(|route| route.id).collect()
 }
 
-/// Reads a configuration file with those that it stands on, and applies overrides in their order.
-pub(crate) fn read_document(path: &Path, overrides: &[String]) -> Result<Document, TrainerError> {
+/// Reads a configuration file with those that it stands on, and applies overrides in their order, then the seed's.
+pub(crate) fn read_document(
+    path: &Path,
+    overrides: &[String],
+    seed: Option<u64>,
+) -> Result<Document, TrainerError> {
     let (_, mut document) = read_with_text(path)?;
     for argument in overrides {
         apply_override(&mut document, argument)?;
+    }
+    if let Some(seed) = seed {
+        document.apply_override(&format!("seed={seed}"))?;
     }
     Ok(document)
 }

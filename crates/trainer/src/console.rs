@@ -2,12 +2,27 @@
 
 #![expect(clippy::print_stderr, reason = "this module owns the terminal")]
 
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
+use std::sync::OnceLock;
+
+/// Why a result did not reach standard output, the first time. It is asked for at the end: a run whose folder is
+/// written is to be completed all the same.
+static LOST: OnceLock<String> = OnceLock::new();
 
 /// A result, on standard output. A reader that has gone away (`| head`) is no error.
 pub(crate) fn result(text: &str) {
     let mut out = std::io::stdout().lock();
-    let _ = writeln!(out, "{text}").and_then(|()| out.flush());
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            LOST.get_or_init(|| error.to_string());
+        }
+        _ => {}
+    }
+}
+
+/// Why some result did not reach standard output; `None` where all did.
+pub(crate) fn lost() -> Option<&'static str> {
+    LOST.get().map(String::as_str)
 }
 
 /// A table, on standard output: on a terminal, lines that hold one of these words in red.

@@ -1,5 +1,6 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
+use crate::diagnose::KeptError;
 use crate::resume::ResumeError;
 use crate::side_by_side::TableError;
 use crate::sweep::SweepCommandError;
@@ -11,7 +12,7 @@ use oracle::OracleError;
 use record::RecordError;
 use report::ReportError;
 use runs::RunError;
-use settings::SettingsError;
+use settings::{Origin, SettingsError};
 use simulator::{GenerationError, SimulationError};
 use thiserror::Error;
 
@@ -26,6 +27,11 @@ pub(crate) enum TrainerError {
     Config { file: String, problem: String },
     #[error(transparent)]
     Settings(#[from] SettingsError),
+    #[error(
+        "{origin}: this is a configuration for the task \"{task}\", which `trainer {file}` runs; `trainer {wanted}` needs one \
+         for the task \"{wanted}\", for example {example}"
+    )]
+    OtherTask { origin: Origin, file: String, task: String, wanted: &'static str, example: &'static str },
     #[error(transparent)]
     Record(#[from] RecordError),
     #[error("{file}: {source}")]
@@ -70,6 +76,12 @@ pub(crate) enum TrainerError {
         "{file}: cannot be used: {problem}; expected a TOML file with inertia, damping, stiffness and rest_angle"
     )]
     Nominal { file: String, problem: String },
+    #[error(
+        "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"
+    )]
+    SameRecord { first: String, second: String, digest: String },
+    #[error(transparent)]
+    Kept(#[from] KeptError),
     #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
     Cases { folder: String, problem: String },
     #[error(
@@ -92,6 +104,9 @@ pub(crate) enum TrainerError {
     Report(#[from] ReportError),
     #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
     NoRun { folder: String, problem: String },
+    /// The result was printed to a place that took it not.
+    #[error("the result cannot be written to standard output: {problem}")]
+    Unprinted { problem: String },
     /// Threads or signal handlers could not be set up.
     #[error("cannot set up {what}: {problem}")]
     System { what: &'static str, problem: String },
@@ -104,6 +119,7 @@ impl TrainerError {
             Self::NoConfig
             | Self::Config { .. }
             | Self::Settings(_)
+            | Self::OtherTask { .. }
             | Self::Record(_)
             | Self::Envelope { .. }
             | Self::Oracle { .. }
@@ -117,6 +133,8 @@ impl TrainerError {
             | Self::MissingInput { .. }
             | Self::OtherUnit { .. }
             | Self::Nominal { .. }
+            | Self::SameRecord { .. }
+            | Self::Kept(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::TooManySeeds { .. }
@@ -126,7 +144,8 @@ impl TrainerError {
             | Self::Resume(_)
             | Self::NoRun { .. }
             | Self::Run(_)
-            | Self::Report(_) => 2,
+            | Self::Report(_)
+            | Self::Unprinted { .. } => 2,
             Self::Fit { source: FitError::Backend { .. }, .. } => 1,
             Self::Fit { .. } => 2,
             Self::NotFinite { .. } | Self::System { .. } => 1,
@@ -142,6 +161,7 @@ fn options_in(error: &RecordError) -> String {
         ("`data.angle`", "--angle"),
         ("`data.input`", "--input"),
         ("data.format = \"csv\"", "--format csv"),
+        ("data.format = \"host-log\"", "--format host-log"),
     ] {
         text = text.replace(key, option);
     }

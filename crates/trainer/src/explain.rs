@@ -17,6 +17,9 @@ pub(crate) struct ExplainArguments {
     /// The key or table to explain (all keys, if left out), the configuration, and values that override it
     #[arg(required = true, value_name = "[KEY] CONFIG [KEY=VALUE]")]
     words: Vec<String>,
+    /// Overrides the configuration's seed
+    #[arg(long, value_name = "N")]
+    seed: Option<u64>,
     #[command(flatten)]
     output: Output,
 }
@@ -37,7 +40,7 @@ impl ExplainArguments {
 /// Explains one key, a table's keys, or all.
 pub(crate) fn command(arguments: &ExplainArguments) -> Result<Outcome, TrainerError> {
     let (key, path, overrides) = arguments.parts();
-    let configured = Configured::resolve(&read_document(path, overrides)?)?;
+    let configured = Configured::resolve(&read_document(path, overrides, arguments.seed)?)?;
     let resolved = configured.resolved();
     let Some(key) = key else {
         return listing(resolved.settings().iter(), arguments.output);

@@ -5,7 +5,7 @@ use crate::cli::Output;
 use crate::console;
 use crate::error::TrainerError;
 use crate::side_by_side::RED;
-use crate::summary::table;
+use crate::summary::{counted, table, two_digits};
 use runs::result::{RunState, RunTableRow};
 use runs::{KeptRun, SweepFolder, default_root, list_runs as read_runs};
 use serde_json::{Value, json};
@@ -25,8 +25,8 @@ pub(crate) fn list_runs(folder: Option<&Path>, output: Output) -> Result<Outcome
         let rows: Vec<Vec<String>> = runs.iter().map(row_text).collect();
         let count = |state| runs.iter().filter(|run| run.state == state).count();
         let counted = format!(
-            "{} runs in {}: {} done, {} interrupted, {} unfinished, {} failed, {} corrupt",
-            runs.len(),
+            "{} in {}: {} done, {} interrupted, {} unfinished, {} failed, {} corrupt",
+            counted(runs.len(), "run"),
             root.display(),
             count(RunState::Done),
             count(RunState::Interrupted),
@@ -62,7 +62,7 @@ fn row_text(run: &KeptRun) -> Vec<String> {
         run.estimator.clone(),
         state,
         said,
-        error.map_or_else(String::new, |error| format!("{error:.1e}")),
+        error.map_or_else(String::new, |error| two_digits(error)),
         run.began(),
     ]
 }

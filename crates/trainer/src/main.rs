@@ -22,6 +22,7 @@ mod diagnose;
 mod environment;
 mod error;
 mod estimate;
+mod everywhere;
 mod explain;
 mod fit;
 mod input;
@@ -45,18 +46,28 @@ mod trials;
 mod verify;
 mod watcher;
 
-use clap::Parser;
+use clap::{CommandFactory, FromArgMatches};
 use cli::{Arguments, Command};
 use error::TrainerError;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    match dispatch(Arguments::parse()) {
+    let command = everywhere::everywhere(Arguments::command());
+    let arguments = Arguments::from_arg_matches(&command.get_matches());
+    match dispatch(arguments.unwrap_or_else(|error| error.exit())).and_then(printed) {
         Ok(outcome) => ExitCode::from(outcome.exit_code()),
         Err(error) => {
             console::error(&error.to_string());
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// An outcome whose result, if any was to be printed, reached standard output.
+fn printed(outcome: Outcome) -> Result<Outcome, TrainerError> {
+    match console::lost() {
+        None => Ok(outcome),
+        Some(problem) => Err(TrainerError::Unprinted { problem: problem.to_owned() }),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Progress: bars on a terminal, plain lines elsewhere.
 
 use crate::console;
+use crate::summary::two_digits;
 use estimator::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use runs::result::SeedRow;
@@ -73,8 +74,11 @@ impl Progress {
     pub(crate) fn fit_done<E: Display>(&self, method: &str, seed: u64, fit: Result<&SeedRow, E>) {
         let line = match fit {
             Ok(row) => format!(
-                "{method}, seed {seed}: {} after {} steps, {:.2} s, error {:.1e} %",
-                row.reached, row.steps, row.seconds, row.error_percent
+                "{method}, seed {seed}: {} after {} steps, {:.2} s, error {} %",
+                row.reached,
+                row.steps,
+                row.seconds,
+                two_digits(row.error_percent)
             ),
             Err(error) => format!("{method}, seed {seed}: FAILED: {error}"),
         };

@@ -130,9 +130,5 @@ impl Output {
 /// Reads the configuration that the arguments name, overrides applied.
 pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
     let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
-    let mut document = read_document(path, &arguments.overrides)?;
-    if let Some(seed) = arguments.run.seed {
-        document.apply_override(&format!("seed={seed}"))?;
-    }
-    Ok(document)
+    read_document(path, &arguments.overrides, arguments.run.seed)
 }

@@ -2,6 +2,7 @@
 
 use crate::Outcome;
 use crate::cli::ExperimentArguments;
+use crate::configured::check_task;
 use crate::error::TrainerError;
 use crate::interrupt::{self, Saving};
 use crate::progress::Progress;
@@ -30,7 +31,9 @@ pub(crate) fn is_simulation(document: &Document) -> bool {
 /// Reads the configuration and simulates.
 pub(crate) fn command(arguments: &ExperimentArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
-    simulate(arguments, &Plan::resolve(&read_config(arguments)?)?, cancel)
+    let document = read_config(arguments)?;
+    check_task(&document, "simulate", "configs/simulate.toml")?;
+    simulate(arguments, &Plan::resolve(&document)?, cancel)
 }
 
 /// A record that was written.

@@ -18,15 +18,31 @@ pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     table.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
 }
 
+/// An error to two significant digits: with a power of ten only where that is shorter.
+pub(crate) fn two_digits(value: f64) -> String {
+    let exponent = value.abs().log10().floor();
+    if (-2.0..4.0).contains(&exponent) {
+        let decimals = (1.0 - exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.1e}")
+    }
+}
+
+/// So many of something, in words that agree: `1 run`, `3 runs`.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
+}
+
 /// The result as a person wants to read it.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
     let mut parts = vec![headline(result), numbers(result)];
     if result.seeds.len() > 1 {
         parts.push(format!(
-            "{} seeds from {} on: worst error {:.1e} %, slowest {:.2} s",
+            "{} seeds from {} on: worst error {} %, slowest {:.2} s",
             result.seeds.len(),
             result.seed,
-            result.worst_error_percent,
+            two_digits(result.worst_error_percent),
             result.seeds.iter().map(|row| row.seconds).fold(0.0, f64::max),
         ));
     }
@@ -39,11 +55,11 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
 fn headline(result: &EstimationResult) -> String {
     let verdict = if result.pass { "passes" } else { "FAILS" };
     format!(
-        "{} on {} ({} record): error {:.1e} % of the oracle's damping ratio, {verdict} the {} % bar",
+        "{} on {} ({} record): error {} % of the oracle's damping ratio, {verdict} the {} % bar",
         result.estimator_title,
         result.data.path,
         result.data.origin,
-        result.worst_error_percent,
+        two_digits(result.worst_error_percent),
         result.tolerance_percent,
     )
 }
@@ -70,7 +86,7 @@ fn numbers(result: &EstimationResult) -> String {
                     result.oracle.r_squared
                 ),
             ),
-            row("error", format!("{:.1e} %", result.error_percent)),
+            row("error", format!("{} %", two_digits(result.error_percent))),
             row(
                 "stopped",
                 format!(
@@ -103,12 +119,12 @@ fn comparison_headline(result: &ComparisonResult) -> String {
     let count = result.results.len();
     let verdict = if result.pass { "pass" } else { "PASS, THE OTHERS FAIL" };
     format!(
-        "{passed} of {count} methods on {} ({} record) {verdict} the {} % bar; largest error {:.1e} %, \
+        "{passed} of {count} methods on {} ({} record) {verdict} the {} % bar; largest error {} %, \
          seeds {} to {}, {:.1} s",
         result.data.path,
         result.data.origin,
         result.tolerance_percent,
-        result.max_error_percent,
+        two_digits(result.max_error_percent),
         result.seed,
         result.seed + result.seeds.saturating_sub(1),
         result.seconds,

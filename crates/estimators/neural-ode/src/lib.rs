@@ -44,6 +44,8 @@ mod tests;
 pub use config::NeuralOdeConfig;
 
 use estimator::{Entry, Estimator, Tag};
+use field::VectorField;
+use neural::check_memory;
 
 /// The registry's line.
 pub const ENTRY: Entry = Entry {
@@ -63,6 +65,8 @@ pub const ENTRY: Entry = Entry {
     fields: config::FIELDS,
     build: |settings| {
         let config: NeuralOdeConfig = settings.section("estimator")?;
+        // The initial state beside the field's. How many peaks there are shows only later, and they are few.
+        check_memory(settings, VectorField::parameter_count(&config.hidden) + 1, 0)?;
         Ok(Box::new(config) as Box<dyn Estimator>)
     },
 };

@@ -25,6 +25,7 @@ mod objective;
 pub use config::PinnConfig;
 
 use estimator::{Entry, Estimator, Tag};
+use neural::{AffineSkipNetwork, check_memory};
 
 /// The registry's line.
 pub const ENTRY: Entry = Entry {
@@ -40,6 +41,9 @@ pub const ENTRY: Entry = Entry {
     fields: config::FIELDS,
     build: |settings| {
         let config: PinnConfig = settings.section("estimator")?;
+        // λ beside the network's.
+        let parameters = AffineSkipNetwork::parameter_count(&config.hidden) + 1;
+        check_memory(settings, parameters, config.collocation_points)?;
         Ok(Box::new(config) as Box<dyn Estimator>)
     },
 };

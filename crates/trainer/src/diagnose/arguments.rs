@@ -4,6 +4,7 @@ use crate::cli::Output;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use record::{Quantity, TimeUnit, Unit};
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
@@ -45,6 +46,10 @@ pub(crate) struct DiagnoseArguments {
     /// ANSWERS/<id>/diagnosis.json; answers that are there already are left alone
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Goes on in the folder of --out where an interrupted diagnosis left it, and gives a finished answer again. A batch
+    /// always goes on
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
     /// Most effects named together, 1 to 5 [default: 3]
@@ -67,7 +72,7 @@ pub(crate) struct DiagnoseArguments {
 }
 
 /// How to read record files.
-#[derive(Debug, Clone, Args)]
+#[derive(Debug, Clone, Args, Serialize)]
 #[command(next_help_heading = "How to read the records")]
 pub(crate) struct Reading {
     /// Format of the files
@@ -127,7 +132,7 @@ impl Default for Reading {
 }
 
 /// Format of a record file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 pub(crate) enum FormatChoice {
     /// By the first line
     Auto,
@@ -138,7 +143,7 @@ pub(crate) enum FormatChoice {
 }
 
 /// What the sensor observes.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
 pub(crate) enum QuantityChoice {
     /// Angle or displacement
     Position,

@@ -1,13 +1,13 @@
 //! `trainer diagnose --batch`: every case of a folder.
 
 use super::arguments::DiagnoseArguments;
-use super::{Question, settings};
+use super::{Question, kept, settings};
 use crate::Outcome;
 use crate::console;
 use crate::error::TrainerError;
 use crate::interrupt;
 use crate::progress::Progress;
-use crate::summary::table;
+use crate::summary::{counted, table};
 use rayon::prelude::*;
 use runs::RunFolder;
 use runs::result::{BatchResult, FailedCase, RESULT_SCHEMA};
@@ -93,16 +93,16 @@ pub(super) fn batch(
 
 fn fate(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Fate {
     let name = format!("{}/diagnosis.json", case.id);
-    if folder.path().join(&name).exists() {
-        return Fate::Skipped;
+    let failed =
+        |error: TrainerError| Fate::Failed(FailedCase { id: case.id.clone(), message: error.to_string() });
+    let answer = folder.path().join(&name);
+    if answer.exists() {
+        return kept::check_answer(&answer, &case.records).map_or_else(failed, |()| Fate::Skipped);
     }
     let answered = Question::read(&case.records, &case.nominal, &arguments.reading)
         .and_then(|question| question.answer(&settings(arguments), arguments.seed))
         .and_then(|answer| Ok(folder.write_json(&name, &answer.result)?));
-    match answered {
-        Ok(()) => Fate::Diagnosed,
-        Err(error) => Fate::Failed(FailedCase { id: case.id.clone(), message: error.to_string() }),
-    }
+    answered.map_or_else(failed, |()| Fate::Diagnosed)
 }
 
 /// The cases in the order of their names. A folder without a record is a case too: its failure says what is missing.
@@ -146,8 +146,8 @@ fn summary(result: &BatchResult, answers: &Path) -> String {
     ];
     let per_case = result.seconds / result.diagnosed.max(1) as f64;
     format!(
-        "{} cases in {:.1} s, {per_case:.2} s of wall time for each diagnosis{}\n\n{}\n\nanswers: {}/<case>/diagnosis.json",
-        result.cases,
+        "{} in {:.1} s, {per_case:.2} s of wall time for each diagnosis{}\n\n{}\n\nanswers: {}/<case>/diagnosis.json",
+        counted(result.cases, "case"),
         result.seconds,
         if result.complete { "" } else { ": INTERRUPTED" },
         table(&[], rows),

@@ -2,6 +2,7 @@
 
 pub(crate) mod arguments;
 mod batch;
+mod kept;
 mod nominal;
 mod read;
 mod repair;
@@ -19,11 +20,12 @@ use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use dynamics::Nominal;
 use experiment::StatedNominal;
 use export::Repaired;
+pub(crate) use kept::KeptError;
 use read::Given;
 use record::Quantity;
 use result::{Beside, result, series_rows};
 use runs::result::DiagnosisResult;
-use runs::{RunFolder, default_root, to_csv};
+use runs::{Disk, RunFolder, default_root, to_csv};
 use seed::Seed;
 use serde_json::json;
 use std::path::{Path, PathBuf};
@@ -72,33 +74,55 @@ struct Answer {
 }
 
 fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
-    if let Some(path) = &arguments.out {
-        // Better to know before the work than after it; the folder itself is made once there is an answer.
-        RunFolder::check_free(path)?;
-    }
+    // Better to know before the work than after it; a new folder is made once there is an answer.
+    let begun = match &arguments.out {
+        Some(path) if arguments.resume && path.exists() => {
+            Some(RunFolder::resume_on(&Disk::default(), path)?)
+        }
+        Some(path) => {
+            RunFolder::check_free(path)?;
+            None
+        }
+        None => None,
+    };
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
     interrupt::watch_impatiently()?;
     let question = Question::read(&arguments.records, nominal, &arguments.reading)?;
+    let asked = kept::asked(arguments, &question);
+    if let Some(folder) = &begun
+        && let Some(result) = kept::finished(folder, &asked)?
+    {
+        arguments.output.print(&result, || {
+            let shown = folder.path().display();
+            format!(
+                "{}\n\n{shown}: this diagnosis is finished; nothing was changed",
+                summary::summary(&result, folder.path())
+            )
+        })?;
+        return Ok(Outcome::Done);
+    }
     let answer = pool.install(|| question.answer(&settings(arguments), arguments.seed))?;
     let _saving = Saving::begin();
-    let folder = match &arguments.out {
-        Some(path) => RunFolder::create_at(path)?,
-        None => RunFolder::create(&default_root(), "diagnosis")?,
+    let folder = match (begun, &arguments.out) {
+        (Some(folder), _) => folder,
+        (None, Some(path)) => RunFolder::create_at(path)?,
+        (None, None) => RunFolder::create(&default_root(), "diagnosis")?,
     };
-    folder.write("nominal.toml", simulator::nominal_text(&question.stated.nominal).as_bytes())?;
-    folder.write_json("diagnosis.json", &answer.result)?;
-    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
     let digests: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
     folder
         .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
+    folder.write("nominal.toml", simulator::nominal_text(&question.stated.nominal).as_bytes())?;
+    folder.record_event(kept::ASKED, &asked)?;
+    folder.write_json("diagnosis.json", &answer.result)?;
+    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
     for (name, text) in export::files(&answer.repaired) {
         folder.write(name, text.as_bytes())?;
     }
     write_report(&folder)?;
-    folder.record_event("end", &json!({ "status": answer.result.verdict.status }))?;
+    folder.record_event(kept::END, &json!({ "status": answer.result.verdict.status }))?;
     arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
     Ok(Outcome::Done)
 }
@@ -123,7 +147,8 @@ impl Question {
     fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, TrainerError> {
         let stated = nominal::read(nominal)?;
         let given =
-            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<_, _>>()?;
+            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<Vec<_>, _>>()?;
+        check_distinct(&given)?;
         Ok(Self { stated, given, nominal: nominal.to_owned() })
     }
 
@@ -159,4 +184,15 @@ impl Question {
         let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
         TrainerError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
     }
+}
+
+/// That no record is there twice: it would count as two that agree.
+fn check_distinct(given: &[Given]) -> Result<(), TrainerError> {
+    for (at, one) in given.iter().enumerate() {
+        if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
+            let [first, second] = [one, again].map(|given| given.row.path.clone());
+            return Err(TrainerError::SameRecord { first, second, digest: one.row.digest.clone() });
+        }
+    }
+    Ok(())
 }

@@ -8,7 +8,7 @@ use crate::Outcome;
 use crate::console;
 use crate::error::TrainerError;
 use crate::rerender::write_report;
-use crate::summary::table as aligned;
+use crate::summary::{counted, table as aligned};
 use crate::sweep::{SweepCommandError, entries};
 use arguments::{CompareArguments, Format};
 use report::{RunTexts, render_run_table, run_table_csv, run_table_markdown, run_table_text};
@@ -68,7 +68,10 @@ pub(crate) fn print_table(table: &RunTable) {
     let header: Vec<&str> = header.iter().map(String::as_str).collect();
     let mut text = aligned(&header, rows);
     if left_out > 0 {
-        text.push_str(&format!("\n… and {left_out} rows more; table.csv, --json and --format csv have all"));
+        text.push_str(&format!(
+            "\n… and {} more; table.csv, --json and --format csv have all",
+            counted(left_out, "row")
+        ));
     }
     text.push_str(&format!("\n\n{} done, {} failed, {} open", table.done, table.failed, table.open));
     console::table(&text, &RED);

@@ -10,6 +10,7 @@ use crate::input::Input;
 use crate::progress::Progress;
 use crate::resume::{Beginning, FAILED, Ledger, TakenUp, start, take_up};
 use crate::run::Run;
+use crate::summary::two_digits;
 use estimator::Cancel;
 use experiment::{CheckpointSettings, resolve};
 use registry::ESTIMATORS;
@@ -219,11 +220,11 @@ fn said(rows: &[RunTableRow]) -> String {
     let bad = rows.iter().filter(|row| row.pass == Some(false)).count();
     match rows {
         [RunTableRow { zeta: Some(zeta), error_percent, reached, steps, seconds, .. }] => format!(
-            "{} after {} steps, {:.2} s, ζ {zeta:.8}, gap {:.1e} %{}",
+            "{} after {} steps, {:.2} s, ζ {zeta:.8}, gap {} %{}",
             reached.replace('_', " "),
             steps.unwrap_or_default(),
             seconds.unwrap_or_default(),
-            error_percent.unwrap_or(f64::NAN),
+            two_digits(error_percent.unwrap_or(f64::NAN)),
             if bad > 0 { ", FAILS its tolerance" } else { "" },
         ),
         rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),

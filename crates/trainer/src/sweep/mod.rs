@@ -13,6 +13,7 @@ use crate::error::TrainerError;
 use crate::interrupt::{self, Saving};
 use crate::rerender::write_report;
 use crate::side_by_side::print_table;
+use crate::summary::counted;
 use arguments::{Launcher, SweepArguments};
 use execute::Job;
 use experiment::sweep::Shard;
@@ -53,7 +54,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         .collect();
     if !output.quiet && !output.json {
         let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
-        console::remark(&format!("sweep of {all} runs in {path}, {} of them now", jobs.len()));
+        console::remark(&format!("sweep of {} in {path}, {} of them now", counted(all, "run"), jobs.len()));
     }
     let made = jobs.len();
     execute::execute(&sweep, &jobs, threads(arguments), output, cancel)?;

@@ -10,6 +10,7 @@ mod summary;
 
 use crate::Outcome;
 use crate::cli::ExperimentArguments;
+use crate::configured::check_task;
 use crate::environment::Environment;
 use crate::error::TrainerError;
 use crate::interrupt;
@@ -49,7 +50,9 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
             .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
         return finish(arguments, &folder, &manifest, &pool, &open::failed(&folder)?, start);
     }
-    let plan = TrialPlan::resolve(&read_config(&as_experiment(arguments))?)?;
+    let document = read_config(&as_experiment(arguments))?;
+    check_task(&document, "trials", "configs/trials-quick.toml")?;
+    let plan = TrialPlan::resolve(&document)?;
     let folder = begin(arguments, &plan, &pool)?;
     let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
         return interrupted(&folder, "making the cases");

@@ -13,6 +13,9 @@ use std::path::Path;
 const NOT_COMPARED: &[&str] =
     &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
 
+/// What `trainer export` adds to a run's folder, which is no part of the run.
+const EXPORTED: &str = "tensorboard/";
+
 /// The key of every duration in a result.
 const DURATION: &str = "seconds";
 
@@ -38,7 +41,8 @@ pub(super) fn differences(kept: &Path, again: &Path) -> Result<Vec<Difference>, 
     let mut names = files(kept, "")?;
     names.extend(files(again, "")?);
     let mut found = Vec::new();
-    for name in names.iter().filter(|name| !NOT_COMPARED.contains(&name.as_str())) {
+    let is_compared = |name: &str| !NOT_COMPARED.contains(&name) && !name.starts_with(EXPORTED);
+    for name in names.iter().filter(|name| is_compared(name)) {
         let bytes = [kept, again].map(|folder| std::fs::read(folder.join(name)).ok());
         let texts = bytes.each_ref().map(|bytes| str::from_utf8(bytes.as_ref()?).ok());
         let before = found.len();
@@ -156,6 +160,7 @@ mod tests {
                 ("model/weights.safetensors", b"\xff\x00"),
                 ("report.html", b"old"),
                 ("extra.txt", b"x"),
+                ("tensorboard/events.out.tfevents.1.ringdown", b"x"),
             ],
         );
         write(

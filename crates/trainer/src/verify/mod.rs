@@ -10,6 +10,7 @@ use crate::interrupt;
 use crate::rerender::tables;
 use crate::resume::{DataFile, ResumeError, check_data, config_of, is_finished, started};
 use crate::run::run_until;
+use crate::summary::counted;
 use difference::{Difference, differences};
 use runs::{Disk, RunFolder, Scratch, digest};
 use serde_json::json;
@@ -73,7 +74,7 @@ fn print(run: &Path, found: &[Difference], output: Output) {
     } else if !output.quiet && found.is_empty() {
         console::result(&format!("{}: identical", run.display()));
     } else if !output.quiet {
-        console::result(&format!("{}: {} differences", run.display(), found.len()));
+        console::result(&format!("{}: {}", run.display(), counted(found.len(), "difference")));
         for difference in found.iter().take(MOST_PRINTED) {
             console::result(&difference.to_string());
         }
