@@ -48,7 +48,7 @@ impl Lock {
         let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
         let text = serde_json::to_string(&holder)
             .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
-        disk.empty(&file).map_err(RunError::io(&path, "empty"))?;
+        disk.shorten(&file, 0).map_err(RunError::io(&path, "empty"))?;
         disk.write(&mut file, text.as_bytes()).map_err(RunError::io(&path, "write"))?;
         Ok(Self { file })
     }
