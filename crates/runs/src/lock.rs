@@ -53,6 +53,17 @@ impl Lock {
         Ok(Self { file })
     }
 
+    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments. Who has it is not said.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub(crate) fn wait(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
+        let path = folder.join(LOCK);
+        let file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
+        file.lock().map_err(RunError::io(&path, "lock"))?;
+        Ok(Self { file })
+    }
+
     /// Whether nobody has the folder; it is left as it is.
     ///
     /// # Errors
