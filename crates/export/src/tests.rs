@@ -87,12 +87,44 @@ fn nothing_that_was_left_out_breaks_a_comment_or_a_string() {
     let mut repaired = repaired(pendulum(), &[]);
     repaired.left_out = vec!["one \"quoted\"\nand */ --> broken".to_owned()];
     for (name, text) in files(&repaired) {
+        assert!(text.contains("broken"), "{name}");
         if name.starts_with("equation") {
             continue;
         }
-        assert!(text.contains("broken"), "{name}");
         let line = text.lines().find(|line| line.contains("broken")).unwrap().trim_start();
         let commented = ["#", "//", "<!--"].iter().any(|start| line.starts_with(start));
         assert!(commented || (name.ends_with(".py") && !line.contains('"')), "{name}: {line}");
     }
+}
+
+#[test]
+fn an_equation_says_in_a_sentence_what_is_not_part_of_it() {
+    let whole = repaired(pendulum(), &[]);
+    assert!(!equation_text(&whole).contains("Not part of it"));
+    assert!(!equation_latex(&whole).contains("Not part of it"));
+    let part = Repaired {
+        left_out: vec!["input delay: 50 % of\nspeed_max".to_owned(), "every effect".to_owned()],
+        ..whole
+    };
+    let text = equation_text(&part);
+    assert!(
+        text.ends_with(
+            "\n\nNot part of it: input delay: 50 % of speed_max.\n\nNot part of it: every effect.\n"
+        ),
+        "{text}"
+    );
+    let latex = equation_latex(&part);
+    let item = r"  \item Not part of it: input delay: 50 \% of speed\_max.";
+    assert!(latex.lines().any(|line| line == item), "{latex}");
+    assert!(latex.ends_with("  \\item Not part of it: every effect.\n\\end{itemize}\n"), "{latex}");
+}
+
+/// Every character that LaTeX takes for an order, and what it is printed by.
+#[test]
+fn words_stay_words_in_latex() {
+    let mut all = repaired(pendulum(), &[]);
+    all.left_out = vec![r"a\b{c}$d&e#f^g_h~i%j".to_owned()];
+    let latex = equation_latex(&all);
+    let item = r"a\textbackslash{}b\{c\}\$d\&e\#f\textasciicircum{}g\_h\textasciitilde{}i\%j";
+    assert!(latex.contains(item), "{latex}");
 }
