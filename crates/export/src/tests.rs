@@ -1,6 +1,6 @@
 //! Of the texts for people.
 
-use crate::{Repaired, configuration, equation_latex, equation_text, files, python};
+use crate::{Repaired, configuration, equation_latex, equation_text, files, python, urdf};
 use dynamics::chain::Observed;
 use dynamics::{Active, Coefficients, Coordinate, Nominal, Start, System};
 
@@ -127,4 +127,24 @@ fn words_stay_words_in_latex() {
     let latex = equation_latex(&all);
     let item = r"a\textbackslash{}b\{c\}\$d\&e\#f\textasciicircum{}g\_h\textasciitilde{}i\%j";
     assert!(latex.contains(item), "{latex}");
+}
+
+/// urdfdom takes a prismatic joint with limits only, and bounds that are left out are 0 each: nothing could move.
+#[test]
+fn a_joint_that_slides_has_limits_and_one_that_turns_has_none() {
+    let turning = repaired(pendulum(), &[]);
+    let text = urdf(&turning);
+    assert!(text.contains("type=\"continuous\"") && !text.contains("<limit"), "{text}");
+    let nominal = pendulum().with_coordinate(Coordinate::Displacement);
+    let text = urdf(&Repaired { system: System::new(nominal, vec![]).unwrap(), ..turning });
+    assert!(text.contains("type=\"prismatic\""), "{text}");
+    let line = text.lines().find(|line| line.contains("<limit")).unwrap();
+    let value = |name: &str| -> f64 {
+        let (_, rest) = line.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split_once('"').unwrap().0.parse().unwrap()
+    };
+    assert!(value("lower") < -1e6 && value("upper") > 1e6, "{line}");
+    assert!(value("effort") > 1e6 && value("velocity") > 1e6, "{line}");
+    let says = "the limits bound nothing: URDF asks for some where a joint slides";
+    assert!(text.to_lowercase().contains(&says.to_lowercase()), "{text}");
 }
