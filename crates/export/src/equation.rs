@@ -1,6 +1,7 @@
 //! The equation of motion, for people.
 
 use crate::Repaired;
+use crate::configuration::one_line;
 use dynamics::{Coordinate, Description};
 use std::fmt::Write;
 
@@ -28,7 +29,7 @@ fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'
     all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
 }
 
-/// The equation of motion as text; its numbers follow, one a line, and what acts on the measurement.
+/// The equation of motion as text; its numbers follow, one a line, what acts on the measurement, and what is not part of it.
 #[must_use]
 pub fn equation_text(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.text;
@@ -70,6 +71,9 @@ pub fn equation_text(repaired: &Repaired) -> String {
     for active in &repaired.chain {
         let description = active.effect().description();
         let _ = write!(text, "\n\nOn the way to the file: {}: {}", description.title, description.equation);
+    }
+    for sentence in &repaired.left_out {
+        let _ = write!(text, "\n\nNot part of it: {}.", one_line(sentence));
     }
     text.push('\n');
     text
@@ -113,6 +117,9 @@ pub fn equation_latex(repaired: &Repaired) -> String {
         let _ =
             writeln!(text, "  \\item on the way to the file: {}, ${}$", description.title, description.latex);
     }
+    for sentence in &repaired.left_out {
+        let _ = writeln!(text, "  \\item Not part of it: {}.", latex_words(&one_line(sentence)));
+    }
     text.push_str("\\end{itemize}\n");
     text
 }
@@ -128,6 +135,21 @@ fn parameters(repaired: &Repaired) -> Vec<(&'static Description, &'static str, f
         })
     })
     .collect()
+}
+
+/// Words that LaTeX prints as they are, whatever orders they look like.
+fn latex_words(words: &str) -> String {
+    let mut text = String::new();
+    for letter in words.chars() {
+        match letter {
+            '\\' => text.push_str("\\textbackslash{}"),
+            '^' => text.push_str("\\textasciicircum{}"),
+            '~' => text.push_str("\\textasciitilde{}"),
+            '{' | '}' | '$' | '&' | '#' | '_' | '%' => text.extend(['\\', letter]),
+            other => text.push(other),
+        }
+    }
+    text
 }
 
 fn latex_number(value: f64) -> String {

@@ -68,7 +68,10 @@ fn timestep(repaired: &Repaired) -> f64 {
     if frequency > 0.0 { (std::f64::consts::TAU / frequency / 1000.0).min(1e-3) } else { 1e-3 }
 }
 
-/// The `<dynamics>` of a URDF joint.
+/// A limit beyond any motion, in whatever unit, that single precision still holds.
+const UNBOUNDED: &str = "1e9";
+
+/// The `<dynamics>` of a URDF joint; one that slides has a `<limit>`, too, which bounds nothing.
 #[must_use]
 pub fn urdf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -91,15 +94,23 @@ pub fn urdf(repaired: &Repaired) -> String {
              {angle:?} rad before position 0"
         ));
     }
-    let kind = match nominal.coordinate() {
-        Coordinate::Angle => "continuous",
-        Coordinate::Displacement => "prismatic",
+    let (kind, limit) = match nominal.coordinate() {
+        Coordinate::Angle => ("continuous", String::new()),
+        // Without limits a prismatic joint is refused, and bounds that are not stated are 0.
+        Coordinate::Displacement => (
+            "prismatic",
+            format!(
+                "  <!-- The limits bound nothing: URDF asks for some where a joint slides. -->\n  \
+                 <limit lower=\"-{UNBOUNDED}\" upper=\"{UNBOUNDED}\" effort=\"{UNBOUNDED}\" \
+                 velocity=\"{UNBOUNDED}\"/>\n"
+            ),
+        ),
     };
     let mut text = format!("<joint name=\"joint\" type=\"{kind}\">\n");
     comments(&mut text, repaired, &terms, "  ");
     let _ = write!(
         text,
-        "  <parent link=\"base\"/>\n  <child link=\"body\"/>\n  <dynamics damping=\"{:?}\" friction=\"{:?}\"/>\n</joint>\n",
+        "  <parent link=\"base\"/>\n  <child link=\"body\"/>\n{limit}  <dynamics damping=\"{:?}\" friction=\"{:?}\"/>\n</joint>\n",
         nominal.damping(),
         terms.friction.unwrap_or(0.0)
     );

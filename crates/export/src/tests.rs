@@ -1,6 +1,6 @@
 //! Of the texts for people.
 
-use crate::{Repaired, configuration, equation_latex, equation_text, files, python};
+use crate::{Repaired, configuration, equation_latex, equation_text, files, python, urdf};
 use dynamics::chain::Observed;
 use dynamics::{Active, Coefficients, Coordinate, Nominal, Start, System};
 
@@ -87,12 +87,64 @@ fn nothing_that_was_left_out_breaks_a_comment_or_a_string() {
     let mut repaired = repaired(pendulum(), &[]);
     repaired.left_out = vec!["one \"quoted\"\nand */ --> broken".to_owned()];
     for (name, text) in files(&repaired) {
+        assert!(text.contains("broken"), "{name}");
         if name.starts_with("equation") {
             continue;
         }
-        assert!(text.contains("broken"), "{name}");
         let line = text.lines().find(|line| line.contains("broken")).unwrap().trim_start();
         let commented = ["#", "//", "<!--"].iter().any(|start| line.starts_with(start));
         assert!(commented || (name.ends_with(".py") && !line.contains('"')), "{name}: {line}");
     }
+}
+
+#[test]
+fn an_equation_says_in_a_sentence_what_is_not_part_of_it() {
+    let whole = repaired(pendulum(), &[]);
+    assert!(!equation_text(&whole).contains("Not part of it"));
+    assert!(!equation_latex(&whole).contains("Not part of it"));
+    let part = Repaired {
+        left_out: vec!["input delay: 50 % of\nspeed_max".to_owned(), "every effect".to_owned()],
+        ..whole
+    };
+    let text = equation_text(&part);
+    assert!(
+        text.ends_with(
+            "\n\nNot part of it: input delay: 50 % of speed_max.\n\nNot part of it: every effect.\n"
+        ),
+        "{text}"
+    );
+    let latex = equation_latex(&part);
+    let item = r"  \item Not part of it: input delay: 50 \% of speed\_max.";
+    assert!(latex.lines().any(|line| line == item), "{latex}");
+    assert!(latex.ends_with("  \\item Not part of it: every effect.\n\\end{itemize}\n"), "{latex}");
+}
+
+/// Every character that LaTeX takes for an order, and what it is printed by.
+#[test]
+fn words_stay_words_in_latex() {
+    let mut all = repaired(pendulum(), &[]);
+    all.left_out = vec![r"a\b{c}$d&e#f^g_h~i%j".to_owned()];
+    let latex = equation_latex(&all);
+    let item = r"a\textbackslash{}b\{c\}\$d\&e\#f\textasciicircum{}g\_h\textasciitilde{}i\%j";
+    assert!(latex.contains(item), "{latex}");
+}
+
+/// urdfdom takes a prismatic joint with limits only, and bounds that are left out are 0 each: nothing could move.
+#[test]
+fn a_joint_that_slides_has_limits_and_one_that_turns_has_none() {
+    let turning = repaired(pendulum(), &[]);
+    let text = urdf(&turning);
+    assert!(text.contains("type=\"continuous\"") && !text.contains("<limit"), "{text}");
+    let nominal = pendulum().with_coordinate(Coordinate::Displacement);
+    let text = urdf(&Repaired { system: System::new(nominal, vec![]).unwrap(), ..turning });
+    assert!(text.contains("type=\"prismatic\""), "{text}");
+    let line = text.lines().find(|line| line.contains("<limit")).unwrap();
+    let value = |name: &str| -> f64 {
+        let (_, rest) = line.split_once(&format!(" {name}=\"")).unwrap();
+        rest.split_once('"').unwrap().0.parse().unwrap()
+    };
+    assert!(value("lower") < -1e6 && value("upper") > 1e6, "{line}");
+    assert!(value("effort") > 1e6 && value("velocity") > 1e6, "{line}");
+    let says = "the limits bound nothing: URDF asks for some where a joint slides";
+    assert!(text.to_lowercase().contains(&says.to_lowercase()), "{text}");
 }

@@ -82,7 +82,8 @@ impl Clock {
     /// 1. repeated stamps: two samples cannot be taken at once, so the stamps are receive times; even
     ///    in the index, with lost samples counted where groups come later than their samples account for;
     /// 2. gaps: samples are missing, the index is no clock; host, unless the values run more smoothly (as in 5) on the
-    ///    index with the lost samples counted;
+    ///    index with the lost samples counted. Among steps of rounded or jittered stamps a loss may be no long one, so that
+    ///    only counting finds it: below, too, lost samples are counted in an index that is even;
     /// 3. an even clock reproduces every stamp to the step the stamps are rounded to: even in the index;
     /// 4. an even clock and a parabola do: the logger's clock and the sensor's change their rates against one another,
     ///    and a sensor samples by its own; even in the index;
@@ -135,6 +136,12 @@ impl Clock {
 fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, String) {
     let rate = 1.0 / line.slope;
     let preference = found.preference_for_even;
+    // Whatever the even clock was judged by, it was judged with the lost samples counted.
+    let even = |reason: String| match found.lost {
+        0 => (ClockKind::UniformIndex, reason),
+        1 => (ClockKind::IndexWithGaps, format!("{reason}; 1 sample was lost")),
+        lost => (ClockKind::IndexWithGaps, format!("{reason}; {lost} samples were lost")),
+    };
     if found.repeated > 0 {
         let share = 100.0 * found.repeated as f64 / stamps.len() as f64;
         let reason = format!(
@@ -146,11 +153,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
             found.groups,
             1e3 * found.group_interval_s,
         );
-        return if found.lost > 0 {
-            (ClockKind::IndexWithGaps, format!("{reason} and {} samples were lost", found.lost))
-        } else {
-            (ClockKind::UniformIndex, reason)
-        };
+        return even(reason);
     }
     if found.gaps > 0 && found.lost > 0 && preference > SIGNIFICANT {
         let reason = format!(
@@ -174,7 +177,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
              are rounded to",
             1e3 * rounding
         );
-        return (ClockKind::UniformIndex, reason);
+        return even(reason);
     }
     if let Some(rounding) = found.rounding_s.filter(|step| found.left_by_bend_s <= *step) {
         let reason = format!(
@@ -183,7 +186,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
             1e3 * found.bend_s,
             1e3 * rounding
         );
-        return (ClockKind::UniformIndex, reason);
+        return even(reason);
     }
     if preference > SIGNIFICANT {
         let reason = format!(
@@ -191,7 +194,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
              standard errors), so the stamps' jitter of {:.3} ms is the host's",
             1e3 * found.deviation_s
         );
-        return (ClockKind::UniformIndex, reason);
+        return even(reason);
     }
     let reason = if preference < -SIGNIFICANT {
         format!(
@@ -259,6 +262,49 @@ mod tests {
         let clock = auto(stamps);
         assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
         assert!((clock.sample_rate_hz - 1e3 / 10.039).abs() < 1e-3);
+    }
+
+    /// At 625 Hz a lost sample makes a step of 3.2 ms, which is no long one among steps of 1 and 2 ms; counting finds it.
+    #[test]
+    fn a_loss_that_rounded_stamps_hide_from_the_steps_is_in_the_times() {
+        let numbers: Vec<usize> = (0..3000).filter(|i| *i != 1234).collect();
+        let stamps: Vec<f64> = numbers.iter().map(|i| (*i as f64 * 1.6).round() / 1e3).collect();
+        let times: Vec<f64> = numbers.iter().map(|i| *i as f64 * 1.6e-3).collect();
+        let clock = auto_of(stamps, &times);
+        assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 1), "{}", clock.reason);
+        assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
+        assert!(clock.reason.contains("reproduces every stamp"), "{}", clock.reason);
+        assert!(clock.reason.contains("1 sample was lost"), "{}", clock.reason);
+        let wrong = clock.times_s.iter().zip(&times).map(|(found, time)| (found - time).abs());
+        assert!(wrong.fold(0.0, f64::max) < 0.2e-3, "a loss of 1.6 ms is in none of the times");
+    }
+
+    /// The same on a logger's clock that drifts: losses are counted in the even clock that the parabola is judged from.
+    #[test]
+    fn such_a_loss_is_in_the_times_of_a_clock_that_drifts() {
+        let numbers: Vec<usize> = (0..12_000).filter(|i| i % 1700 != 850).collect();
+        let times: Vec<f64> = numbers.iter().map(|i| *i as f64 * 1.6e-3).collect();
+        let stamps = times.iter().map(|time| ((time + 1.2e-5 * time * time) * 1e3).round() / 1e3).collect();
+        let clock = auto_of(stamps, &times);
+        assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 7), "{}", clock.reason);
+        assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
+        assert!(clock.reason.contains("parabola"), "{}", clock.reason);
+        assert!(clock.reason.contains("7 samples were lost"), "{}", clock.reason);
+    }
+
+    /// Where jitter alone makes many steps long, few losses among them are no gaps; counting finds these too.
+    #[test]
+    fn a_loss_among_steps_that_jitter_made_long_is_in_the_times() {
+        let numbers: Vec<usize> = (0..3000).filter(|i| i % 900 != 450).collect();
+        let times: Vec<f64> = numbers.iter().map(|i| *i as f64 * 0.01).collect();
+        // A sum of four has some large ones, which a single one of the same variance has not.
+        let jitter = |i: usize| (0..4).map(|part| noise(4 * i + part)).sum::<f64>();
+        let stamps = numbers.iter().map(|i| *i as f64 * 0.01 + 0.0024 * jitter(*i)).collect();
+        let clock = auto_of(stamps, &times);
+        assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 3), "{}", clock.reason);
+        assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
+        assert!(clock.reason.contains("more smoothly"), "{}", clock.reason);
+        assert!(clock.reason.contains("3 samples were lost"), "{}", clock.reason);
     }
 
     fn jittered() -> Vec<f64> {

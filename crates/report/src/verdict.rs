@@ -52,6 +52,14 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
                  damping ratio it had reached, {zeta}, {comparison}."
             ),
         },
+        "stalled" => Verdict {
+            tone: if result.pass { Tone::Caution } else { Tone::Bad },
+            label: if result.pass { "Within tolerance, not converged" } else { "Not converged" },
+            sentence: format!(
+                "The {who} came to a standstill after {steps} steps: none improved the fit any more, and its own condition \
+                 for a solution did not hold. The damping ratio it had reached, {zeta}, {comparison}."
+            ),
+        },
         "interrupted" => Verdict {
             tone: Tone::Caution,
             label: "Interrupted",
@@ -236,6 +244,14 @@ mod tests {
         let (label, text) = sentence(|r| r.estimate.reached = "budget_spent".into());
         assert_eq!(label, "Within tolerance, not converged");
         assert!(text.contains("before it converged"), "{text}");
+        let (label, text) = sentence(|r| r.estimate.reached = "stalled".into());
+        assert_eq!(label, "Within tolerance, not converged");
+        assert!(text.contains("standstill") && !text.contains("does not know"), "{text}");
+        let (label, _) = sentence(|r| {
+            r.estimate.reached = "stalled".into();
+            r.pass = false;
+        });
+        assert_eq!(label, "Not converged");
         let (_, text) = sentence(|r| r.estimate.reached = "asleep".into());
         assert!(text.contains("“asleep”"), "{text}");
     }

@@ -89,10 +89,10 @@ impl Disk {
         permitted
     }
 
-    /// Takes the content of a file away.
-    pub(crate) fn empty(&self, file: &File) -> Result<()> {
+    /// Takes away what stands in a file behind its first bytes, of which there are so many.
+    pub(crate) fn shorten(&self, file: &File, bytes: u64) -> Result<()> {
         self.allow()?;
-        file.set_len(0)
+        file.set_len(bytes)
     }
 
     pub(crate) fn flush(&self, file: &File) -> Result<()> {

@@ -3,7 +3,6 @@
 //! Every line ends in a digest over itself and the digest before it. A line that a crash cut short can only be the
 //! last one and has no line break; it is left out and said. Anything else that does not add up is refused.
 
-use crate::atomic;
 use crate::digest::hexadecimal;
 use crate::disk::Disk;
 use crate::error::RunError;
@@ -90,7 +89,6 @@ impl EventLog {
     ///
     /// The file is locked meanwhile: shares of a sweep write into one log, and each line's digest follows from the one before.
     pub(crate) fn append(path: &Path, disk: &Disk, event: &Event) -> Result<(), RunError> {
-        let is_new = !path.exists();
         let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
         file.lock().map_err(RunError::io(path, "lock"))?;
         let log = Self::read(path)?;
@@ -101,12 +99,13 @@ impl EventLog {
         let body = text.strip_suffix('}').unwrap_or(&text);
         let line = format!("{body},\"digest\":\"{}\"}}\n", chained(&log.digest, body));
         if log.torn_line.is_some() {
-            return atomic::write(disk, path, (log.text + &line).as_bytes());
+            // In place: who waits for the lock waits for this very file, and would write into one that another has displaced.
+            disk.shorten(&file, log.text.len() as u64).map_err(RunError::io(path, "shorten"))?;
         }
         disk.write(&mut file, line.as_bytes()).map_err(RunError::io(path, "write"))?;
         disk.flush(&file).map_err(RunError::io(path, "flush"))?;
         match path.parent() {
-            Some(folder) if is_new => {
+            Some(folder) if log.events.is_empty() => {
                 disk.flush_folder(folder).map_err(RunError::io(path, "flush the folder of"))
             }
             _ => Ok(()),
@@ -140,7 +139,7 @@ mod tests {
     use super::{Event, EventLog, readable};
     use crate::disk::Disk;
     use crate::error::RunError;
-    use crate::faults::Faults;
+    use crate::faults::{Faults, Lasts, Refusal};
     use serde_json::json;
     use std::path::Path;
     use std::sync::Arc;
@@ -164,6 +163,34 @@ mod tests {
         };
         let first = operations();
         assert_eq!([operations(), operations()], [first - 1; 2]);
+    }
+
+    /// Whatever fails while a torn line gives way, the whole lines stay, and the next attempt adds its own.
+    #[test]
+    fn no_failure_takes_a_whole_line_along_with_a_torn_one() {
+        let event = Event { time: String::new(), event: "resume".into(), details: json!(null) };
+        for refusal in [Refusal::Device, Refusal::Full] {
+            for first in 0.. {
+                let folder = tempfile::tempdir().unwrap();
+                let path = folder.path().join("events.jsonl");
+                let whole = three_lines(&path);
+                std::fs::write(&path, &whole[..whole.len() - 5]).unwrap();
+                let faults = Arc::new(Faults::new(first, refusal, Lasts::Once));
+                let failed = EventLog::append(&path, &Disk::failing(Arc::clone(&faults)), &event).is_err();
+                assert_eq!(failed, first < faults.asked());
+                let log = EventLog::read(&path).unwrap();
+                let names: Vec<&str> = log.events.iter().map(|event| event.event.as_str()).collect();
+                assert_eq!(names[..2], ["start", "one\ntwo"]);
+                if !failed {
+                    assert_eq!((&names[2..], log.torn_line), (&["resume"][..], None));
+                    // Open, shorten, write, flush.
+                    assert_eq!(first, 4);
+                    break;
+                }
+                EventLog::append(&path, &Disk::default(), &event).unwrap();
+                assert_eq!(EventLog::read(&path).unwrap().last("resume"), Some(&event));
+            }
+        }
     }
 
     #[test]
@@ -239,10 +266,12 @@ mod tests {
             let torn = length > 0 && whole[length - 1] != b'\n';
             assert_eq!((log.events.len(), log.torn_line), (lines, torn.then_some(lines + 1)));
         }
-        // The next line takes the torn one's place.
+        // The next line takes the torn one's place, in the file that another writer has open and waits for.
         std::fs::write(&path, &whole[..whole.len() - 5]).unwrap();
+        let waiting = std::fs::File::open(&path).unwrap();
         let event = Event { time: String::new(), event: "resume".into(), details: json!(null) };
         EventLog::append(&path, &Disk::default(), &event).unwrap();
+        assert_eq!(std::io::read_to_string(waiting).unwrap(), std::fs::read_to_string(&path).unwrap());
         let log = EventLog::read(&path).unwrap();
         let names: Vec<&str> = log.events.iter().map(|event| event.event.as_str()).collect();
         assert_eq!((names, log.torn_line), (vec!["start", "one\ntwo", "resume"], None));

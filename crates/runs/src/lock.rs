@@ -48,8 +48,19 @@ impl Lock {
         let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
         let text = serde_json::to_string(&holder)
             .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
-        disk.empty(&file).map_err(RunError::io(&path, "empty"))?;
+        disk.shorten(&file, 0).map_err(RunError::io(&path, "empty"))?;
         disk.write(&mut file, text.as_bytes()).map_err(RunError::io(&path, "write"))?;
+        Ok(Self { file })
+    }
+
+    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments. Who has it is not said.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub(crate) fn wait(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
+        let path = folder.join(LOCK);
+        let file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
+        file.lock().map_err(RunError::io(&path, "lock"))?;
         Ok(Self { file })
     }
 

@@ -16,6 +16,7 @@ use crate::atomic;
 use crate::disk::Disk;
 use crate::error::RunError;
 use crate::folder::RunFolder;
+use crate::lock::Lock;
 use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -24,6 +25,8 @@ use thiserror::Error;
 
 /// Name of the manifest.
 const MANIFEST: &str = "sweep.json";
+/// Folder of the runs' configurations; its lock is that of freezing, since the sweep's own is held throughout or not at all.
+const CONFIGS: &str = "configs";
 const STATE: &str = "state";
 const RUNS: &str = "runs";
 /// Most folders that one run is tried in.
@@ -103,7 +106,7 @@ impl SweepFolder {
     /// Freezes the list of runs; `configs` are the texts of the runs' configurations, in the list's order, and `beside`
     /// the files of the sweep as a whole by name. The manifest comes last: where it is, all of these are.
     ///
-    /// `false` where another process has frozen one meanwhile: its manifest stays.
+    /// `false`, and nothing written, where another process has frozen one meanwhile; who is at it is waited for.
     ///
     /// # Errors
     /// [`RunError`] where something cannot be written.
@@ -113,6 +116,12 @@ impl SweepFolder {
         configs: &[String],
         beside: &[(&str, Vec<u8>)],
     ) -> Result<bool, RunError> {
+        let place = self.path().join(CONFIGS);
+        Disk::default().make_folders(&place).map_err(RunError::io(&place, "create"))?;
+        let _freezing = Lock::wait(&Disk::default(), &place)?;
+        if Self::is_one(self.path()) {
+            return Ok(false);
+        }
         for (line, config) in manifest.runs.iter().zip(configs) {
             // Flushing ten thousand files takes minutes; the digests in the manifest tell whether one was lost.
             self.folder.write_reproducible(&line.config, config.as_bytes())?;
@@ -121,10 +130,7 @@ impl SweepFolder {
             self.folder.write(name, content)?;
         }
         let path = self.path().join(MANIFEST);
-        if !atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)? {
-            return Ok(false);
-        }
-        Ok(true)
+        atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)
     }
 
     /// A new folder for a run: `runs/<label>`, or with a number behind it where that was begun before. The path is
@@ -277,10 +283,40 @@ mod tests {
         let root = tempfile::tempdir().unwrap();
         let sweep = frozen(root.path(), 2);
         assert_eq!(sweep.manifest().unwrap().unwrap(), manifest(2));
-        assert!(!sweep.freeze(&manifest(3), &[], &[("config.toml", b"x".to_vec())]).unwrap());
+        let others = vec!["seed = 7\n".to_owned(); 3];
+        assert!(!sweep.freeze(&manifest(3), &others, &[("config.toml", b"x".to_vec())]).unwrap());
         assert_eq!(sweep.manifest().unwrap().unwrap().runs.len(), 2);
         let config = std::fs::read_to_string(root.path().join("configs/0002.toml")).unwrap();
         assert_eq!(config, "seed = 2\n");
+        assert!(!root.path().join("configs/0003.toml").exists() && !root.path().join("config.toml").exists());
+    }
+
+    /// Whose manifest stands, that one's files stand beside it, all of them.
+    #[test]
+    fn of_several_that_freeze_at_once_one_does_and_nothing_is_of_another() {
+        for _ in 0..10 {
+            let root = tempfile::tempdir().unwrap();
+            let sweep = SweepFolder::open(root.path());
+            let together = std::sync::Barrier::new(4);
+            let freeze = &|share: usize| {
+                let manifest = SweepManifest { name: share.to_string(), ..manifest(20) };
+                let texts = vec![share.to_string(); 20];
+                together.wait();
+                sweep.freeze(&manifest, &texts, &[("config.toml", share.to_string().into_bytes())]).unwrap()
+            };
+            let won = std::thread::scope(|scope| {
+                let shares = [0, 1, 2, 3].map(|share| scope.spawn(move || freeze(share)));
+                shares.map(|share| share.join().unwrap())
+            });
+            assert_eq!(won.iter().filter(|won| **won).count(), 1);
+            let manifest = sweep.manifest().unwrap().unwrap();
+            assert!(won[manifest.name.parse::<usize>().unwrap()]);
+            let names = manifest.runs.iter().map(|line| line.config.as_str()).chain(["config.toml"]);
+            for name in names {
+                let text = std::fs::read_to_string(root.path().join(name)).unwrap();
+                assert_eq!(text, manifest.name, "{name}");
+            }
+        }
     }
 
     #[test]

@@ -198,10 +198,10 @@ impl Kind {
 
 fn float_within(value: &Value, min: f64, max: f64) -> Option<Value> {
     // Beyond 2^53 a whole number would change on its way to a float; no key has use for such.
-    const LARGEST_EXACT: i64 = 1 << 53;
+    const LARGEST_EXACT: u64 = 1 << 53;
     let number = match *value {
         Value::Float(number) => number,
-        Value::Integer(number) if number.abs() <= LARGEST_EXACT => number as f64,
+        Value::Integer(number) if number.unsigned_abs() <= LARGEST_EXACT => number as f64,
         _ => return None,
     };
     (number.is_finite() && (min..=max).contains(&number)).then_some(Value::Float(number))
@@ -242,5 +242,22 @@ impl Bound for f64 {
 
     fn is_open(&self) -> bool {
         self.abs() == f64::MAX || self.is_infinite()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Kind, Value};
+
+    /// Its magnitude is no i64, and no float holds its neighbors.
+    #[test]
+    fn whole_numbers_that_a_float_would_change_are_no_floats() {
+        let kind = Kind::Float { min: f64::MIN, max: f64::MAX };
+        for number in [i64::MIN, i64::MIN + 1, i64::MAX, (1 << 53) + 1, -(1 << 53) - 1] {
+            assert!(kind.admit(&Value::Integer(number)).is_err(), "{number}");
+        }
+        for number in [1 << 53, -(1 << 53)] {
+            assert_eq!(kind.admit(&Value::Integer(number)), Ok(Value::Float(number as f64)));
+        }
     }
 }

@@ -90,13 +90,15 @@ pub fn apply_override(document: &mut Document, argument: &str) -> Result<(), Set
     else {
         return document.apply_override(argument);
     };
-    let is_chosen = document
-        .get("estimator.name")
-        .is_some_and(|leaf| leaf.value.as_str() == Some(name.trim_matches('"')));
-    if !is_chosen {
+    let choice = format!("estimator.name={name}");
+    // However the name is quoted, it is the value that chooses.
+    let mut chosen = document.clone();
+    chosen.apply_override(&choice)?;
+    let name_in = |document: &Document| document.get("estimator.name").map(|leaf| leaf.value.clone());
+    if name_in(document) != name_in(&chosen) {
         document.clear_table("estimator");
     }
-    document.apply_override(&format!("estimator.name={name}"))
+    document.apply_override(&choice)
 }
 
 enum Fault {

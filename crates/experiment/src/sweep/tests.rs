@@ -69,7 +69,9 @@ fn the_short_form_leaves_out_what_belongs_to_another_estimator() {
         document.leaves().iter().map(|leaf| format!("{}={}", leaf.key, leaf.value)).collect()
     };
     assert_eq!(keys(&["estimator=ols"]), ["estimator.name=\"ols\""]);
-    assert_eq!(keys(&["estimator=pinn"]), ["estimator.name=\"pinn\"", "estimator.hidden=[3]"]);
+    for same in ["estimator=pinn", "estimator=\"pinn\"", "estimator='pinn'", "estimator = 'pinn' "] {
+        assert_eq!(keys(&[same]), ["estimator.name=\"pinn\"", "estimator.hidden=[3]"], "{same}");
+    }
     assert_eq!(
         keys(&["estimator.steps=1", "estimator=ols"]),
         ["estimator.steps=1", "estimator.name=\"ols\""]

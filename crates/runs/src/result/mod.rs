@@ -178,7 +178,7 @@ pub struct EstimateSummary {
     pub zeta_std_error: Option<f64>,
     /// 95 % interval of ζ, where the estimator states one.
     pub zeta_interval_95: Option<[f64; 2]>,
-    /// `"converged"`, `"budget_spent"`, `"diverged"` or `"interrupted"`.
+    /// `"converged"`, `"budget_spent"`, `"diverged"`, `"stalled"` or `"interrupted"`.
     pub reached: String,
     /// What stopped the training, in a sentence.
     pub stopped_because: String,
