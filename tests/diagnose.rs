@@ -62,6 +62,7 @@ fn check_contract(found: &Value) {
     assert!(["none", "calibration", "effect", "unknown"].contains(&verdict["status"].as_str().unwrap()));
     assert!(verdict["effects"].as_array().unwrap().iter().all(Value::is_string));
     assert!((0.0..=1.0).contains(&number(found, "/verdict/confidence")));
+    assert!((0.0..=1.0).contains(&number(found, "/verdict/left_over")));
     for class in verdict["equivalent"].as_array().unwrap() {
         assert!(class.as_array().unwrap().len() > 1 && class[0].is_string());
     }
@@ -71,6 +72,10 @@ fn check_contract(found: &Value) {
         found["effects"].as_array().unwrap().iter().map(|effect| effect["id"].as_str().unwrap()).collect();
     for id in ["none", "calibration", "unknown"] {
         assert!(ids.contains(&id), "{ids:?}");
+    }
+    // Whatever is named has a probability.
+    for id in verdict["effects"].as_array().unwrap() {
+        assert!(ids.contains(&id.as_str().unwrap()), "{id} {ids:?}");
     }
     let mut last = 1.0;
     for effect in found["effects"].as_array().unwrap() {

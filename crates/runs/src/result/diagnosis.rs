@@ -81,6 +81,10 @@ pub struct DiagnosisVerdict {
     pub effects: Vec<String>,
     /// Probability of this status and of these effects together.
     pub confidence: f64,
+    /// Probability that anything beyond noise is left beside these effects, however little of the gap it is; absent from answers
+    /// before it was written.
+    #[serde(default)]
+    pub left_over: Option<f64>,
     /// Classes of effects that these data cannot tell apart.
     pub equivalent: Vec<Vec<String>>,
     /// One plain sentence.

@@ -36,6 +36,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             status: status(found.verdict.status).to_owned(),
             effects: owned(&found.verdict.effects),
             confidence: found.verdict.confidence,
+            left_over: Some(found.verdict.left_over),
             equivalent: found.verdict.equivalent.iter().map(|class| owned(class)).collect(),
             summary: sentence::verdict(found),
         },
