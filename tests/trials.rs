@@ -142,6 +142,11 @@ fn trials_are_blind_sealed_and_resumable() {
     let (code, message) = said(&resume);
     assert!(code == 2 && message.contains("the truths are open, and 1 answers are missing"), "{message}");
 
+    // The values decide, not where each was written: the folder's own configuration is the one it was begun with.
+    let own = root.join("config.toml");
+    let (code, message) = said(&["trials", own.to_str().unwrap(), "--out", out, "--resume"]);
+    assert!(code == 2 && message.contains("the truths are open"), "{message}");
+
     // Another configuration is another experiment.
     let (code, message) = said(&[&resume[..], &["trials.single=5"]].concat());
     assert_eq!(code, 2, "{message}");

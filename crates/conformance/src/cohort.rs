@@ -56,7 +56,7 @@ const QUANTILE_975: f64 = 1.959_963_984_540_054;
 /// envelope or a tenth of its length beyond.
 ///
 /// # Errors
-/// A sentence where a fit fails or states no interval of λ.
+/// A sentence where a fit fails, states no interval of λ, or one that no distribution has.
 pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String> {
     const RATE: f64 = 0.19;
     const SCATTER: f64 = 0.1;
@@ -72,8 +72,9 @@ pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String>
             subject.read(&envelope, subject.seed_of_draw(draw), None).map_err(|error| error.to_string())?;
         let known = estimate.uncertainty.ok_or_else(|| format!("draw {draw}: no interval"))?;
         let [low, high] = known.interval_95;
-        let level = level(&known, estimate.decay_rate, RATE);
-        cohort.calibration.levels.extend(level);
+        let level = level(&known, estimate.decay_rate, RATE)
+            .ok_or_else(|| format!("draw {draw}: no distribution has {known:?}"))?;
+        cohort.calibration.levels.push(level);
         cohort.rates.count((low..=high).contains(&RATE));
         let asked: Vec<_> = query_times(&envelope).into_iter().zip(&estimate.predictions).collect();
         // Another place in every envelope, so that the peaks are independent.
@@ -87,4 +88,54 @@ pub fn coverage(subject: &Subject<'_>, envelopes: u64) -> Result<Cohort, String>
     }
     cohort.calibration.levels.sort_by(f64::total_cmp);
     Ok(cohort)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::coverage;
+    use crate::Subject;
+    use envelope::Envelope;
+    use estimator::{
+        Entry, Estimate, Estimator, FitContext, FitError, Prediction, Reached, Stop, Uncertainty,
+    };
+
+    /// States the right rate and an interval of half-width 0.5 with this standard error.
+    struct Stating(f64);
+
+    impl Estimator for Stating {
+        fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
+            Ok(Estimate {
+                decay_rate: 0.19,
+                log_amplitude: -0.6,
+                uncertainty: Some(Uncertainty { std_error: self.0, interval_95: [-0.31, 0.69] }),
+                stop: Stop { reached: Reached::Converged, because: String::new() },
+                steps: 1,
+                parameters: 2,
+                fitted_log_amplitudes: envelope.log_amplitudes().to_vec(),
+                predictions: context.query_times().iter().map(|_| Prediction::new(-0.6, None)).collect(),
+                equation: None,
+                model: None,
+            })
+        }
+    }
+
+    #[test]
+    fn a_posterior_that_no_distribution_has_is_said() {
+        let entry = |build| Entry {
+            id: "stating",
+            paper_number: None,
+            title: "",
+            summary: "",
+            tags: &[],
+            citations: &[],
+            fields: &[],
+            build,
+        };
+        let sound = entry(|_| Ok(Box::new(Stating(0.25))));
+        let found = coverage(&Subject::new(&sound).unwrap(), 3).unwrap();
+        assert_eq!((found.rates.held, found.calibration.levels.len()), (3, 3));
+        let unsound = entry(|_| Ok(Box::new(Stating(0.0))));
+        let refused = coverage(&Subject::new(&unsound).unwrap(), 3).unwrap_err();
+        assert!(refused.contains("draw 0: no distribution has"), "{refused}");
+    }
 }

@@ -8,9 +8,9 @@ use crate::scalar::Scalar;
 pub(crate) enum Edge {
     /// The velocity changes its sign.
     Reversal,
-    /// The torque exceeds what dry friction holds, towards positive or negative positions.
+    /// The torque exceeds what dry friction holds, toward positive or negative positions.
     BreakAway {
-        /// Whether towards positive positions.
+        /// Whether toward positive positions.
         forward: bool,
     },
     /// An effect leaves its region.
@@ -50,7 +50,7 @@ impl<S: Scalar> Field<S> {
         }
     }
 
-    /// The signed distance to one edge; infinite (by `far`) where the present piece does not have it.
+    /// The signed distance to one edge; `None` where the present piece does not have it.
     pub(crate) fn distance(&self, directed: bool, state: &State<S>, mode: &Mode, edge: Edge) -> Option<S> {
         let mut found = None;
         self.edges(directed, state, mode, |other, margin| {

@@ -132,7 +132,7 @@ impl<'a> FitContext<'a> {
     /// # Errors
     /// [`FitError::Checkpoint`] where it cannot be kept.
     pub fn checkpoint<T: Serialize>(&self, step: u64, state: impl FnOnce() -> T) -> Result<(), FitError> {
-        let Some(checkpoints) = self.checkpoints.filter(|place| place.is_due() || self.is_cancelled()) else {
+        let Some(checkpoints) = self.checkpoints.filter(|place| place.is_due() || self.is_canceled()) else {
             return Ok(());
         };
         let refused = |problem| FitError::Checkpoint { problem };
@@ -166,7 +166,7 @@ impl<'a> FitContext<'a> {
 
     /// Whether the fit should stop after its current step.
     #[must_use]
-    pub fn is_cancelled(&self) -> bool {
+    pub fn is_canceled(&self) -> bool {
         self.cancel.is_requested()
     }
 }

@@ -65,8 +65,9 @@ impl Uncertainty {
     }
 }
 
-/// What a fitted estimator says of a peak it may not have seen.
+/// What a fitted estimator says of a peak it may not have seen. Only [`Prediction::new`] makes one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[non_exhaustive]
 pub struct Prediction {
     /// ln A at the time asked about, the amplitude in the record's unit: the fitted function's own value.
     ///

@@ -111,7 +111,7 @@ impl Reconstruction {
                 decay_rate: scaling
                     .rate_per_centered_time(objective.code(state.parameters).map_or(f64::NAN, |c| c.rate)),
             });
-            if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if context.is_canceled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         if !minimum.loss.is_finite() {
             return Err(FitError::NotFinite { loss: minimum.loss });
@@ -133,7 +133,7 @@ impl Reconstruction {
         let predict = |&time: &f64| {
             let s = scaling.centered_time(time);
             let std_error = knowledge.map(|known| scaling.deviation(known.prediction_std_error(s)));
-            Prediction { log_amplitude: fitted(s), std_error }
+            Prediction::new(fitted(s), std_error)
         };
         Ok(Estimate {
             decay_rate,

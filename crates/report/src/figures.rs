@@ -9,7 +9,7 @@ use crate::format;
 use crate::parse::Run;
 use crate::plot::{Axis, Drawing, Hue, Mark, Plot, Series};
 
-/// Rows of CSV under one plot, beyond which only every so-manieth is kept.
+/// Rows of CSV under one plot, beyond which only every n-th is kept.
 const MOST_ROWS: usize = 3_000;
 /// Entries of one legend, beyond which the rest is counted.
 const MOST_ENTRIES: usize = 10;

@@ -4,6 +4,8 @@
 //! no break between a number and what belongs to it. Digits follow the uncertainty where one is
 //! known: two significant digits of the standard error, and the value to the same decimal place.
 
+use runs::result::WithInterval;
+
 /// Keeps a number and its unit, or the parts of one number, on one line.
 const NO_BREAK: char = '\u{a0}';
 /// Separates groups of three digits (ISO 80000-1).
@@ -104,6 +106,26 @@ pub fn interval(ends: [f64; 2]) -> String {
 #[must_use]
 pub fn percent(value: f64) -> String {
     quantity(&significant(value, 2), "%")
+}
+
+/// A share in percent, a decimal behind the point; three where a share below 1 would look like the whole: `99.970 %`.
+#[must_use]
+pub fn share(value: f64) -> String {
+    let left = (1.0 - value).abs();
+    quantity(&fixed(100.0 * value, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
+}
+
+/// A share with its interval: `71.0 % [65.2 %, 77.1 %]`.
+#[must_use]
+pub fn share_with_interval(of: &WithInterval) -> String {
+    let [low, high] = of.interval_95.map(share);
+    format!("{} [{low}, {high}]", share(of.value))
+}
+
+/// A unit symbol as it stands behind a number: that of a pure number, `1`, says nothing.
+#[must_use]
+pub fn unit(symbol: &str) -> &str {
+    if symbol == "1" { "" } else { symbol }
 }
 
 /// A span of time to three significant digits, in the unit from nanoseconds to seconds that leaves
@@ -294,6 +316,18 @@ mod tests {
         assert_eq!(interval([0.181_98, 0.199_94]), "[0.1820, 0.1999]");
         assert_eq!(plain(&interval([-2.0e-7, 3.0e-7])), "[−2.0, 3.0] × 10⁻⁷");
         assert_eq!(interval([1.0, 1.0]), "[1.0000000, 1.0000000]");
+    }
+
+    #[test]
+    fn no_share_looks_like_the_whole_that_is_less() {
+        assert_eq!(plain(&share(0.711)), "71.1 %");
+        assert_eq!(plain(&share(0.9997)), "99.970 %");
+        assert_eq!(plain(&share(1.0)), "100.0 %");
+        assert_eq!(
+            plain(&share_with_interval(&WithInterval { value: 0.5, interval_95: [-0.1, 1.0] })),
+            "50.0 % [−10.0 %, 100.0 %]"
+        );
+        assert_eq!([unit("1"), unit("N m")], ["", "N m"]);
     }
 
     #[test]

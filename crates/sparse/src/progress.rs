@@ -57,7 +57,7 @@ impl<'a> Progress<'a> {
     /// # Errors
     /// [`Halt`] where the budget is spent or somebody asked to stop.
     pub fn advance(&mut self) -> Result<(), Halt> {
-        if self.context.is_cancelled() {
+        if self.context.is_canceled() {
             return Err(Halt::Interrupted);
         }
         if self.steps >= self.limit {

@@ -352,7 +352,7 @@ fn dry_friction_is_followed_to_its_rest() {
             let off = prediction.log_amplitude.exp() - amplitude(*time);
             assert!(off.abs() < 1e-6, "{time}: {off:e} {prediction:?}");
         } else {
-            assert_eq!(*prediction, Prediction { log_amplitude: f64::NEG_INFINITY, std_error: None });
+            assert_eq!(*prediction, Prediction::new(f64::NEG_INFINITY, None));
         }
     }
     assert_eq!(estimate.first_without_prediction(&times), Some(25.0));

@@ -7,7 +7,7 @@ use crate::edges::Edge;
 /// Part of a step over which a margin's slope is taken: its cube is far below what a visit behind an edge does.
 const SLOPE: f64 = 1e-5;
 
-/// How a step towards an edge ended.
+/// How a step toward an edge ended.
 pub(super) enum Landing {
     /// On the edge.
     OnTheEdge,

@@ -258,7 +258,7 @@ fn the_input_acts_as_held_delayed_and_clipped() {
 
 #[test]
 fn a_failing_landing_repeats_the_step() {
-    // Regression: at this tolerance a step towards the end of the pre-sliding failed to converge when it was
+    // Regression: at this tolerance a step toward the end of the pre-sliding failed to converge when it was
     // cut to end there, and the stale polynomial of the uncut step was taken.
     let system = with(nominal(), &[("hysteresis", &[0.3, 0.002]), ("stribeck_friction", &[0.05, 0.2, 0.5])]);
     let times = grid(3.0, 1000.0);

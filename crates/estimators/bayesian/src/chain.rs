@@ -189,7 +189,7 @@ impl Moments {
         self.products += before * (position - self.mean).transpose();
     }
 
-    /// The covariance, its correlations shrunk by 5/(n + 5) as Stan shrinks its own, but towards the
+    /// The covariance, its correlations shrunk by 5/(n + 5) as Stan shrinks its own, but toward the
     /// covariance's own diagonal: a fixed one would drown a posterior that is narrower.
     fn metric(&self) -> Option<Metric> {
         if self.count < 2.0 {

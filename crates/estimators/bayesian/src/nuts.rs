@@ -127,7 +127,7 @@ impl<D: LogDensity, G: Rng> Trajectory<'_, D, G> {
             let Some(new) = self.extend(far, depth, direction, energy, &mut tally) else {
                 break;
             };
-            // Biased towards the new half: it is accepted by the ratio of weights.
+            // Biased toward the new half: it is accepted by the ratio of weights.
             if self.accepts(new.log_weight - whole.log_weight) {
                 whole.draw = new.draw;
             }

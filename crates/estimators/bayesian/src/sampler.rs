@@ -63,7 +63,7 @@ impl Sample {
             let drawn = steps.saturating_sub(config.warm_up);
             sum += if drawn > 0 { here } else { 0.0 };
             watch(steps, loss, if drawn > 0 { sum / drawn as f64 } else { here });
-            if context.is_cancelled() {
+            if context.is_canceled() {
                 break true;
             }
             if steps >= limit {

@@ -91,7 +91,7 @@ impl EnvelopeMatchingConfig {
                 loss: at.loss / matching.len() as f64,
                 decay_rate: matching.scaling.rate_per_unit_time(parameters.y),
             });
-            if context.is_cancelled() {
+            if context.is_canceled() {
                 break (Reached::Interrupted, format!("interrupted after {steps} steps"));
             }
             if at.loss <= matching.rounding() && steps > 0 {

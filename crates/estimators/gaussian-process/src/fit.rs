@@ -106,7 +106,7 @@ impl GaussianProcessConfig {
                         decay_rate: rate(at),
                     });
                 }
-                if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+                if context.is_canceled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let (Summit { at, ended: how }, taken) =
                 climb(process, &self.bounds(), start, self.tolerance, limit - steps, watch);

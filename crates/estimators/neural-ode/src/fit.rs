@@ -54,7 +54,7 @@ impl Estimator for NeuralOdeConfig {
                 decay_rate,
             });
             told = Some((state.parameters.clone(), decay_rate));
-            if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if context.is_canceled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         if !minimum.loss.is_finite() {
             return Err(FitError::NotFinite { loss: minimum.loss });

@@ -50,7 +50,7 @@ impl Estimator for PinnConfig {
                 loss: state.loss,
                 decay_rate: scaling.rate_per_centered_time(rate_of(state.parameters)),
             });
-            if context.is_cancelled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+            if context.is_canceled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })?;
         if !minimum.loss.is_finite() {
             return Err(FitError::NotFinite { loss: minimum.loss });

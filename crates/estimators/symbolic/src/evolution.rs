@@ -86,7 +86,7 @@ impl Evolution<'_> {
         let (mut generations, mut idle) = (0, 0);
         let mut least = f64::INFINITY;
         let reached = loop {
-            if context.is_cancelled() {
+            if context.is_canceled() {
                 break Reached::Interrupted;
             }
             if idle >= self.config.patience || least <= self.data.rounding() {

@@ -40,7 +40,7 @@ impl Training {
         let mut generator = context.seed("calibration").generator();
         let (mut levels, mut rates) = (Vec::new(), Vec::new());
         while rates.len() < self.calibration {
-            if context.is_cancelled() {
+            if context.is_canceled() {
                 return Ok(None);
             }
             let (sequences, lines): (Vec<_>, Vec<_>) =

@@ -128,7 +128,7 @@ impl<N: Skilled> Amortized<N> {
             let s = scaling.centered_time(time);
             let line = reading.level_std_error.powi(2) + (s * reading.rate_std_error).powi(2);
             let std_error = knows_its_error.then(|| scaling.deviation((scatter + line).sqrt()));
-            Prediction { log_amplitude: fitted(s), std_error }
+            Prediction::new(fitted(s), std_error)
         };
         Ok(Estimate {
             decay_rate,

@@ -128,7 +128,7 @@ impl Training {
                 decay_rate: rate_of(&state.parameters)?,
             });
             let reached = match () {
-                () if context.is_cancelled() => Some(Reached::Interrupted),
+                () if context.is_canceled() => Some(Reached::Interrupted),
                 () if state.steps >= self.max_steps && state.steps > 0 => Some(Reached::Converged),
                 () if state.steps >= limit => Some(Reached::BudgetSpent),
                 () => None,

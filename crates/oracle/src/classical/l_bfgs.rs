@@ -43,7 +43,7 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
 
 /// Minimizes a function from a start until its relative gradient is at most the tolerance.
 ///
-/// Steps fulfil Wolfe's conditions; where the function is flat to rounding, the slope alone decides
+/// Steps fulfill Wolfe's conditions; where the function is flat to rounding, the slope alone decides
 /// (Hager and Zhang's approximate condition), so that the gradient, not the function, limits the digits.
 ///
 /// # Errors
@@ -151,7 +151,7 @@ fn direction(gradient: &[f64], pairs: &VecDeque<Pair>) -> Vec<f64> {
     down
 }
 
-/// Looks along a direction for a step that fulfils Wolfe's conditions; `None` where there is none.
+/// Looks along a direction for a step that fulfills Wolfe's conditions; `None` where there is none.
 fn search(function: &impl SmoothFunction, here: &Point, direction: &[f64], first: bool) -> Option<Point> {
     let slope = dot(&here.gradient, direction);
     if slope.is_nan() || slope >= 0.0 {
@@ -303,7 +303,7 @@ mod tests {
 
     /// Wolfe's conditions, from steep and from hardly falling starts, with directions of any length.
     #[test]
-    fn a_step_that_is_found_fulfils_wolfe_s_conditions() {
+    fn a_step_that_is_found_fulfills_wolfe_s_conditions() {
         let mut found = 0;
         for start in [[-1.2, 1.0], [2.0, -3.0], [0.9, 0.81], [0.0, 0.0]] {
             let here = point(&Valley, &start);

@@ -46,7 +46,7 @@ fn fit(envelope: &Envelope, _: &Seed) -> Result<ClassicalFit, OracleError> {
 /// Jacobian's columns have had, and Δ follows the gains. Converged means that the residuals' projection
 /// on the tangent space is at most the tolerance times their length, rounding errors apart, with a
 /// Jacobian of full rank: no criterion on the size of a step or a gain, which a valley or a plateau
-/// fulfils just as well. Where gains drown in rounding, steps are accepted by the projection.
+/// fulfills just as well. Where gains drown in rounding, steps are accepted by the projection.
 ///
 /// # Errors
 /// [`OracleError::NotFinite`] where a residual is not finite at the start, [`OracleError::TooFewRows`]

@@ -58,7 +58,7 @@ pub(super) fn factorize(mut columns: Vec<Vec<f64>>, mut y: Vec<f64>) -> Factor {
         let Some(pivot) = done.last_mut() else { break };
         let mut normal = pivot.get(step..).unwrap_or_default().to_vec();
         let Some(head) = normal.first_mut() else { break };
-        // The sign that adds to the head instead of cancelling.
+        // The sign that adds to the head instead of canceling.
         let image = -length(pivot.get(step..).unwrap_or_default()).copysign(*head);
         *head -= image;
         let square = dot(&normal, &normal);

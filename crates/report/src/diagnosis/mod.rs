@@ -124,8 +124,9 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
     }
     if result.samples_used < 0.9999 {
         warnings.push(format!(
-            "The records are long: {} of their samples were used, whole stretches evenly spaced.",
-            format::quantity(&format::fixed(100.0 * result.samples_used, 1), "%")
+            "The records are long: {} of their samples were used: every n-th as far as a swing stays well sampled, \
+             then whole stretches, evenly spaced.",
+            format::share(result.samples_used)
         ));
     }
     warnings

@@ -133,8 +133,8 @@ fn zoom(result: &DiagnosisResult, worst: &Worst<'_>) -> Option<Figure> {
         if result.records.len() > 1 { format!(" of record {}", worst.record) } else { String::new() }
     );
     let explanation = "Record and simulators where the recalibrated one is farthest off. Each simulator starts this \
-                       stretch from the state that suits it best; its coefficients were fitted to other stretches. \
-                       The simulator as given was not fitted at all."
+                       stretch from the state that suits it best; coefficients were fitted to other stretches, but for the \
+                       simulator as given, which keeps its own."
         .to_owned();
     let table =
         csv(&["time_s", "observed", "given", "recalibrated", "repaired"], worst.rows, |row: &SeriesRow| {

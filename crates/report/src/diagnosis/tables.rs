@@ -1,9 +1,9 @@
 //! The tables of a diagnosis: which number stands where, and to how many digits.
 
-use runs::result::{CalibratedRow, DiagnosisResult, GapSummary, RecordRow, WithInterval};
+use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, GapSummary, RecordRow, WithInterval};
 
 use super::title;
-use crate::format::{fixed, interval, quantity, significant};
+use crate::format::{self, fixed, interval, quantity, share_with_interval, significant, unit};
 use crate::tables::{Fact, fact, whole};
 
 /// A simulator and how far it is off.
@@ -50,8 +50,8 @@ pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     let mut notes = vec![format!(
         "Closed of the whole gap: {}; of what recalibration leaves: {}. Closure compares squares above the noise \
          floor, so that 99 % can still be several floors: the ratio to the floor says more.",
-        share(&gap.closure),
-        share(&gap.closure_of_recalibrated)
+        share_with_interval(&gap.closure),
+        share_with_interval(&gap.closure_of_recalibrated)
     )];
     let [recalibrated, repaired] = gap.last_third;
     if recalibrated.is_finite() && repaired.is_finite() {
@@ -68,17 +68,6 @@ pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
         gap.held_out
     ));
     notes
-}
-
-/// A share with its interval, in percent.
-fn share(of: &WithInterval) -> String {
-    let [low, high] = of.interval_95;
-    format!("{} [{}, {}]", percent(of.value), percent(low), percent(high))
-}
-
-fn percent(share: f64) -> String {
-    let left = (1.0 - share).abs();
-    quantity(&fixed(100.0 * share, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
 }
 
 /// An effect as it stands in the table.
@@ -112,7 +101,7 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
                     format!("{} = {value}, 95 %: {}", name.replace('_', " "), interval(parameter.interval_95))
                 })
                 .collect(),
-            share: row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share),
+            share: row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share_with_interval),
             is_named: result.verdict.effects.contains(&row.id),
         })
         .collect()
@@ -120,11 +109,6 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
 
 fn probability(value: f64) -> String {
     if value > 0.0 && value < 5e-4 { "< 0.001".to_owned() } else { fixed(value, 3) }
-}
-
-/// A unit symbol; that of a pure number says nothing.
-fn unit(symbol: &str) -> &str {
-    if symbol == "1" { "" } else { symbol }
 }
 
 /// What can and what cannot be told apart, in sentences.
@@ -135,8 +119,11 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
         .filter(|rival| rival.distance.is_finite())
         .take(4)
         .map(|rival| {
-            let verdict =
-                if rival.distance < 3.29 { "cannot be told apart here" } else { "told apart on these data" };
+            let verdict = if rival.distance < DISTINCT_DISTANCE {
+                "cannot be told apart here"
+            } else {
+                "told apart on these data"
+            };
             format!(
                 "{} and {}: {} noise units between the best fits, {verdict}.",
                 title(result, &rival.effect),
@@ -210,7 +197,7 @@ pub(super) fn chain(result: &DiagnosisResult) -> Vec<Fact> {
             ),
         ),
         fact("Noise, standard deviation", quantity(&significant(chain.noise, 3), &result.gap.unit)),
-        fact("Samples used", percent(result.samples_used)),
+        fact("Samples used", format::share(result.samples_used)),
     ]
 }
 

@@ -9,6 +9,10 @@ use std::collections::BTreeMap;
 /// The `schema` field of a diagnosis.
 pub const DIAGNOSIS_SCHEMA: &str = "ringdown.diagnosis/1";
 
+/// Distance of two best fits in noise units from which on two explanations are told apart; below it they are one class. Two
+/// times 1.645, so that either is mistaken for the other in one of twenty records.
+pub const DISTINCT_DISTANCE: f64 = 3.29;
+
 /// A diagnosis of the gap between a nominal simulator and records of one system.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiagnosisResult {
@@ -317,7 +321,7 @@ pub struct RivalRow {
     pub effect: String,
     /// What could stand in its place.
     pub rival: String,
-    /// Distance of the two best fits in noise units; below 3.29 they are one class.
+    /// Distance of the two best fits in noise units; below [`DISTINCT_DISTANCE`] they are one class.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub distance: f64,
 }

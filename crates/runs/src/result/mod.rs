@@ -14,9 +14,9 @@ mod trials;
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
     Backbone, BackbonePoint, BatchResult, BudgetShares, CalibratedRow, Calibration, ChainFinding,
-    ChainSummary, DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation,
-    FailedCase, GapMaps, GapSummary, MapCell, NextExperiment, ParameterRow, RecordRow, RivalRow, SeriesRow,
-    SetRow, StageRow, SurfaceCell, WithInterval,
+    ChainSummary, DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
+    EffectRow, Equation, FailedCase, GapMaps, GapSummary, MapCell, NextExperiment, ParameterRow, RecordRow,
+    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

@@ -39,7 +39,7 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
             "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
              that were not fitted{rest}.",
             lacking(found),
-            if gap.closure.value >= 1.0 { "all".to_owned() } else { percent(gap.closure.value) }
+            if gap.closure.value >= 1.0 { "all".to_owned() } else { closed(gap.closure.value) }
         ),
         Status::Unknown => format!(
             "Something is missing that no known effect explains: the best named model leaves {floor}, and what it \
@@ -106,9 +106,7 @@ pub(crate) fn no_experiment(found: &Diagnosis) -> &'static str {
     }
 }
 
-/// A share in percent; not beyond what its rounding can carry near 1.
-pub(crate) fn percent(share: f64) -> String {
-    let left = (1.0 - share).abs();
-    let decimals = if left < 0.001 && left > 0.0 { 3 } else { 1 };
-    format!("{} %", format::fixed(100.0 * share, decimals))
+/// A share in words that a file keeps: with an ordinary space, which whoever searches it types.
+fn closed(share: f64) -> String {
+    format::share(share).replace('\u{a0}', " ")
 }

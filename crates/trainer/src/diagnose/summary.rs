@@ -1,13 +1,10 @@
 //! The terminal's answer: one screen.
 
-use super::sentence::percent;
 use crate::summary::table;
-use report::format::{interval, quantity, significant};
-use runs::result::{CalibratedRow, DiagnosisResult, EffectRow, MapCell, WithInterval};
+use report::format::{self, interval, quantity, share_with_interval, significant, unit};
+use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, EffectRow, MapCell, WithInterval};
 use std::path::Path;
 
-/// Distance in noise units from which on two explanations are told apart.
-const DISTINCT: f64 = 3.29;
 /// Effects listed; the rest is counted.
 const MOST_EFFECTS: usize = 6;
 
@@ -37,7 +34,7 @@ fn verdict(result: &DiagnosisResult) -> String {
         "effect" => "MISSING EFFECT",
         _ => "UNKNOWN",
     };
-    let confidence = percent(result.verdict.confidence);
+    let confidence = format::share(result.verdict.confidence);
     format!("{label} (confidence in exactly this: {confidence})\n{}", result.verdict.summary)
 }
 
@@ -48,7 +45,7 @@ fn gap(result: &DiagnosisResult) -> String {
             if gap.noise_floor > 0.0 { significant(value / gap.noise_floor, 3) } else { "–".to_owned() };
         vec![name.to_owned(), quantity(&significant(value, 3), &gap.unit), ratio, note]
     };
-    let closed = |of: &WithInterval| format!("closes {}", share(of));
+    let closed = |of: &WithInterval| format!("closes {}", share_with_interval(of));
     let same = gap.repaired == gap.recalibrated;
     let mut rows = vec![
         row("simulator as given", gap.nominal, String::new()),
@@ -62,15 +59,12 @@ fn gap(result: &DiagnosisResult) -> String {
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
     if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same) {
-        note.push_str(&format!(", {} of what recalibration leaves", share(&gap.closure_of_recalibrated)));
+        note.push_str(&format!(
+            ", {} of what recalibration leaves",
+            share_with_interval(&gap.closure_of_recalibrated)
+        ));
     }
     table(&["held-out error", "RMS", "floors", ""], rows)
-}
-
-/// A share with its interval, in percent.
-fn share(of: &WithInterval) -> String {
-    let [low, high] = of.interval_95;
-    format!("{} [{}, {}]", percent(of.value), percent(low), percent(high))
 }
 
 fn effects(result: &DiagnosisResult) -> String {
@@ -95,7 +89,7 @@ fn effects(result: &DiagnosisResult) -> String {
             vec![
                 row.id.clone(),
                 significant(row.probability, 2),
-                row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share),
+                row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share_with_interval),
                 coefficients.join("\n"),
             ]
         })
@@ -108,11 +102,6 @@ fn effects(result: &DiagnosisResult) -> String {
     text
 }
 
-/// A unit symbol; that of a pure number says nothing.
-fn unit(symbol: &str) -> &str {
-    if symbol == "1" { "" } else { symbol }
-}
-
 fn apart(result: &DiagnosisResult) -> String {
     let mut lines: Vec<String> = result
         .verdict
@@ -123,7 +112,7 @@ fn apart(result: &DiagnosisResult) -> String {
     if lines.is_empty() {
         lines.push(match result.rivals.first() {
             Some(rival) if rival.distance.is_finite() => format!(
-                "told apart: closest to {} is {}, {} noise units away (one class below 3.29)",
+                "told apart: closest to {} is {}, {} noise units away (one class below {DISTINCT_DISTANCE})",
                 rival.effect,
                 rival.rival,
                 significant(rival.distance, 2)
@@ -132,7 +121,7 @@ fn apart(result: &DiagnosisResult) -> String {
         });
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
-        let enough = if distance < DISTINCT { ", too little by itself" } else { "" };
+        let enough = if distance < DISTINCT_DISTANCE { ", too little by itself" } else { "" };
         format!(" (predicted distance {}{enough})", significant(distance, 2))
     });
     lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
@@ -152,7 +141,7 @@ fn whereabouts(result: &DiagnosisResult) -> String {
     let named: Vec<String> = shares
         .iter()
         .filter(|(_, share)| *share >= 0.005)
-        .map(|(name, share)| format!("{name} {}", percent(*share)))
+        .map(|(name, share)| format!("{name} {}", format::share(*share)))
         .collect();
     let kinds = if named.is_empty() {
         "the gap beyond recalibration: none worth dividing".to_owned()
@@ -239,8 +228,8 @@ fn chain(result: &DiagnosisResult) -> String {
     }
     if result.samples_used < 0.9999 {
         lines.push(format!(
-            "  {} of the samples were used: whole stretches, evenly spaced",
-            percent(result.samples_used)
+            "  {} of the samples were used: every n-th as far as a swing stays well sampled, then whole stretches, evenly spaced",
+            format::share(result.samples_used)
         ));
     }
     lines.join("\n")

@@ -173,7 +173,10 @@ fn compare(method: &Units, exponential: &Units) -> PairedComparison {
         let (Some(error), Some(reference)) = (method.mean_square(unit), exponential.mean_square(unit)) else {
             continue;
         };
-        if (error - reference).abs() <= EQUAL * reference {
+        // Two that are infinite are equal without having a difference; no share of an infinite one is a difference.
+        let is_equal = error.total_cmp(&reference).is_eq()
+            || reference.is_finite() && (error - reference).abs() <= EQUAL * reference;
+        if is_equal {
             equal += 1;
         } else if error < reference {
             better += 1;
@@ -288,8 +291,10 @@ pub(crate) fn form(law: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{adjust, form};
+    use super::{Units, adjust, compare, form};
     use runs::result::PairedComparison;
+    use scoring::HeldOutPeak;
+    use std::collections::BTreeMap;
 
     #[test]
     fn the_form_of_a_law_is_its_text_without_its_numbers() {
@@ -297,6 +302,30 @@ mod tests {
         assert_eq!(form("d ln A/dt = 2 A^2 + 0.5 (ln A - 1.5)^2"), "d ln A/dt = c A^2 + c (ln A - c)^2");
         assert_eq!(form("ln A = 0.3 - 2E+07*t1"), "ln A = c - c*t1");
         assert_eq!(form(""), "");
+    }
+
+    /// Draw by draw: both failed; the method; the exponential; both came to rest too early; both are off alike; the method is
+    /// off by less.
+    #[test]
+    fn what_fails_where_the_exponential_fails_is_no_worse() {
+        let units = |predictions: [Option<f64>; 6]| {
+            let mut units = Units { peaks: BTreeMap::new(), lost: BTreeMap::new(), is_record: false };
+            for (draw, predicted) in predictions.into_iter().enumerate() {
+                match predicted {
+                    Some(predicted) => {
+                        let peak = HeldOutPeak { observed: 0.0, predicted, std_error: None };
+                        units.peaks.insert(draw, vec![peak]);
+                    }
+                    None => drop(units.lost.insert(draw, 1)),
+                }
+            }
+            units
+        };
+        let rest = Some(f64::NEG_INFINITY);
+        let method = units([None, None, Some(0.1), rest, Some(0.1), Some(0.1)]);
+        let exponential = units([None, Some(0.1), None, rest, Some(0.1), Some(0.2)]);
+        let found = compare(&method, &exponential);
+        assert_eq!((found.better, found.worse, found.equal), (2, 1, 3));
     }
 
     #[test]

@@ -157,8 +157,12 @@ impl Ledger {
     }
 }
 
+/// The file of a fit's state: what of the name every system takes, and a digest, since names may differ in the rest alone.
 fn state_file(name: &str) -> String {
-    format!("{}{STATE}", name.replace(|c: char| !c.is_ascii_alphanumeric(), "-"))
+    let shown = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
+    let whole = digest(name.as_bytes());
+    let digest: String = whole.trim_start_matches("sha256:").chars().take(16).collect();
+    format!("{shown}-{digest}{STATE}")
 }
 
 fn encode<T: Serialize>(name: &str, value: &T) -> Result<Vec<u8>, TrainerError> {
@@ -172,5 +176,20 @@ fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, String> {
         Ok((value, [])) => Ok(value),
         Ok((_, rest)) => Err(format!("{} bytes too many", rest.len())),
         Err(error) => Err(error.to_string()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::state_file;
+
+    #[test]
+    fn names_that_differ_in_punctuation_have_files_of_their_own() {
+        let names = ["a b/1", "a-b/1", "a b 1", "a-b-1"];
+        let files: std::collections::BTreeSet<String> = names.into_iter().map(state_file).collect();
+        assert_eq!(files.len(), names.len());
+        for file in files {
+            assert!(file.starts_with("a-b-1-") && file.ends_with(".state"), "{file}");
+        }
     }
 }

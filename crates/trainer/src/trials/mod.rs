@@ -18,6 +18,7 @@ use crate::rerender::write_report;
 use crate::run::{new_folder, read_config, thread_pool};
 use arguments::TrialsArguments;
 use estimator::Cancel;
+use experiment::sweep::first_difference;
 use open::Opened;
 use rayon::ThreadPool;
 use runs::result::{LeftOutBank, TrialsManifest};
@@ -95,7 +96,10 @@ fn begin(
         let folder = RunFolder::resume_on(&Disk::default(), path)?;
         let file = path.join("config.toml").display().to_string();
         let begun = open::text(&folder, "config.toml")?;
-        if let Some(difference) = open::first_difference(&begun, &config) {
+        let then = Document::parse(&file, &begun)?;
+        let now = Document::parse("configuration", &config)?;
+        // By value: where each was written stands in the comments, and may have changed.
+        if let Some(difference) = first_difference(&then, &now) {
             return Err(TrialsError::Edited { file, difference }.into());
         }
         folder.record_event("resume", &json!({ "threads": pool.current_num_threads() }))?;

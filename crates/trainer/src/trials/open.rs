@@ -63,22 +63,6 @@ pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError
     })
 }
 
-/// The first line in which two texts differ, in words; `None` where they do not.
-pub(crate) fn first_difference(before: &str, now: &str) -> Option<String> {
-    let (mut before, mut now) = (before.lines(), now.lines());
-    loop {
-        match (before.next(), now.next()) {
-            (None, None) => return None,
-            (one, other) if one == other => (),
-            (one, other) => {
-                let shown =
-                    |line: Option<&str>| line.map_or("nothing".to_owned(), |line| format!("`{line}`"));
-                return Some(format!("{} then, {} now", shown(one), shown(other)));
-            }
-        }
-    }
-}
-
 /// Opens every truth and reads every answer. `failed` says why an answer is missing, where that is known.
 pub(crate) fn open(
     folder: &RunFolder,
@@ -166,16 +150,4 @@ fn answer(
         return Err(TrialsError::OtherRecords { file, stated: stated.join(" "), found: found.join(" ") });
     }
     Ok(Ok(answer))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::first_difference;
-
-    #[test]
-    fn differences_are_said_by_line() {
-        assert_eq!(first_difference("a\nb\n", "a\nb"), None);
-        assert_eq!(first_difference("a\nb", "a\nc").unwrap(), "`b` then, `c` now");
-        assert_eq!(first_difference("a", "a\nc").unwrap(), "nothing then, `c` now");
-    }
 }

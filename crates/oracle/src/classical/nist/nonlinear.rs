@@ -145,7 +145,7 @@ fn whatever_is_called_converged_is_stationary() {
     }
 }
 
-/// Each parameter in turn is kept 2 % away from its certified value, towards 0: its bound has to bind, with
+/// Each parameter in turn is kept 2 % away from its certified value, toward 0: its bound has to bind, with
 /// the descent pressing against it, and the gradient to vanish in the others.
 #[test]
 fn bounds_are_met_where_they_bind() {
