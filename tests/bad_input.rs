@@ -126,7 +126,7 @@ fn a_line_cut_short() {
 
 #[test]
 fn a_file_of_another_kind() {
-    let commas = decay(50).replace(',', ";").replace('.', ",").replace(';', ",");
+    let commas = decay(50).replace('.', ",");
     refused(commas.as_bytes(), &[], &["record.csv:2: 4 fields under a header of 2", "decimal points"]);
     let semicolons = decay(50).replace(',', ";");
     refused(semicolons.as_bytes(), &[], &["record.csv:1: ", "is separated by semicolons; expected commas"]);

@@ -62,7 +62,7 @@ fn row_text(run: &KeptRun) -> Vec<String> {
         run.estimator.clone(),
         state,
         said,
-        error.map_or_else(String::new, |error| two_digits(error)),
+        error.map_or_else(String::new, two_digits),
         run.began(),
     ]
 }
