@@ -80,5 +80,5 @@ fn the_short_form_leaves_out_what_belongs_to_another_estimator() {
     let both = ["estimator.hidden=[4]", "estimator=ols"];
     let message = refused(text, &both);
     assert!(message.contains("unknown key `estimator.hidden`"), "{message}");
-    assert!(refused(text, &["estimator.name=ols"]).contains("estimator=NAME instead of estimator.name=NAME"));
+    assert!(refused(text, &["estimator.name=ols"]).contains("estimator=ols instead of estimator.name=ols"));
 }
