@@ -1,7 +1,7 @@
 //! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
 
 use crate::facts::Facts;
-use dynamics::{Class, Coordinate, Nominal, SystemEffect};
+use dynamics::{Class, Nominal, SystemEffect};
 use record::Quantity;
 use std::f64::consts::PI;
 
@@ -160,10 +160,7 @@ impl Candidate {
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
             // Both move what is observed by its time derivative, which an acceleration has not.
             Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
-            // What goes round with the shaft needs one.
-            Self::Chain(Distortion::Nonlinearity) => {
-                quantity == Quantity::Position && nominal.coordinate() == Coordinate::Angle
-            }
+            Self::Chain(Distortion::Nonlinearity) => quantity == Quantity::Position,
             _ => true,
         }
     }

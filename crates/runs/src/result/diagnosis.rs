@@ -87,7 +87,7 @@ pub struct DiagnosisVerdict {
     pub confidence: f64,
     /// Probability that anything beyond noise is left beside these effects, however little of the gap it is; absent from answers
     /// before it was written.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_over: Option<f64>,
     /// Classes of effects that these data cannot tell apart.
     pub equivalent: Vec<Vec<String>>,
