@@ -92,5 +92,5 @@ fn a_swing_that_stops_within_a_cycle_has_no_envelope() {
     let output = trainer(&["configs/pinn.toml", &format!("data.path={path}"), "--json"]);
     assert_eq!(output.status.code(), Some(2));
     let message = String::from_utf8(output.stderr).unwrap();
-    assert!(message.contains("finds 1 peaks; a decay rate needs at least 3"), "{message}");
+    assert!(message.contains("finds 1 peak; a decay rate needs at least 3"), "{message}");
 }
