@@ -72,7 +72,7 @@ const FASTER: f64 = 2.0;
 
 /// The swing that a second body is told from.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Swing {
+pub(crate) struct MainMode {
     /// Angular frequency in rad/s.
     pub(crate) frequency: f64,
     /// Decay rate of its amplitude in 1/s.
@@ -156,9 +156,9 @@ impl Candidate {
             Self::System(
                 SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
             ) => spring,
-            // A lag of one frequency is an amplitude and a phase: inside the start state.
+            // A lag and a clock move what is observed by its time derivative, which an acceleration has not. A lag of one
+            // frequency is an amplitude and a phase besides: inside the start state.
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
-            // Both move what is observed by its time derivative, which an acceleration has not.
             Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
             Self::Chain(Distortion::Nonlinearity) => quantity == Quantity::Position,
             _ => true,
@@ -353,7 +353,7 @@ impl Candidate {
     /// it is struck once, at a record's beginning, does its decay tell it from the harmonic of order n: that one
     /// decays n times as fast as the swing. At the ends of its parameters' ranges one whose mode does not decay within
     /// the records is a forcing, one much slower than the swing a drift.
-    pub(crate) fn is_itself(self, fitted: &[f64], swing: &Swing) -> bool {
+    pub(crate) fn is_itself(self, fitted: &[f64], swing: &MainMode) -> bool {
         match (self, fitted) {
             (Self::System(SystemEffect::FlexibleCoupling), &[body, mode, rate]) => {
                 let line = mode * (1.0 + body / swing.inertia).sqrt();
@@ -377,7 +377,7 @@ impl Candidate {
 
 #[cfg(test)]
 mod tests {
-    use super::{Candidate, Swing};
+    use super::{Candidate, MainMode};
     use crate::facts::Facts;
     use dynamics::SystemEffect;
 
@@ -417,11 +417,12 @@ mod tests {
     #[test]
     fn a_harmonic_is_no_second_body() {
         let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
-        let swing = Swing { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true };
-        let is_itself = |line: f64, rate: f64, swing: &Swing| coupling.is_itself(&[0.0, line, rate], swing);
+        let swing = MainMode { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true };
+        let is_itself =
+            |line: f64, rate: f64, swing: &MainMode| coupling.is_itself(&[0.0, line, rate], swing);
         assert!(!is_itself(66.0, 0.3, &swing));
         assert!(is_itself(66.0, 0.61, &swing));
-        assert!(!is_itself(66.0, 0.61, &Swing { starts_once: false, ..swing }));
+        assert!(!is_itself(66.0, 0.61, &MainMode { starts_once: false, ..swing }));
         assert!(is_itself(66.5, 0.3, &swing));
         // Near the swing itself no decay tells it apart, and a body that hardly swings is none.
         assert!(!is_itself(22.0, 2.0, &swing));

@@ -10,7 +10,7 @@ use crate::work::{Shift, Work};
 
 /// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
 /// other in one of twenty records.
-const DISTINCT: f64 = 3.29;
+pub const DISTINCT_DISTANCE: f64 = 3.29;
 
 /// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and no calibration.
 const SHIFTED: f64 = 0.9;
@@ -106,7 +106,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
                 parts
                     .rivals
                     .iter()
-                    .filter(|rivalry| rivalry.effect == *effect && rivalry.distance < DISTINCT)
+                    .filter(|rivalry| rivalry.effect == *effect && rivalry.distance < DISTINCT_DISTANCE)
                     .map(|rivalry| rivalry.rival),
             )
             .collect();

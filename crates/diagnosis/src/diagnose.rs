@@ -133,7 +133,8 @@ pub fn diagnose(
     let fitted = &held.fitted;
     let floors = noise::squares(segments.data, &fitted.residuals);
     let floor = noise::of_squares(&floors);
-    let ceiling = latent::ceiling(segments.data, fitted)?;
+    let paths = Path::of(segments.data, fitted)?;
+    let ceiling = latent::ceiling(segments.data, fitted, &paths)?;
     lap("latent torque");
     let unit = records.first().map_or("", |record| record.unit);
     let figures = gap(
@@ -192,7 +193,6 @@ pub fn diagnose(
     } else {
         Budget::default()
     };
-    let paths = Path::of(segments.data, fitted)?;
     let rest = data.facts.rest(&repaired.point.globals, &repaired.hypothesis);
     let [over_time, amplitude, phase, frequency]: [Vec<Cell>; 4] = maps::maps(
         segments.data,

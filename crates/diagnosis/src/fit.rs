@@ -121,25 +121,13 @@ struct Equations {
     right: DVector<f64>,
 }
 
-struct Evaluation {
-    predictions: Vec<Prediction>,
-    squares: f64,
-}
-
 fn evaluate(
     simulator: &mut Simulator<'_>,
     segments: &[Segment],
     point: &Point,
-) -> Result<Evaluation, DynamicsError> {
+) -> Result<Vec<Prediction>, DynamicsError> {
     simulator.set(&point.globals)?;
-    let mut predictions = Vec::with_capacity(segments.len());
-    let mut squares = 0.0;
-    for (segment, start) in segments.iter().zip(&point.starts) {
-        let prediction = simulator.predict(segment, start)?;
-        squares += prediction.residual.norm_squared();
-        predictions.push(prediction);
-    }
-    Ok(Evaluation { predictions, squares })
+    segments.iter().zip(&point.starts).map(|(segment, start)| simulator.predict(segment, start)).collect()
 }
 
 /// The same for a trial that is of use only below a bound on the weighted squares; `None` as soon as these are above it, which
@@ -150,22 +138,20 @@ fn evaluate_below(
     point: &Point,
     weights: &[f64],
     bound: f64,
-) -> Option<Evaluation> {
+) -> Option<Vec<Prediction>> {
     simulator.set(&point.globals).ok()?;
     let mut predictions = Vec::with_capacity(segments.len());
-    let (mut squares, mut total) = (0.0, 0.0);
+    let mut total = 0.0;
     for ((segment, start), weight) in segments.iter().zip(&point.starts).zip(weights) {
         let prediction = simulator.predict(segment, start).ok()?;
-        let own = prediction.residual.norm_squared();
-        squares += own;
-        total += weight * own;
+        total += weight * prediction.residual.norm_squared();
         // A residual that is not a number is no gain either.
         if total.is_nan() || total > bound {
             return None;
         }
         predictions.push(prediction);
     }
-    Some(Evaluation { predictions, squares })
+    Some(predictions)
 }
 
 /// Lets segments that are behind begin again, at the coefficients of `point`.
@@ -174,13 +160,11 @@ fn begin_again(
     hypothesis: &Hypothesis,
     segments: &[Segment],
     point: &mut Point,
-    at: &mut Evaluation,
+    at: &mut [Prediction],
 ) -> Result<bool, DynamicsError> {
     // A trial that came to nothing has left its coefficients behind.
     simulator.set(&point.globals)?;
-    let better = settle(simulator, hypothesis, segments, &mut point.starts, &mut at.predictions)?;
-    at.squares = at.predictions.iter().map(|p| p.residual.norm_squared()).sum();
-    Ok(better)
+    Ok(settle(simulator, hypothesis, segments, &mut point.starts, at))
 }
 
 /// The damping falls by this at most after a step that gained what was promised; it stays where a step gained less than half.
@@ -190,7 +174,12 @@ const LOWEST_CUT: f64 = 1.0 / 3.0;
 const RAISE: f64 = 2.0;
 
 /// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
-const SHORT: f64 = 1e-2;
+pub(crate) const SHORT: f64 = 1e-2;
+
+/// A gain of so many times the smallest one is little, and so many steps in a row that gained little, however short they were, end
+/// a fit: in an uneven valley it would go on like that until its steps are spent.
+const LITTLE: f64 = 2.0;
+const CREPT: usize = 5;
 
 /// Damping at which steps are so short that nothing comes of them.
 const MOST_DAMPING: f64 = 1e6;
@@ -205,8 +194,8 @@ fn trust(predictions: &[Prediction]) -> Vec<f64> {
     own.into_iter().map(|square| (DOUBTFUL * usual / square.max(f64::MIN_POSITIVE)).min(1.0)).collect()
 }
 
-fn weighted(evaluation: &Evaluation, weights: &[f64]) -> f64 {
-    evaluation.predictions.iter().zip(weights).map(|(p, weight)| weight * p.residual.norm_squared()).sum()
+fn weighted(predictions: &[Prediction], weights: &[f64]) -> f64 {
+    predictions.iter().zip(weights).map(|(p, weight)| weight * p.residual.norm_squared()).sum()
 }
 
 /// Normal equations of the weighted segments.
@@ -310,12 +299,15 @@ pub(crate) fn fit(
     let mut raise = RAISE;
     let mut converged = false;
     let mut small = 0;
+    let mut crept = 0;
     let mut steps = 0;
     let uneven = !hypothesis.smooth();
     let mut wary = uneven && effort.wary;
-    let mut weights = if wary { trust(&at.predictions) } else { vec![1.0; data.segments.len()] };
-    let mut system = equations(&at.predictions, &weights, starts, globals);
+    let mut weights = if wary { trust(&at) } else { vec![1.0; data.segments.len()] };
+    let mut system = equations(&at, &weights, starts, globals);
     let mut settled = false;
+    // Where beginning again came to nothing on the way, it is tried once more at the end only.
+    let mut in_vain = false;
     while steps < effort.steps {
         steps += 1;
         let sizes = steps <= effort.sizes_first;
@@ -366,10 +358,11 @@ pub(crate) fn fit(
                 let before = weighted(&at, &weights);
                 let decrease = before - weighted(&evaluation, &weights);
                 small = if damping <= SHORT && decrease <= effort.small * before { small + 1 } else { 0 };
+                crept = if decrease <= LITTLE * effort.small * before { crept + 1 } else { 0 };
                 point = next;
                 at = evaluation;
                 if wary {
-                    weights = trust(&at.predictions);
+                    weights = trust(&at);
                 }
                 let quality = decrease / promised;
                 damping = (damping * (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(LOWEST_CUT, 1.0)).max(1e-12);
@@ -377,7 +370,7 @@ pub(crate) fn fit(
                 if small == 0 {
                     settled = false;
                 }
-                system = equations(&at.predictions, &weights, starts, globals);
+                system = equations(&at, &weights, starts, globals);
             }
             _ if done => small += 1,
             _ => {
@@ -386,29 +379,30 @@ pub(crate) fn fit(
             }
         }
         // Where no step of any length decreases the squares it is a minimum, if an uneven one.
-        let ended = !sizes && (small >= 1 || damping > MOST_DAMPING);
+        let ended = !sizes && (small >= 1 || crept >= CREPT || damping > MOST_DAMPING);
         if wary && (ended || steps >= effort.steps / 2) {
             wary = false;
             weights = vec![1.0; data.segments.len()];
             begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)?;
-            system = equations(&at.predictions, &weights, starts, globals);
-            (small, damping, settled) = (0, 1e-4, true);
+            system = equations(&at, &weights, starts, globals);
+            (small, crept, damping, settled) = (0, 0, 1e-4, true);
             continue;
         }
-        if uneven && !settled && (ended || damping > 1e-2) {
+        if uneven && !settled && (ended || damping > SHORT && !in_vain) {
             settled = true;
             if begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)? {
-                system = equations(&at.predictions, &weights, starts, globals);
-                (small, damping) = (0, 1e-4);
+                system = equations(&at, &weights, starts, globals);
+                (small, crept, damping) = (0, 0, 1e-4);
                 continue;
             }
+            in_vain = true;
         }
         if ended {
             converged = true;
             break;
         }
     }
-    let system = equations(&at.predictions, &vec![1.0; data.segments.len()], starts, globals);
+    let system = equations(&at, &vec![1.0; data.segments.len()], starts, globals);
     let inverse = system
         .reduced(0.0)
         .and_then(|(matrix, _)| solve(&matrix, &DMatrix::identity(globals, globals)))
@@ -421,8 +415,8 @@ pub(crate) fn fit(
         .collect();
     Ok(Fit {
         hypothesis: hypothesis.clone(),
-        residuals: at.predictions.into_iter().map(|prediction| prediction.residual).collect(),
-        squares: at.squares,
+        squares: at.iter().map(|prediction| prediction.residual.norm_squared()).sum(),
+        residuals: at.into_iter().map(|prediction| prediction.residual).collect(),
         point,
         converged,
         at_bound,

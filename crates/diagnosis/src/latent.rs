@@ -69,10 +69,10 @@ pub(crate) fn basis(data: &Data, rest: f64) -> Vec<Smooth> {
 }
 
 /// Held-out residuals of a fit after the latent torque, by segment: fitted to the even segments and scored on the odd
-/// ones, and the other way round.
-pub(crate) fn ceiling(data: &Data, fit: &Fit) -> Result<Vec<DVector<f64>>, DynamicsError> {
+/// ones, and the other way round. `paths` are the fit's.
+pub(crate) fn ceiling(data: &Data, fit: &Fit, paths: &[Path]) -> Result<Vec<DVector<f64>>, DynamicsError> {
     let rest = data.facts.rest(&fit.point.globals, &fit.hypothesis);
-    let latent = columns_of(&Path::of(data, fit)?, data.quantity, &basis(data, rest), Acting::Torque);
+    let latent = columns_of(paths, data.quantity, &basis(data, rest), Acting::Torque);
     let jacobians = jacobians(data, &fit.hypothesis, &fit.point)?;
     let starts = fit.hypothesis.start_length();
     let globals = fit.globals();

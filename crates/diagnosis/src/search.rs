@@ -5,7 +5,7 @@
 //! best sets found so far and proposes what to add there, what to put in another's place, and what each member
 //! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
 
-use crate::candidate::{Candidate, Swing};
+use crate::candidate::{Candidate, MainMode};
 use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
@@ -90,13 +90,13 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
     let starts_once = data.segments.len() <= data.inputs.len();
     let swing = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
-        Ok(nominal) => Swing {
+        Ok(nominal) => MainMode {
             frequency: (nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(),
             decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
             inertia: nominal.inertia(),
             starts_once,
         },
-        Err(_) => Swing {
+        Err(_) => MainMode {
             frequency: data.facts.frequency,
             decay_rate: f64::INFINITY,
             inertia: data.facts.inertia,

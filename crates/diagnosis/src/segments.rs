@@ -384,12 +384,18 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
     let gain = nominal.input_gain().abs();
     let inertia = nominal.inertia();
     let stiffness = inertia * frequency * frequency;
-    let speed = if omega == 0.0 { speed(records, quantity, frequency) } else { amplitude * frequency };
+    let reading = values().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let speed = match quantity {
+        _ if omega != 0.0 => amplitude * frequency,
+        Quantity::Position => speed(records),
+        Quantity::Velocity => reading,
+        Quantity::Acceleration => reading / frequency,
+    };
     Facts {
         amplitude,
         highest,
         lowest,
-        reading: values().fold(0.0, |most: f64, value| most.max(value.abs())),
+        reading,
         speed,
         frequency,
         torque: stiffness * amplitude,
@@ -402,14 +408,8 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
     }
 }
 
-/// Large speeds of a drive without a spring, from differences over stretches of samples.
-fn speed(records: &[Observations], quantity: Quantity, frequency: f64) -> f64 {
-    let largest = || records.iter().flat_map(|r| &r.values).fold(0.0, |most: f64, v| most.max(v.abs()));
-    match quantity {
-        Quantity::Position => {}
-        Quantity::Velocity => return largest(),
-        Quantity::Acceleration => return largest() / frequency,
-    }
+/// Large speeds of a drive without a spring, from differences of positions over stretches of samples.
+fn speed(records: &[Observations]) -> f64 {
     let mut speeds = Vec::new();
     for record in records {
         let stride = (record.len() / 500).max(1);

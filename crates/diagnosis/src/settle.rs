@@ -5,19 +5,21 @@
 //! that one then holds the coefficients. So each segment may begin again: where it is, where its first samples point,
 //! or at rest at its mean value.
 
-use crate::fit::extended;
+use crate::fit::{SHORT, extended};
 use crate::hypothesis::Hypothesis;
 use crate::matrices::raised;
 use crate::response::{Prediction, Simulator};
 use crate::segments::Segment;
 use crate::statistics::{mean, median};
-use dynamics::DynamicsError;
 
 /// Mean square relative to the median segment's, beyond which a segment begins again.
 const BEHIND: f64 = 1.25;
 
 /// Steps tried for one start at most.
 const STEPS: usize = 8;
+
+/// Relative decrease of the squares at which to stop, promised or made.
+const SMALL: f64 = 1e-4;
 
 /// Gives the segments that fit worse than others better start states, where there are any. Predictions follow along.
 pub(crate) fn settle(
@@ -26,7 +28,7 @@ pub(crate) fn settle(
     segments: &[Segment],
     starts: &mut [Vec<f64>],
     predictions: &mut [Prediction],
-) -> Result<bool, DynamicsError> {
+) -> bool {
     let usual = median(&predictions.iter().map(Prediction::mean_square).collect::<Vec<_>>());
     let mut better = false;
     for ((segment, start), prediction) in segments.iter().zip(starts).zip(predictions) {
@@ -35,43 +37,50 @@ pub(crate) fn settle(
         }
         let rest = extended(&[mean(&segment.values), 0.0], hypothesis);
         let guess = extended(&segment.guess, hypothesis);
-        for from in [start.clone(), guess, rest] {
-            let Some((found, fitted)) = descend(simulator, segment, from) else { continue };
+        let others = [guess, rest].map(|from| simulator.predict(segment, &from).ok().map(|at| (from, at)));
+        let here = Some((start.clone(), prediction.clone()));
+        for (from, at) in [here].into_iter().chain(others).flatten() {
+            let (found, fitted) = descend(simulator, segment, from, at);
             if fitted.residual.norm_squared() < 0.999 * prediction.residual.norm_squared() {
                 (*start, *prediction) = (found, fitted);
                 better = true;
             }
         }
     }
-    Ok(better)
+    better
 }
 
-/// Levenberg–Marquardt in one segment's start state alone.
+/// Levenberg–Marquardt in one segment's start state alone, from where its prediction is `at`.
 fn descend(
     simulator: &mut Simulator<'_>,
     segment: &Segment,
     from: Vec<f64>,
-) -> Option<(Vec<f64>, Prediction)> {
+    mut at: Prediction,
+) -> (Vec<f64>, Prediction) {
     let count = from.len();
     let mut start = from;
-    let mut at = simulator.predict(segment, &start).ok()?;
     let mut damping = 1e-4;
     for _ in 0..STEPS {
         let own = at.jacobian.columns(0, count);
-        let step = raised(&own.tr_mul(&own), damping).cholesky()?.solve(&own.tr_mul(&at.residual));
+        let right = own.tr_mul(&at.residual);
+        let Some(solved) = raised(&own.tr_mul(&own), damping).cholesky() else { break };
+        let step = solved.solve(&right);
+        let before = at.residual.norm_squared();
+        if damping <= SHORT && right.dot(&step) <= SMALL * before {
+            break;
+        }
         let next: Vec<f64> = start.iter().zip(step.iter()).map(|(value, step)| value + step).collect();
-        let trial = simulator.predict(segment, &next).ok();
-        let (before, after) = (at.residual.norm_squared(), trial.as_ref().map(|t| t.residual.norm_squared()));
-        match (trial, after) {
-            (Some(trial), Some(after)) if after < before => {
+        match simulator.predict(segment, &next) {
+            Ok(trial) if trial.residual.norm_squared() < before => {
+                let gain = before - trial.residual.norm_squared();
                 (start, at) = (next, trial);
                 damping *= 0.1;
-                if before - after <= 1e-4 * before {
+                if gain <= SMALL * before {
                     break;
                 }
             }
             _ => damping *= 10.0,
         }
     }
-    Some((start, at))
+    (start, at)
 }

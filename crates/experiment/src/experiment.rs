@@ -274,7 +274,6 @@ enum Named {
     Classical(String),
 }
 
-/// The method that `estimator.name` names.
 /// Where the command line sets `estimator.name` alone, the file's keys for its own estimator are left over: an unknown key
 /// among these is told with the choice that leaves them out.
 fn of_another(error: SettingsError, document: &Document) -> SettingsError {
@@ -295,6 +294,7 @@ fn of_another(error: SettingsError, document: &Document) -> SettingsError {
     }
 }
 
+/// The method that `estimator.name` names.
 fn find_method(document: &Document, registry: &[Entry], classical: &[&str]) -> Result<Named, SettingsError> {
     let ids = || {
         let learned = registry.iter().map(|entry| entry.id);

@@ -50,7 +50,7 @@ pub enum SweepError {
         runs: u128,
     },
     /// A combination that no run can be made of.
-    #[error("combination {number} ({overrides}): {source}{hint}")]
+    #[error("combination {number} ({overrides}): {source}")]
     BadCombination {
         /// Its number, from 1.
         number: usize,
@@ -58,8 +58,6 @@ pub enum SweepError {
         overrides: String,
         /// What is wrong.
         source: SettingsError,
-        /// What else to do, with a leading semicolon; empty where there is nothing to add.
-        hint: &'static str,
     },
     /// A combination whose task makes no single table row.
     #[error(

@@ -51,12 +51,7 @@ pub fn plan(
         let number = at + 1;
         let shown = || if overrides.is_empty() { "as it is".to_owned() } else { overrides.join(" ") };
         let experiment = one(document, &overrides, registry, classical).map_err(|fault| match fault {
-            Fault::Settings(source) => SweepError::BadCombination {
-                number,
-                overrides: shown(),
-                hint: hint(&source, &overrides),
-                source,
-            },
+            Fault::Settings(source) => SweepError::BadCombination { number, overrides: shown(), source },
             Fault::Task(task) => SweepError::Task { number, overrides: shown(), task },
         })?;
         let digest = digest(&experiment);
@@ -124,17 +119,6 @@ fn one(
         return Err(Fault::Task(task.to_owned()));
     }
     resolve(&document, registry, classical).map_err(Fault::Settings)
-}
-
-/// Sweeping `estimator.name` meets the file's settings of another estimator.
-fn hint(source: &SettingsError, overrides: &[String]) -> &'static str {
-    let names = overrides.iter().any(|argument| argument.starts_with("estimator.name="));
-    match source {
-        SettingsError::UnknownKey { key, .. } if names && key.starts_with("estimator.") => {
-            "; estimator=NAME instead of estimator.name=NAME leaves out what the file sets for another estimator"
-        }
-        _ => "",
-    }
 }
 
 #[cfg(test)]

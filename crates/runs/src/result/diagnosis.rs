@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// The `schema` field of a diagnosis.
 pub const DIAGNOSIS_SCHEMA: &str = "ringdown.diagnosis/1";
 
-/// Distance of two best fits in noise units from which on two explanations are told apart; below it they are one class. Two
-/// times 1.645, so that either is mistaken for the other in one of twenty records.
+/// Distance of two best fits in noise units from which on two explanations are told apart; below it they are one class. The
+/// diagnosis's own, which this layer does not reach.
 pub const DISTINCT_DISTANCE: f64 = 3.29;
 
 /// A diagnosis of the gap between a nominal simulator and records of one system.

@@ -304,3 +304,12 @@ pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
     }
     rows
 }
+
+#[cfg(test)]
+mod tests {
+    /// The answer's readers and the diagnosis draw the line at the same distance.
+    #[test]
+    fn one_distance_tells_explanations_apart() {
+        assert_eq!(runs::result::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);
+    }
+}
