@@ -19,7 +19,7 @@ pub struct CsvColumns {
     pub unit: Option<Unit>,
     /// Unit of the time column.
     pub time_unit: TimeUnit,
-    /// Rate at which to lay out a file without a time column, in hertz.
+    /// Rate at which to lay out a file without a time column, in hertz; a statement to be checked where there is one.
     pub sample_rate_hz: Option<f64>,
 }
 
@@ -58,7 +58,11 @@ pub(crate) fn parse(text: &str, columns: &CsvColumns) -> Result<Parsed, Fault> {
         })
     };
     let time = match (find(columns.time.as_deref(), TIME_NAMES, "data.time"), columns.sample_rate_hz) {
-        (Ok(at), _) => TimeColumn::At(at),
+        // Stamps are measured and a rate is said: where they differ, that is told.
+        (Ok(at), rate) => {
+            statements.sample_rate_hz = rate.or(statements.sample_rate_hz);
+            TimeColumn::At(at)
+        }
         (Err(_), Some(rate)) if columns.time.is_none() => TimeColumn::Rate(rate),
         (Err(fault), _) => return Err(fault),
     };

@@ -96,3 +96,25 @@ impl Statements {
         found
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::{Clock, ClockChoice, CsvColumns, ReadOptions, read_text};
+
+    /// What is said of a rate, on the command line or in the file, is compared with the stamps.
+    #[test]
+    fn a_rate_beside_stamps_is_checked() {
+        let rows: String = (0..200).map(|i| format!("{:.2},{}\n", 0.01 * f64::from(i), i % 7)).collect();
+        let said = |rate: Option<f64>| {
+            let columns = CsvColumns { sample_rate_hz: rate, ..CsvColumns::default() };
+            let options = ReadOptions { columns, ..ReadOptions::default() };
+            let text = format!("time_s,angle_rad\n{rows}");
+            let (record, source) = read_text("r.csv", text.as_bytes(), &options).unwrap();
+            let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+            source.statements.contradictions(record.len(), &clock)
+        };
+        assert!(said(None).is_empty() && said(Some(100.3)).is_empty());
+        let found = said(Some(50.0));
+        assert!(found.len() == 1 && found[0].contains("not the stated 50 Hz"), "{found:?}");
+    }
+}

@@ -2,6 +2,7 @@
 
 use crate::error::RunError;
 use crate::events::{EVENTS, Event, readable};
+use crate::lock::LOCK;
 use crate::result::{
     ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA, RunState,
     RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
@@ -79,7 +80,8 @@ struct Content {
     rows: Vec<RunTableRow>,
 }
 
-/// Every run folder below a folder, newest first. Hidden folders and files are passed over.
+/// Every run folder below a folder, newest first. Files, hidden folders and folders of something else are passed over; an
+/// empty folder is a run that did not come to its first file.
 ///
 /// # Errors
 /// [`RunError::Io`] where the folder itself cannot be listed; a run that cannot be read is an entry of its own.
@@ -89,12 +91,18 @@ pub fn list_runs(root: &Path) -> Result<Vec<KeptRun>, RunError> {
     for entry in entries {
         let path = entry.map_err(RunError::io(root, "list"))?.path();
         let is_hidden = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with('.'));
-        if path.is_dir() && !is_hidden {
+        if path.is_dir() && !is_hidden && !is_something_else(&path) {
             runs.push(read_run(&path));
         }
     }
     runs.sort_by(|one, other| other.started.cmp(&one.started).then_with(|| one.name.cmp(&other.name)));
     Ok(runs)
+}
+
+/// Whether a folder holds something, and nothing of a run.
+fn is_something_else(path: &Path) -> bool {
+    let is_empty = std::fs::read_dir(path).is_ok_and(|mut entries| entries.next().is_none());
+    !is_empty && !has_run_files(path) && !path.join(LOCK).exists() && !SweepFolder::is_one(path)
 }
 
 /// Whether a folder holds any file that a run has.

@@ -47,12 +47,16 @@ pub(super) fn gap(gap: &GapSummary) -> Vec<GapView> {
 
 pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     let gap = &result.gap;
-    let mut notes = vec![format!(
+    let closed = format!(
         "Closed of the whole gap: {}; of what recalibration leaves: {}. Closure compares squares above the noise \
          floor, so that 99 % can still be several floors: the ratio to the floor says more.",
         share_with_interval(&gap.closure),
         share_with_interval(&gap.closure_of_recalibrated)
-    )];
+    );
+    let mut notes = match result.verdict.status.as_str() {
+        "none" => vec!["There is no gap to close.".to_owned()],
+        _ => vec![closed],
+    };
     let [recalibrated, repaired] = gap.last_third;
     if recalibrated.is_finite() && repaired.is_finite() {
         notes.push(format!(

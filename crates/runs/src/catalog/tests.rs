@@ -34,6 +34,8 @@ fn every_state_is_told_from_the_others() {
     std::fs::write(root.path().join("torn/result.json"), [0xff, 0xfe]).unwrap();
     run(root.path(), ".hidden", &[]);
     std::fs::write(root.path().join("a file"), "").unwrap();
+    std::fs::create_dir(root.path().join("photographs")).unwrap();
+    std::fs::write(root.path().join("photographs/rig.jpg"), [0xff, 0xd8]).unwrap();
     let expected = [
         ("bare", RunState::Corrupt, "config.toml is missing"),
         ("cut", RunState::Corrupt, "result.json: EOF"),

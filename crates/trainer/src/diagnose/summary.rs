@@ -47,18 +47,23 @@ fn gap(result: &DiagnosisResult) -> String {
     };
     let closed = |of: &WithInterval| format!("closes {}", share_with_interval(of));
     let same = gap.repaired == gap.recalibrated;
+    let nothing = result.verdict.status == "none";
     let mut rows = vec![
         row("simulator as given", gap.nominal, String::new()),
         row("recalibrated", gap.recalibrated, String::new()),
         row(
             if same { "repaired (the same)" } else { "repaired" },
             gap.repaired,
-            format!("{} of the whole gap", closed(&gap.closure)),
+            if nothing {
+                "there is no gap to close".to_owned()
+            } else {
+                format!("{} of the whole gap", closed(&gap.closure))
+            },
         ),
         row("ceiling: a free torque on top", gap.ceiling, String::new()),
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
-    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same) {
+    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing) {
         note.push_str(&format!(
             ", {} of what recalibration leaves",
             share_with_interval(&gap.closure_of_recalibrated)
