@@ -291,6 +291,15 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert!(changed.contains("name another folder with --out"), "{changed}");
     assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
 
+    // Nor is it kept for another simulator.
+    let nominal = cases.join("good/nominal.toml");
+    let text = std::fs::read_to_string(&nominal).unwrap();
+    std::fs::write(&nominal, text.replacen("damping = ", "damping = 1", 1)).unwrap();
+    let (_, found, message) = batch();
+    assert_eq!(found["skipped"], 0);
+    assert!(message.contains("nominal.toml: is not the simulator that was diagnosed"), "{message}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), first, "an answer is left alone");
+
     let nothing = tempfile::tempdir().unwrap();
     let folder = nothing.path().to_str().unwrap();
     let message = refusal(&["diagnose", "--batch", folder, "--out", answers.to_str().unwrap()]);

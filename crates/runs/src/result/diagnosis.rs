@@ -41,6 +41,9 @@ pub struct DiagnosisResult {
     pub records: Vec<RecordRow>,
     /// The file of the nominal simulator.
     pub nominal: String,
+    /// Digest of what that file states: its values, not its comments. Empty in files of older versions.
+    #[serde(default)]
+    pub nominal_digest: String,
     /// Root of the random draws.
     pub seed: u64,
     /// What was observed: `position`, `velocity` or `acceleration`.

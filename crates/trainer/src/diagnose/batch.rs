@@ -97,7 +97,8 @@ fn fate(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Fate 
         |error: TrainerError| Fate::Failed(FailedCase { id: case.id.clone(), message: error.to_string() });
     let answer = folder.path().join(&name);
     if answer.exists() {
-        return kept::check_answer(&answer, &case.records).map_or_else(failed, |()| Fate::Skipped);
+        return kept::check_answer(&answer, &case.records, &case.nominal)
+            .map_or_else(failed, |()| Fate::Skipped);
     }
     let answered = Question::read(&case.records, &case.nominal, &arguments.reading)
         .and_then(|question| question.answer(&settings(arguments), arguments.seed))

@@ -1,11 +1,11 @@
 //! What a folder holds of a diagnosis: for `--resume`, and for the answers of a batch.
 
-use super::Question;
 use super::arguments::DiagnoseArguments;
+use super::{Question, nominal};
 use crate::error::TrainerError;
 use record::file_digest;
 use runs::result::DiagnosisResult;
-use runs::{RunError, RunFolder, digest};
+use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
@@ -28,6 +28,11 @@ pub(crate) enum KeptError {
          has {found}. Answers are never written over: name another folder with --out"
     )]
     AnotherRecord { record: String, answer: String, kept: String, found: String },
+    #[error(
+        "{nominal}: is not the simulator that was diagnosed: the answer in {answer} is for one with the digest {kept}, this \
+         one has {found}. Answers are never written over: name another folder with --out"
+    )]
+    AnotherNominal { nominal: String, answer: String, kept: String, found: String },
     #[error("{answer}: is no diagnosis: {problem}; take it away, or name another folder with --out")]
     NoDiagnosis { answer: String, problem: String },
 }
@@ -35,10 +40,9 @@ pub(crate) enum KeptError {
 /// All that an answer depends on, but for the program: in digests where it is long.
 pub(super) fn asked(arguments: &DiagnoseArguments, question: &Question) -> Value {
     let records: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
-    let nominal = simulator::nominal_text(&question.stated.nominal);
     json!({
         "records": records,
-        "nominal": digest(nominal.as_bytes()),
+        "nominal": nominal::digest(&question.stated),
         "reading": arguments.reading,
         "most_effects": arguments.most_effects,
         "without": arguments.without,
@@ -82,12 +86,21 @@ fn same(folder: &Path, kept: &Value, asked: &Value) -> Result<(), KeptError> {
     })
 }
 
-/// That an answer of a batch is on the records that lie in the case now. One that does not name its records is left alone.
-pub(super) fn check_answer(answer: &Path, records: &[PathBuf]) -> Result<(), TrainerError> {
+/// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer does not name
+/// is not compared.
+pub(super) fn check_answer(answer: &Path, records: &[PathBuf], path: &Path) -> Result<(), TrainerError> {
     let shown = || answer.display().to_string();
     let unusable = |problem: String| KeptError::NoDiagnosis { answer: shown(), problem };
     let bytes = std::fs::read(answer).map_err(|error| unusable(error.to_string()))?;
     let found: Value = serde_json::from_slice(&bytes).map_err(|error| unusable(error.to_string()))?;
+    let kept = found.get("nominal_digest").and_then(Value::as_str).filter(|digest| !digest.is_empty());
+    if let Some(kept) = kept {
+        let found = nominal::digest(&nominal::read(path)?);
+        if found != kept {
+            let (nominal, kept) = (path.display().to_string(), kept.to_owned());
+            return Err(KeptError::AnotherNominal { nominal, answer: shown(), kept, found }.into());
+        }
+    }
     let Some(rows) = found.get("records").and_then(Value::as_array) else { return Ok(()) };
     let kept: Vec<&str> = rows.iter().filter_map(|row| row.get("digest")).filter_map(Value::as_str).collect();
     let none = "none, there was no such record";

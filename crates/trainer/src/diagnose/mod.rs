@@ -163,7 +163,15 @@ impl Question {
         let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())
             .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
         let nominal = self.nominal.display().to_string();
-        let beside = Beside { given: &self.given, nominal: &nominal, seed, seconds, repaired: &repaired };
+        let nominal_digest = nominal::digest(&self.stated);
+        let beside = Beside {
+            given: &self.given,
+            nominal: &nominal,
+            nominal_digest: &nominal_digest,
+            seed,
+            seconds,
+            repaired: &repaired,
+        };
         let result = result(&found, &beside);
         Ok(Answer { found, repaired, result })
     }

@@ -5,6 +5,11 @@ use experiment::{StatedNominal, resolve_nominal};
 use settings::{Document, SettingsError};
 use std::path::Path;
 
+/// Digest of all that a nominal simulator states; comments and order are not among it.
+pub(super) fn digest(stated: &StatedNominal) -> String {
+    runs::digest(simulator::nominal_text(&stated.nominal).as_bytes())
+}
+
 /// Reads a nominal simulator.
 pub(crate) fn read(path: &Path) -> Result<StatedNominal, TrainerError> {
     let file = path.display().to_string();

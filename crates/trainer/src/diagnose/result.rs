@@ -18,6 +18,7 @@ pub(crate) struct Beside<'a> {
     pub(crate) given: &'a [Given],
     /// The file of the nominal simulator.
     pub(crate) nominal: &'a str,
+    pub(crate) nominal_digest: &'a str,
     pub(crate) seed: u64,
     pub(crate) seconds: f64,
     pub(crate) repaired: &'a Repaired,
@@ -80,6 +81,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .collect(),
         records: beside.given.iter().map(|given| given.row.clone()).collect(),
         nominal: beside.nominal.to_owned(),
+        nominal_digest: beside.nominal_digest.to_owned(),
         seed: beside.seed,
         quantity: match quantity {
             record::Quantity::Position => "position",
