@@ -51,7 +51,8 @@ pub(crate) fn number(value: &Value, path: &str) -> f64 {
 const OF_THE_MOMENT: &[&str] =
     &[".lock", "config.toml", "environment.json", "events.jsonl", "report.html", "tables.md"];
 
-/// Every file of a run as text or digest, but those that tell the time or the machine, durations taken out of the others.
+/// Every file of a run as text or digest, but those that tell the time or the machine, durations taken out of
+/// the others.
 pub(crate) fn timeless_files(folder: &Path) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     let mut folders = vec![folder.to_owned()];

@@ -306,8 +306,9 @@ fn killed_within_a_fit(arguments: &[&str], out: &str, run: &Path) {
     child.wait().unwrap();
 }
 
-/// A run that the sweep was killed in goes on in its own folder: from its last checkpoint, or as finished where the kill
-/// came before the sweep was told. Where that folder is damaged, the run begins again beside it.
+/// A run that the sweep was killed in goes on in its own folder: from its last checkpoint, or as finished
+/// where the kill came before the sweep was told. Where that folder is damaged, the run begins again beside
+/// it.
 #[test]
 fn a_run_killed_within_a_sweep_goes_on_in_its_folder() {
     let arguments = [SLOW, &["fit.seeds=3", "checkpoint.interval_s=0"]].concat();

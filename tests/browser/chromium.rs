@@ -9,8 +9,8 @@ use tempfile::TempDir;
 
 const NAMES: &[&str] = &["chromium", "chromium-browser", "google-chrome", "google-chrome-stable"];
 
-/// Where the protocol speaks through the third and the fourth file, which the shell makes of the first two. A browser that
-/// hangs is ended.
+/// Where the protocol speaks through the third and the fourth file, which the shell makes of the first two. A
+/// browser that hangs is ended.
 const START: &str = "exec 3<&0 4>&1 </dev/null >/dev/null 2>&1; exec timeout 600 \"$@\"";
 
 const AUDIT: &str = include_str!("audit.js");

@@ -42,8 +42,8 @@ const OFFERED: &str = "[...document.querySelectorAll('figure')].map((figure) => 
     csv: figure.querySelector('pre').textContent,
 }))";
 
-/// What the plots of a page offer to take along: the CSV is the page's, and the SVG is sound in the browser by itself. A
-/// click, on the first plot's, gives the file.
+/// What the plots of a page offer to take along: the CSV is the page's, and the SVG is sound in the browser
+/// by itself. A click, on the first plot's, gives the file.
 fn take_along(browser: &mut Chromium, page: &Path, least: usize) {
     let scratch = tempfile::tempdir().unwrap();
     browser.open(page, VIEWS[0]);

@@ -1,8 +1,8 @@
 //! Fits that go on from anything: shared by the fuzzer and by the test that replays what it found.
 //!
-//! What is fed is sealed as a checkpoint first, so that the fuzzer gets past the digest, to who reads what is behind it. A
-//! fit either refuses a state or goes on from exactly that one, within its budget; and one flipped bit of the sealed file
-//! is noticed, whatever it holds.
+//! What is fed is sealed as a checkpoint first, so that the fuzzer gets past the digest, to who reads what is
+//! behind it. A fit either refuses a state or goes on from exactly that one, within its budget; and one
+//! flipped bit of the sealed file is noticed, whatever it holds.
 
 use envelope::Envelope;
 use estimator::{Cancel, Checkpoints, Entry, Estimator, FitContext, FitError, Silent};

@@ -59,8 +59,8 @@ pub struct ParameterEstimate {
 pub struct EffectProbability {
     /// An id of the vocabulary, or `none`, `calibration`, `unknown`.
     pub id: &'static str,
-    /// Its probability, as often as such effects were there in withheld-effect trials. Several can act at once: they need not
-    /// add up to 1.
+    /// Its probability, as often as such effects were there in withheld-effect trials. Several can act at
+    /// once: they need not add up to 1.
     pub probability: f64,
     /// Parameters in the best set that has it; empty for what has none.
     pub parameters: Vec<ParameterEstimate>,
@@ -264,8 +264,8 @@ pub struct Stage {
 pub struct Diagnosis {
     /// What it comes to.
     pub verdict: Verdict,
-    /// `none`, `calibration`, `unknown`, every effect that is named, and every other whose sets have a probability above 0.01
-    /// together; best first.
+    /// `none`, `calibration`, `unknown`, every effect that is named, and every other whose sets have a
+    /// probability above 0.01 together; best first.
     pub effects: Vec<EffectProbability>,
     /// How far the gap shrinks.
     pub gap: Gap,

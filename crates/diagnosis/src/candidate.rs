@@ -34,8 +34,9 @@ pub(crate) struct Parameter {
     /// Whether it says how the effect looks rather than how large it is: a width, a frequency, a phase. It means
     /// nothing while the effect has no size.
     pub(crate) shape: bool,
-    /// Whether the effect is another, simpler one where this parameter is at its lower end: a fit that ends there rejects it
-    /// too. Stribeck friction whose excess is gone at the slowest speeds is Coulomb friction.
+    /// Whether the effect is another, simpler one where this parameter is at its lower end: a fit that ends
+    /// there rejects it too. Stribeck friction whose excess is gone at the slowest speeds is Coulomb
+    /// friction.
     pub(crate) simpler: bool,
 }
 
@@ -82,7 +83,8 @@ pub(crate) struct MainMode {
     pub(crate) starts_once: bool,
 }
 
-/// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and nothing goes round.
+/// Where a law has a size and an angle, a fit moves their Cartesian pair: the law is linear in it, and
+/// nothing goes round.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Polar {
     size: usize,
@@ -156,8 +158,8 @@ impl Candidate {
             Self::System(
                 SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
             ) => spring,
-            // A lag and a clock move what is observed by its time derivative, which an acceleration has not. A lag of one
-            // frequency is an amplitude and a phase besides: inside the start state.
+            // A lag and a clock move what is observed by its time derivative, which an acceleration has not.
+            // A lag of one frequency is an amplitude and a phase besides: inside the start state.
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
             Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
             Self::Chain(Distortion::Nonlinearity) => quantity == Quantity::Position,
@@ -165,8 +167,8 @@ impl Candidate {
         }
     }
 
-    /// The candidate that it is at one of its own sizes: Stribeck friction without its excess is Coulomb friction. A set
-    /// never holds both.
+    /// The candidate that it is at one of its own sizes: Stribeck friction without its excess is Coulomb
+    /// friction. A set never holds both.
     pub(crate) fn generalizes(self) -> Option<Self> {
         match self {
             Self::System(SystemEffect::StribeckFriction) => Some(Self::System(SystemEffect::CoulombFriction)),
@@ -287,11 +289,11 @@ impl Candidate {
         }
     }
 
-    /// The law's parameters from a fit's. They differ where the law has a size and an angle, which are fitted as (size·cos,
-    /// size·sin); for Stribeck friction, whose second is fitted as the excess of the static torque, so that it
-    /// stays at least the first; and for a second body, whose stiffness k and damping c are fitted as its frequency and
-    /// decay rate on a body at rest, k = I·ω² and c = 2·I·r: these are what a record shows, and no step makes the
-    /// motion faster than its samples.
+    /// The law's parameters from a fit's. They differ where the law has a size and an angle, which are fitted
+    /// as (size·cos, size·sin); for Stribeck friction, whose second is fitted as the excess of the static
+    /// torque, so that it stays at least the first; and for a second body, whose stiffness k and damping c
+    /// are fitted as its frequency and decay rate on a body at rest, k = I·ω² and c = 2·I·r: these are what a
+    /// record shows, and no step makes the motion faster than its samples.
     pub(crate) fn values(self, fitted: &[f64]) -> Vec<f64> {
         let mut values = fitted.to_vec();
         if let Some(Polar { size, angle }) = self.polar()
@@ -348,11 +350,12 @@ impl Candidate {
 
     /// Whether fitted values are what the effect's name says, beside a swing.
     ///
-    /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its own half-width of
-    /// the swing's or of a harmonic is no second line: it shows a damping or a force that changes with amplitude. Only where
-    /// it is struck once, at a record's beginning, does its decay tell it from the harmonic of order n: that one
-    /// decays n times as fast as the swing. At the ends of its parameters' ranges one whose mode does not decay within
-    /// the records is a forcing, one much slower than the swing a drift.
+    /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its
+    /// own half-width of the swing's or of a harmonic is no second line: it shows a damping or a force that
+    /// changes with amplitude. Only where it is struck once, at a record's beginning, does its decay tell it
+    /// from the harmonic of order n: that one decays n times as fast as the swing. At the ends of its
+    /// parameters' ranges one whose mode does not decay within the records is a forcing, one much slower than
+    /// the swing a drift.
     pub(crate) fn is_itself(self, fitted: &[f64], swing: &MainMode) -> bool {
         match (self, fitted) {
             (Self::System(SystemEffect::FlexibleCoupling), &[body, mode, rate]) => {
@@ -412,8 +415,8 @@ mod tests {
         }
     }
 
-    /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third harmonic, which decays
-    /// at 0.3/s.
+    /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third
+    /// harmonic, which decays at 0.3/s.
     #[test]
     fn a_harmonic_is_no_second_body() {
         let coupling = Candidate::System(SystemEffect::FlexibleCoupling);

@@ -11,7 +11,8 @@ use crate::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
 use record::{ClockKind, StampStatistics};
 
-/// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a stop shows.
+/// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a
+/// stop shows.
 const FLAT: usize = 3;
 const LEAST_RUNS: usize = 3;
 
@@ -91,15 +92,17 @@ fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
 /// parabola's three exceeds it in one of 10,000 cases, either way.
 const DRIFTS: f64 = 6.594;
 
-/// Intervals from its mean by which the last sample of a burst waits at most: one half, and half of that for what else scatters.
+/// Intervals from its mean by which the last sample of a burst waits at most: one half, and half of that for
+/// what else scatters.
 const WAITS: f64 = 0.75;
 
 /// Probability with which values that say nothing of the clock are said to prefer one.
 const PREFERS_BY_CHANCE: f64 = 0.01;
 
-/// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more than a part of the
-/// noise variance. Scatter is one where the values do not share it (they run more smoothly on an even clock), drift where
-/// the stamps bend away from an even clock by more than their scatter explains.
+/// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more
+/// than a part of the noise variance. Scatter is one where the values do not share it (they run more smoothly
+/// on an even clock), drift where the stamps bend away from an even clock by more than their scatter
+/// explains.
 fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> {
     let stamps = &observations.stamps;
     let noise = white_noise(observations, kept);
@@ -127,8 +130,8 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
         });
     }
     let share = stamps.bend_s * stamps.bend_s * per_time;
-    // Samples miscounted in bursts, and a host that is late, would bend the stamps too: of a burst, all that is left may be
-    // its last sample's wait for up to one interval.
+    // Samples miscounted in bursts, and a host that is late, would bend the stamps too: of a burst, all that
+    // is left may be its last sample's wait for up to one interval.
     let waits = stamps.left_by_bend_s * observations.sample_rate_hz <= WAITS;
     if (stamps.repeated == 0 || stamps.lost == 0 && waits)
         && stamps.bend_standard_errors > DRIFTS
@@ -270,8 +273,8 @@ mod tests {
 
     const NOISE: f64 = 1e-3;
 
-    /// Ids named for 25 s of a swing whose stamps go through a map of true time and a standard normal number; `None` loses the
-    /// sample.
+    /// Ids named for 25 s of a swing whose stamps go through a map of true time and a standard normal number;
+    /// `None` loses the sample.
     fn named(seed: u64, stamp: impl Fn(f64, f64) -> Option<f64>) -> Vec<&'static str> {
         let mut generator = Seed::new(seed).child("chain").generator();
         let (mut stamps, mut values) = (Vec::new(), Vec::new());
@@ -292,8 +295,8 @@ mod tests {
         findings(&observations, &kept, &nominal).iter().filter_map(|finding| finding.effect).collect()
     }
 
-    /// The root mean square speed of that swing is about 4.4 rad/s: a scatter of 0.1 ms, 3 % of a sampling interval, makes 0.44
-    /// times the noise, 19 % of its variance; 0.02 ms make 1 %.
+    /// The root mean square speed of that swing is about 4.4 rad/s: a scatter of 0.1 ms, 3 % of a sampling
+    /// interval, makes 0.44 times the noise, 19 % of its variance; 0.02 ms make 1 %.
     #[test]
     fn scatter_of_stamps_is_named_where_it_moves_the_values() {
         for seed in 0..5 {

@@ -12,7 +12,8 @@ use crate::work::{Shift, Work};
 /// other in one of twenty records.
 pub const DISTINCT_DISTANCE: f64 = 3.29;
 
-/// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and no calibration.
+/// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and
+/// no calibration.
 const SHIFTED: f64 = 0.9;
 
 /// What is known once everything is fitted.

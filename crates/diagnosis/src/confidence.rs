@@ -1,16 +1,19 @@
 //! How sure a verdict is, by how often such verdicts were right.
 //!
-//! The probabilities of sets come from a likelihood of Gaussian noise and a vocabulary that is taken to be complete. Records
-//! keep to neither: where the cause has no name, two or three effects together often stand in for it, and are sure of
-//! themselves. How often that happens only trials can say. So the stated confidence is a logistic function of a set's
-//! own log odds and of whether anything is left beside it, by status and by how many fitted effects it names, learned from a bank of withheld-effect trials:
+//! The probabilities of sets come from a likelihood of Gaussian noise and a vocabulary that is taken to be
+//! complete. Records keep to neither: where the cause has no name, two or three effects together often stand
+//! in for it, and are sure of themselves. How often that happens only trials can say. So the stated
+//! confidence is a logistic function of a set's own log odds and of whether anything is left beside it, by
+//! status and by how many fitted effects it names, learned from a bank of withheld-effect trials:
 //!
-//! 522 cases of `trainer trials configs/trials-quick.toml` with the seeds 202 and 303, at sizes of 12, 25, 50 and 100 and
-//! in two to three times the numbers; 704 with the seeds 404 and 405 once the search had changed; and 513 with the seed 19 at
-//! all six sizes, those of an even number among the own banks of `reports/trials/README.md`. The lines of each are the
-//! next one's prior, with a standard deviation of 1 and, in the slopes, of 1/4. Probabilities of single effects are the second's.
-//! What is small is often missed: that nothing is missing is the less sure the more small effects there are, and these banks
-//! have as many of 3 and 6 noise units as of 50 and 100. Confidence is scored on the odd numbers, which taught nothing.
+//! 522 cases of `trainer trials configs/trials-quick.toml` with the seeds 202 and 303, at sizes of 12, 25, 50
+//! and 100 and in two to three times the numbers; 704 with the seeds 404 and 405 once the search had changed;
+//! and 513 with the seed 19 at all six sizes, those of an even number among the own banks of
+//! `reports/trials/README.md`. The lines of each are the next one's prior, with a standard deviation of 1
+//! and, in the slopes, of 1/4. Probabilities of single effects are the second's. What is small is often
+//! missed: that nothing is missing is the less sure the more small effects there are, and these banks have as
+//! many of 3 and 6 noise units as of 50 and 100. Confidence is scored on the odd numbers, which taught
+//! nothing.
 
 use crate::answer::Status;
 
@@ -22,11 +25,11 @@ struct Line {
 
 const NOTHING_MISSING: Line = Line { at_even: -1.23, by_odds: 0.58 };
 const UNKNOWN: Line = Line { at_even: 0.79, by_odds: 0.0 };
-/// Of three effects or more. The banks hide two at most, so that they cannot show three to be right (of 25 such answers none
-/// was): the step from one to two, as the first banks had it, is taken once more.
+/// Of three effects or more. The banks hide two at most, so that they cannot show three to be right (of 25
+/// such answers none was): the step from one to two, as the first banks had it, is taken once more.
 const OF_MANY: Line = Line { at_even: -2.54, by_odds: 0.31 };
-/// By the number of fitted effects that are named, the last for more; none are fitted where stamps and values show what is
-/// missing.
+/// By the number of fitted effects that are named, the last for more; none are fitted where stamps and values
+/// show what is missing.
 const EFFECTS: [Line; 4] = [
     Line { at_even: -1.19, by_odds: 0.82 },
     Line { at_even: 0.26, by_odds: 0.48 },
@@ -39,8 +42,8 @@ const NAMED: Line = Line { at_even: -0.28, by_odds: 0.51 };
 const NOT_NAMED: Line = Line { at_even: -0.41, by_odds: 0.84 };
 const ONE_OF_MANY: Line = Line { at_even: -2.02, by_odds: 0.36 };
 
-/// Of an effect that stamps or values show by themselves: all 385 of the later training banks were there. One more that is,
-/// and one that is not.
+/// Of an effect that stamps or values show by themselves: all 385 of the later training banks were there. One
+/// more that is, and one that is not.
 pub(crate) const SHOWN: f64 = 386.0 / 387.0;
 
 /// Log odds beyond which the bank has nothing more to say.
@@ -50,7 +53,8 @@ const MOST_ODDS: f64 = 4.0;
 const LEFT_OVER: f64 = -4.08;
 const LEFT_BESIDE_ONE: f64 = -3.01;
 
-/// How often so many fitted effects stood in, without leaving anything, for something without a name; the last for more.
+/// How often so many fitted effects stood in, without leaving anything, for something without a name; the
+/// last for more.
 const STAND_IN: [f64; 4] = [0.035, 0.058, 0.095, 0.1];
 
 /// The probability that named effects, so many fitted ones among them, stand in for something without a name though
@@ -68,8 +72,8 @@ impl Line {
     }
 }
 
-/// The probability that a verdict is right, status and effects together, from that of its set and from the probability that
-/// anything is left beside it.
+/// The probability that a verdict is right, status and effects together, from that of its set and from the
+/// probability that anything is left beside it.
 pub(crate) fn confidence(status: Status, fitted: usize, probability: f64, left_over: f64) -> f64 {
     let [.., last] = &EFFECTS;
     match status {
@@ -79,8 +83,8 @@ pub(crate) fn confidence(status: Status, fitted: usize, probability: f64, left_o
     }
 }
 
-/// The probability that an effect acts, from that of all sets with it: one of so many that are named, or none of them. Where
-/// many are named, what could stand in one's place is one of many too.
+/// The probability that an effect acts, from that of all sets with it: one of so many that are named, or none
+/// of them. Where many are named, what could stand in one's place is one of many too.
 pub(crate) fn of_effect(fitted: usize, is_named: bool, probability: f64, left_over: f64) -> f64 {
     let line = match (fitted, is_named) {
         (..=2, true) => NAMED,

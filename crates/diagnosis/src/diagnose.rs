@@ -32,8 +32,8 @@ pub struct Settings {
     pub false_alarm: f64,
     /// Most effects named together, 1 to 5.
     pub most_effects: usize,
-    /// Ids of effects that are not considered: a vocabulary with holes, for whoever knows that an effect is absent, and for
-    /// trials of what is said where the cause has no name.
+    /// Ids of effects that are not considered: a vocabulary with holes, for whoever knows that an effect is
+    /// absent, and for trials of what is said where the cause has no name.
     pub without: Vec<String>,
     /// Randomness of the bootstraps.
     pub seed: Seed,
@@ -54,8 +54,8 @@ impl Default for Settings {
 /// Most effects that a set can hold.
 const MOST_EFFECTS: usize = 5;
 
-/// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first order stays below
-/// it up to a correlation of 0.84 from sample to sample.
+/// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first
+/// order stays below it up to a correlation of 0.84 from sample to sample.
 const FAR_ABOVE: f64 = 3.0;
 
 /// Searches on longer horizons at most.
@@ -257,8 +257,8 @@ pub fn diagnose(
     })
 }
 
-/// Searches on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to longer ones
-/// for as long as what was found follows the motion there.
+/// Searches on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
+/// longer ones for as long as what was found follows the motion there.
 fn explore(
     segments: &Data,
     calibrated: &Fit,

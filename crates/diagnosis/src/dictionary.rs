@@ -64,14 +64,14 @@ const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
 const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
 const DELAYS: [f64; 2] = [0.01, 0.1];
 const LINES: usize = 3;
-/// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a segment, its part
-/// of the inertia at most.
+/// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a
+/// segment, its part of the inertia at most.
 const SECOND_MODES: usize = 3;
 const OUT_OF_PHASE: f64 = 0.1;
 const FIRST_BODY: f64 = 0.02;
 
-/// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and over a long segment
-/// a body that is not yet where it belongs would lose count of the swings.
+/// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and
+/// over a long segment a body that is not yet where it belongs would lose count of the swings.
 fn second_body(data: &Data) -> f64 {
     let phase = data.facts.frequency * data.longest_span();
     (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(FIRST_BODY)
@@ -284,8 +284,8 @@ impl Dictionary {
         if entries.any(|entry| entry.candidate == forcing) { self.frequencies } else { 1.0 }
     }
 
-    /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is left without its
-    /// size.
+    /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is
+    /// left without its size.
     pub(crate) fn gain(&self, entries: &[usize]) -> Option<Gain> {
         let chosen: Vec<&Entry> = entries.iter().filter_map(|index| self.entries.get(*index)).collect();
         let all: Vec<(usize, bool)> = chosen

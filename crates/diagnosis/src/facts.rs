@@ -35,13 +35,13 @@ const FINEST: f64 = 1e-10;
 const COARSEST: f64 = 1e-6;
 const OF_NOISE: f64 = 1e-3;
 
-/// A motion's frequencies relative to the swing's: far slower than it a second body drifts along, and above the upper end
-/// hardly anything moves the body.
+/// A motion's frequencies relative to the swing's: far slower than it a second body drifts along, and above
+/// the upper end hardly anything moves the body.
 const SLOWEST_MODE: f64 = 0.3;
 const FASTEST: f64 = 12.0;
 
-/// The highest angular frequency at which samples so far apart tell frequencies from their images, with room for a line's
-/// width: 0.8 of half their rate.
+/// The highest angular frequency at which samples so far apart tell frequencies from their images, with room
+/// for a line's width: 0.8 of half their rate.
 pub(crate) fn below_images(interval: f64) -> f64 {
     0.8 * std::f64::consts::PI / interval
 }

@@ -7,7 +7,8 @@
 //!
 //! # Reference
 //! Marquardt, Journal of the Society for Industrial and Applied Mathematics 11 (1963) 431 (scaling by the
-//! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (how the damping follows the gain); Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
+//! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (how the damping follows the gain);
+//! Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
 
 use crate::hypothesis::Hypothesis;
 use crate::matrices::{element, entry, raised};
@@ -62,8 +63,8 @@ impl Effort {
     pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2, wary: true };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
-    /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained so little is the
-    /// last of a quadratic convergence.
+    /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained
+    /// so little is the last of a quadratic convergence.
     pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-6, sizes_first: 0, wary: false };
 }
 
@@ -130,8 +131,8 @@ fn evaluate(
     segments.iter().zip(&point.starts).map(|(segment, start)| simulator.predict(segment, start)).collect()
 }
 
-/// The same for a trial that is of use only below a bound on the weighted squares; `None` as soon as these are above it, which
-/// spares the rest of the segments.
+/// The same for a trial that is of use only below a bound on the weighted squares; `None` as soon as these
+/// are above it, which spares the rest of the segments.
 fn evaluate_below(
     simulator: &mut Simulator<'_>,
     segments: &[Segment],
@@ -167,7 +168,8 @@ fn begin_again(
     Ok(settle(simulator, hypothesis, segments, &mut point.starts, at))
 }
 
-/// The damping falls by this at most after a step that gained what was promised; it stays where a step gained less than half.
+/// The damping falls by this at most after a step that gained what was promised; it stays where a step gained
+/// less than half.
 const LOWEST_CUT: f64 = 1.0 / 3.0;
 
 /// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones.
@@ -176,8 +178,8 @@ const RAISE: f64 = 2.0;
 /// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
 pub(crate) const SHORT: f64 = 1e-2;
 
-/// A gain of so many times the smallest one is little, and so many steps in a row that gained little, however short they were, end
-/// a fit: in an uneven valley it would go on like that until its steps are spent.
+/// A gain of so many times the smallest one is little, and so many steps in a row that gained little, however
+/// short they were, end a fit: in an uneven valley it would go on like that until its steps are spent.
 const LITTLE: f64 = 2.0;
 const CREPT: usize = 5;
 

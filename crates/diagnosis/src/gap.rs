@@ -20,7 +20,8 @@ const BLOCKS: usize = 6;
 /// Ends of an interval of closures of a gap that is not told from none.
 const ANY_CLOSURE: [f64; 2] = [-1.0, 1.0];
 
-/// Squares by block of a segment, on the scale of a variance's sum: what the fitted start states have taken is put back.
+/// Squares by block of a segment, on the scale of a variance's sum: what the fitted start states have taken
+/// is put back.
 type Squares = Vec<Vec<f64>>;
 
 fn by_block(squares: &[f64], scale: f64) -> Vec<f64> {
@@ -36,8 +37,9 @@ fn held_out(held: &HeldOut) -> Squares {
     held.residuals.iter().map(own).collect()
 }
 
-/// The noise floor's: their sum is what it comes to over all samples, and they scatter as that sum does. A sample where the floor
-/// was not measured stands for the mean, and those where it was for all: each deviation counts N/n times.
+/// The noise floor's: their sum is what it comes to over all samples, and they scatter as that sum does. A
+/// sample where the floor was not measured stands for the mean, and those where it was for all: each
+/// deviation counts N/n times.
 fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
     let mean = floor.value * floor.value;
     let samples = squares.iter().map(Vec::len).sum::<usize>();
@@ -71,8 +73,9 @@ fn interval(squares: [&Squares; 3], block: impl Fn([f64; 3]) -> Block) -> Option
     ratio_interval(&runs)
 }
 
-/// The gap. Intervals hold the sums of squares of the simulators and of the noise floor against one another, swing by swing
-/// ([`ratio_interval`]). Where the gap is not told from none its closure may be anything from −1 to 1.
+/// The gap. Intervals hold the sums of squares of the simulators and of the noise floor against one another,
+/// swing by swing ([`ratio_interval`]). Where the gap is not told from none its closure may be anything from
+/// −1 to 1.
 pub(crate) fn gap(
     stages: &Stages<'_>,
     (floor, floors): (NoiseFloor, &[Vec<Option<f64>>]),

@@ -13,8 +13,8 @@ pub(crate) struct HeldOut {
     pub(crate) residuals: Vec<DVector<f64>>,
     /// Start values fitted by segment.
     pub(crate) starts: usize,
-    /// Mean square where nothing at all was fitted to the parts held out, not even their start states: what goes on from
-    /// the parts that were. The same as with start states where segments are not joined.
+    /// Mean square where nothing at all was fitted to the parts held out, not even their start states: what
+    /// goes on from the parts that were. The same as with start states where segments are not joined.
     pub(crate) continued: f64,
 }
 
@@ -69,8 +69,8 @@ impl Both<'_> {
         Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Effort::HELD_OUT)?.residuals)
     }
 
-    /// Residuals of the parts that neither `train` names nor a record begins with, nothing fitted to them. The first part is
-    /// always among those fitted: going back to it would be another question than going on.
+    /// Residuals of the parts that neither `train` names nor a record begins with, nothing fitted to them.
+    /// The first part is always among those fitted: going back to it would be another question than going on.
     fn continued(
         &self,
         train: &dyn Fn(usize) -> bool,

@@ -1,9 +1,10 @@
 //! How far a fit follows the motion from one start state.
 //!
-//! A segment of a few periods forgets what went before it: fits cannot lose count of the swings, and a disturbance spoils
-//! one segment only. But forgetting costs sight. An effect that shows in how swings add up over the whole record
-//! (a frequency or a decay that changes little by little) all but vanishes where every segment has a start state of its
-//! own. So segments are joined, two by two, for as long as a model follows: at the end a record has one start state.
+//! A segment of a few periods forgets what went before it: fits cannot lose count of the swings, and a
+//! disturbance spoils one segment only. But forgetting costs sight. An effect that shows in how swings add up
+//! over the whole record (a frequency or a decay that changes little by little) all but vanishes where every
+//! segment has a start state of its own. So segments are joined, two by two, for as long as a model follows:
+//! at the end a record has one start state.
 
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::response::Simulator;
@@ -52,9 +53,9 @@ impl Data {
         counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
     }
 
-    /// The joined parts that `keep` names, numbered as the unjoined segments are, and of every segment its very first sample,
-    /// where its start state stands. Segments of one part are kept or left out as a whole. Gives the kept segments'
-    /// numbers too.
+    /// The joined parts that `keep` names, numbered as the unjoined segments are, and of every segment its
+    /// very first sample, where its start state stands. Segments of one part are kept or left out as a whole.
+    /// Gives the kept segments' numbers too.
     pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<usize>) {
         let mut segments = Vec::new();
         let mut numbers = Vec::new();
@@ -297,7 +298,8 @@ mod tests {
         assert!(none.segments.is_empty() && numbers.is_empty());
     }
 
-    /// Where nothing is missing the whole record follows from one start state, and the states along it fit each segment.
+    /// Where nothing is missing the whole record follows from one start state, and the states along it fit
+    /// each segment.
     #[test]
     fn a_record_without_effects_is_followed_as_a_whole() {
         let data = data(&observed(&[]));
@@ -311,8 +313,8 @@ mod tests {
         assert!((short.squares / horizon.calibrated.squares - 1.0).abs() < 0.05);
     }
 
-    /// A softening whose frequency shift adds up over the record: 8e-4 of the spring's torque at most, next to nothing within
-    /// six periods.
+    /// A softening whose frequency shift adds up over the record: 8e-4 of the spring's torque at most, next
+    /// to nothing within six periods.
     #[test]
     fn what_adds_up_over_a_record_is_seen() {
         let observations = observed(&[("cubic_stiffness", &[-1.0])]);

@@ -1,8 +1,9 @@
 //! A free latent torque: what a torque without a name could still explain.
 //!
-//! A smooth function of position, velocity, time and the input in a tensor basis of low order, added to the fitted system to first
-//! order, its coefficients fitted to interleaved segments and scored on the others. Where it beats the best named
-//! effects clearly, something without a name is at work; where it does not, nothing smooth is left.
+//! A smooth function of position, velocity, time and the input in a tensor basis of low order, added to the
+//! fitted system to first order, its coefficients fitted to interleaved segments and scored on the others.
+//! Where it beats the best named effects clearly, something without a name is at work; where it does not,
+//! nothing smooth is left.
 
 use crate::dictionary::{Acting, Smooth, columns_of};
 use crate::fit::{Fit, solve};

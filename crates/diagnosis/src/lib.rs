@@ -1,8 +1,9 @@
 //! Where the gap between a record and a nominal simulator lies, which unmodeled effect causes it, and how far it
 //! shrinks once that effect is added.
 //!
-//! Blind by construction: all that goes in is [`Observations`] (times by a believed clock, values, input) and the nominal
-//! simulator; what made the record cannot be reached from here. [`diagnose`] gives a [`Diagnosis`].
+//! Blind by construction: all that goes in is [`Observations`] (times by a believed clock, values, input) and
+//! the nominal simulator; what made the record cannot be reached from here. [`diagnose`] gives a
+//! [`Diagnosis`].
 //!
 //! # How
 //! 1. Records are cut into segments of about six periods, each with a start state of its own (`segments`).

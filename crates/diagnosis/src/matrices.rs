@@ -16,8 +16,8 @@ pub(crate) fn element(vector: &DVector<f64>, index: usize) -> f64 {
     vector.get(index).copied().unwrap_or(0.0)
 }
 
-/// A square matrix with its diagonal raised by a factor, and each entry by a little of the largest: a column without any
-/// effect still gets a pivot.
+/// A square matrix with its diagonal raised by a factor, and each entry by a little of the largest: a column
+/// without any effect still gets a pivot.
 pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
     let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
     let mut raised = matrix.clone();

@@ -19,9 +19,9 @@ pub struct NoiseFloor {
 
 /// The floor from second differences of a residual.
 ///
-/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². In readings rounded to steps
-/// they show less than there is where the motion is slow: what rounding does to the differences of this very motion is worked
-/// out and taken back ([`crate::rounding`]).
+/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². In readings
+/// rounded to steps they show less than there is where the motion is slow: what rounding does to the
+/// differences of this very motion is worked out and taken back ([`crate::rounding`]).
 ///
 /// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
 /// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
@@ -43,8 +43,8 @@ pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
     }
 }
 
-/// For each sample of each segment but the outermost, a sixth of the squared second difference about it, on the scale on which
-/// their mean is the variance of a sample.
+/// For each sample of each segment but the outermost, a sixth of the squared second difference about it, on
+/// the scale on which their mean is the variance of a sample.
 pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
     let mut squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
     if let Some(step) = data.resolution {

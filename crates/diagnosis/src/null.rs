@@ -14,9 +14,10 @@ const DRAWS: usize = 1000;
 /// The largest gain of a single candidate, in noise variances, that is exceeded with a given probability where the
 /// calibrated simulator is right and the noise white.
 ///
-/// A parametric bootstrap in the space of the scores: under the null they are Gaussian with the dictionary's products as
-/// covariance, exactly so for Gaussian noise on this record's own times. The maximum runs over every candidate, shape and
-/// sign that the dictionary has columns for: a second body, which has none, pays for its lines by itself.
+/// A parametric bootstrap in the space of the scores: under the null they are Gaussian with the dictionary's
+/// products as covariance, exactly so for Gaussian noise on this record's own times. The maximum runs over
+/// every candidate, shape and sign that the dictionary has columns for: a second body, which has none, pays
+/// for its lines by itself.
 pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) -> f64 {
     let width = dictionary.columns.ncols();
     if width == 0 {

@@ -16,12 +16,13 @@ const BLOCK: usize = 64;
 /// makes it 3, and the cubic's own error grows in proportion.
 const WIDE: f64 = 4.0;
 
-/// Distance at double spacing over that at single spacing, at most. A wrong sample is off by as much from near neighbors as from
-/// far ones (1); a bend of the motion twice as much, a curve more.
+/// Distance at double spacing over that at single spacing, at most. A wrong sample is off by as much from
+/// near neighbors as from far ones (1); a bend of the motion twice as much, a curve more.
 const BEND: f64 = 1.35;
 
-/// Distance of a direct neighbor, in its own noise, over that of the sample itself, at most. A wrong sample moves the neighbors'
-/// distances by 2/3 of its error; on both sides of a step they are as large as each other.
+/// Distance of a direct neighbor, in its own noise, over that of the sample itself, at most. A wrong sample
+/// moves the neighbors' distances by 2/3 of its error; on both sides of a step they are as large as each
+/// other.
 const STEP: f64 = 0.85;
 
 /// Part of a record's samples beyond which outliers are no exceptions.
@@ -33,11 +34,12 @@ const ROUNDS: usize = 3;
 /// Which samples are kept: isolated ones that the motion around them does not support are left out of every fit.
 ///
 /// A sample is compared with the cubic through its four neighbors on the believed times, in units of what noise
-/// makes of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's ratio), of the whole record
-/// or of the samples around if that is larger; of a sensor with steps it is no less than a step's rounding. A sample is wrong
-/// where the distance exceeds what one of all samples reaches by chance with a probability of 0.001, plus what
-/// rounding can add to it at most. Besides, it has to be isolated: bends (end stops, reversals under friction) grow with the
-/// spacing of the neighbors, steps show on both sides.
+/// makes of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's ratio), of
+/// the whole record or of the samples around if that is larger; of a sensor with steps it is no less than a
+/// step's rounding. A sample is wrong where the distance exceeds what one of all samples reaches by chance
+/// with a probability of 0.001, plus what rounding can add to it at most. Besides, it has to be isolated:
+/// bends (end stops, reversals under friction) grow with the spacing of the neighbors, steps show on both
+/// sides.
 ///
 /// Where bursts lost samples, the places of samples within a burst are guesses, and none is called wrong.
 ///
@@ -102,8 +104,8 @@ impl Distance {
     }
 }
 
-/// Distances of all samples from cubics through the four neighbors once and twice `spacing` away; `None` near the ends and
-/// where samples are missing in between.
+/// Distances of all samples from cubics through the four neighbors once and twice `spacing` away; `None` near
+/// the ends and where samples are missing in between.
 fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Distance>> {
     let even = 4.0 * (spacing as f64 * interval).powi(4);
     let at = |index: Option<usize>| index.and_then(|index| points.get(index)).copied();
@@ -286,8 +288,8 @@ mod tests {
         }
     }
 
-    /// One sample of a hundred is wrong by ten times the noise. Of 6500 samples the limit lies at 5.3 standard deviations of a
-    /// distance, 7.3 times the noise. A sample is never blamed for its neighbor.
+    /// One sample of a hundred is wrong by ten times the noise. Of 6500 samples the limit lies at 5.3
+    /// standard deviations of a distance, 7.3 times the noise. A sample is never blamed for its neighbor.
     #[test]
     fn wrong_samples_are_found_and_no_others() {
         let times = even(6500);

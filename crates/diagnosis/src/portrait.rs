@@ -1,5 +1,5 @@
-//! A system's portrait from its series: backbone curves and the restoring-force surface. Pictures for people; no verdict
-//! rests on them.
+//! A system's portrait from its series: backbone curves and the restoring-force surface. Pictures for people;
+//! no verdict rests on them.
 
 use crate::answer::Series;
 use dynamics::Coefficients;

@@ -8,9 +8,10 @@ pub(crate) type Block = [f64; 2];
 /// The 95 % interval of Σa/Σb, where the sums come in blocks and the blocks in runs of neighbors; `None` where the
 /// data cannot tell Σb from zero, so that every ratio is possible.
 ///
-/// A ratio R is in the interval if Σ(a − R·b) differs from zero by no more than t standard errors, which is a quadratic in R.
-/// Variances come from differences of neighbors, cov(Σa, Σb) = n·Σ(aⱼ₊₁ − aⱼ)(bⱼ₊₁ − bⱼ)/(2m) over the m pairs of n blocks: what
-/// changes slowly from block to block, as the error of a simulator does along a decay, is no noise.
+/// A ratio R is in the interval if Σ(a − R·b) differs from zero by no more than t standard errors, which is a
+/// quadratic in R. Variances come from differences of neighbors, cov(Σa, Σb) = n·Σ(aⱼ₊₁ − aⱼ)(bⱼ₊₁ − bⱼ)/(2m)
+/// over the m pairs of n blocks: what changes slowly from block to block, as the error of a simulator does
+/// along a decay, is no noise.
 ///
 /// # Reference
 /// Fieller, Journal of the Royal Statistical Society B 16 (1954) 175; von Neumann, Kent, Bellinson, Hart, Annals of

@@ -10,15 +10,16 @@ use rayon::prelude::*;
 /// Sets that are refined in any case.
 const FEWEST: usize = 3;
 
-/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil, and nobody
-/// would mistake it for the best.
+/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil,
+/// and nobody would mistake it for the best.
 const HOPELESS: f64 = 30.0;
 
 /// Sets that are fitted again on every sample, and as many of their rivals.
 const MOST: usize = 6;
 
-/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ from the best of
-/// their size in one member: its rivals. There are `finer` times as many samples as the pool was fitted to. The calibrated simulator, fitted there already, comes first.
+/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ
+/// from the best of their size in one member: its rivals. There are `finer` times as many samples as the pool
+/// was fitted to. The calibrated simulator, fitted there already, comes first.
 pub(crate) fn refine(
     data: &Data,
     calibrated: &Fit,

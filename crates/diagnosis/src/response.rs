@@ -10,8 +10,9 @@ use dynamics::{DynamicsError, SystemEffect};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 
-/// Degree of the Taylor series: at tolerances near a thousandth of the noise, fewer products a step weigh more than longer
-/// steps (measured on records with friction: 14 takes a fifth longer, 10 half as long again).
+/// Degree of the Taylor series: at tolerances near a thousandth of the noise, fewer products a step weigh
+/// more than longer steps (measured on records with friction: 14 takes a fifth longer, 10 half as long
+/// again).
 const DEGREE: usize = 12;
 
 /// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
@@ -201,7 +202,8 @@ impl<'a> Simulator<'a> {
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, width);
         let response = &self.response;
-        // The third derivative of the position is not integrated: what needs it is expanded one order less far, or does not apply.
+        // The third derivative of the position is not integrated: what needs it is expanded one order less
+        // far, or does not apply.
         let missing = Vec::new();
         let (x, rate, curvature) = match self.data.quantity {
             Quantity::Position => (&response.position, &response.velocity, &response.acceleration),

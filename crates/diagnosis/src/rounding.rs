@@ -1,8 +1,9 @@
 //! What a sensor's steps make of a noise floor.
 //!
-//! Rounding is not white: where the motion is slow, or crosses a whole number of steps from sample to sample, neighbors are
-//! rounded alike, and second differences show less than there is. How much depends on the motion and on the size of the
-//! noise beneath the steps; so the sensor is played through: this motion, white Gaussian noise, rounding.
+//! Rounding is not white: where the motion is slow, or crosses a whole number of steps from sample to sample,
+//! neighbors are rounded alike, and second differences show less than there is. How much depends on the
+//! motion and on the size of the noise beneath the steps; so the sensor is played through: this motion, white
+//! Gaussian noise, rounding.
 
 use crate::noise::sixths;
 use rand_distr::{Distribution, StandardNormal};
@@ -14,8 +15,8 @@ const PLAYS: usize = 4;
 /// Bisections of the noise's size: to 1 part in 4000 of the floor or the step, whichever is larger.
 const BISECTIONS: usize = 12;
 
-/// A mean of squares that noise and rounding make, by how far it lies from that of the noise alone in the same draws: most of
-/// what is chance in the draws cancels.
+/// A mean of squares that noise and rounding make, by how far it lies from that of the noise alone in the
+/// same draws: most of what is chance in the draws cancels.
 #[derive(Debug, Clone, Copy, Default)]
 struct Mean {
     beyond: f64,
@@ -35,9 +36,9 @@ impl Mean {
 
 /// Mean square error of a sample over the mean of the [`sixths`], in readings rounded to whole steps.
 ///
-/// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`; `measured` is the
-/// root of the mean sixth in these readings. The noise beneath the steps is taken to be white and Gaussian, as large as
-/// makes that mean. 1 where the readings show no noise.
+/// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`;
+/// `measured` is the root of the mean sixth in these readings. The noise beneath the steps is taken to be
+/// white and Gaussian, as large as makes that mean. 1 where the readings show no noise.
 ///
 /// Draws are the nodes of an integral: they are the same in every call.
 pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f64 {

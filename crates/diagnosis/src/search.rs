@@ -166,8 +166,8 @@ fn additions(facts: &Facts, dictionary: &Dictionary, gain: &Gain) -> Vec<(Candid
             let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
             coefficients = rest;
             let mut parameters = dictionary.parameters(index, own);
-            // The coefficients suppose that calibration and start states have moved along, which the fit has still to do:
-            // sizes begin small and grow in its first steps, with everything else.
+            // The coefficients suppose that calibration and start states have moved along, which the fit has
+            // still to do: sizes begin small and grow in its first steps, with everything else.
             for (value, parameter) in parameters.iter_mut().zip(entry.candidate.parameters(facts)) {
                 let is_its_own_shape = parameter.strength && parameter.upper.is_finite();
                 if !parameter.shape && !is_its_own_shape {
@@ -241,8 +241,8 @@ pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> V
 }
 
 /// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
-/// show only once the first is in. The best of many frequencies promises something where there is nothing: the logarithm
-/// of how many `looked` at there were, for a sine and a cosine in white noise.
+/// show only once the first is in. The best of many frequencies promises something where there is nothing:
+/// the logarithm of how many `looked` at there were, for a sine and a cosine in white noise.
 fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     time > WHITE || stands_out(base, time, gain, threshold, looked)
 }
@@ -254,8 +254,8 @@ fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> 
     score > PROMISE * threshold + looked.ln()
 }
 
-/// The same of candidates that no columns stand for: those bring start states of their own into every segment, and a line in
-/// the spectrum of many short ones has to be worth these.
+/// The same of candidates that no columns stand for: those bring start states of their own into every
+/// segment, and a line in the spectrum of many short ones has to be worth these.
 fn stands_alone(
     base: &Fit,
     time: f64,

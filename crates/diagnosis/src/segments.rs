@@ -104,7 +104,8 @@ impl Data {
         Self { segments: segments.map(|(_, segment)| segment.clone()).collect(), ..self.clone() }
     }
 
-    /// Mean time between the samples of a segment: longer than between those of the record where only every so many are taken.
+    /// Mean time between the samples of a segment: longer than between those of the record where only every
+    /// so many are taken.
     pub(crate) fn interval(&self) -> f64 {
         let steps: usize = self.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum();
         let spans = self.segments.iter().filter_map(|s| Some(s.times.last()? - s.times.first()?));
@@ -319,8 +320,8 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
 
 /// Number of segments of a record, their length, and where the last ends.
 ///
-/// A swing that comes to rest within two segments is cut into two all the same, and of the rest that follows only as much
-/// is kept as there was motion: a body at rest says once what holds it.
+/// A swing that comes to rest within two segments is cut into two all the same, and of the rest that follows
+/// only as much is kept as there was motion: a body at rest says once what holds it.
 fn cuts(
     record: &Observations,
     nominal: &Nominal,

@@ -1,9 +1,9 @@
 //! Start states once more, each segment for itself.
 //!
-//! Dry friction and stops make a segment's squares uneven in its start state: the number of half swings before it sticks
-//! is a whole number. A step that serves all segments together leaves a single one behind in a hollow of its own, and
-//! that one then holds the coefficients. So each segment may begin again: where it is, where its first samples point,
-//! or at rest at its mean value.
+//! Dry friction and stops make a segment's squares uneven in its start state: the number of half swings
+//! before it sticks is a whole number. A step that serves all segments together leaves a single one behind in
+//! a hollow of its own, and that one then holds the coefficients. So each segment may begin again: where it
+//! is, where its first samples point, or at rest at its mean value.
 
 use crate::fit::{SHORT, extended};
 use crate::hypothesis::Hypothesis;

@@ -11,8 +11,8 @@ use crate::search::{alone, fit_all, vanished};
 use crate::segments::{MOST_SEARCHED, cut};
 use dynamics::Nominal;
 
-/// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with squares SS and p
-/// parameters.
+/// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with
+/// squares SS and p parameters.
 fn criterion(fit: &Fit) -> f64 {
     let samples = fit.samples() as f64;
     let starts = fit.point.starts.iter().map(Vec::len).sum::<usize>();
@@ -20,8 +20,9 @@ fn criterion(fit: &Fit) -> f64 {
     samples * (fit.squares / samples).max(f64::MIN_POSITIVE).ln() + parameters * samples.ln()
 }
 
-/// The effect that the Bayesian information criterion for white noise prefers, if each effect of the vocabulary is fitted alone
-/// beside the calibration, in segments of six periods; `None` where it prefers the recalibrated simulator.
+/// The effect that the Bayesian information criterion for white noise prefers, if each effect of the
+/// vocabulary is fitted alone beside the calibration, in segments of six periods; `None` where it prefers the
+/// recalibrated simulator.
 ///
 /// The usual way to choose a model, here for comparison: no sets, no horizon, no held-out parts, residuals taken to be
 /// white, and no answer but an effect of the vocabulary. It fits with the same derivatives as [`crate::diagnose`].

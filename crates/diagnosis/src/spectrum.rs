@@ -24,8 +24,9 @@ pub(crate) fn frequencies(data: &Data) -> f64 {
     (highest(data) * data.facts.duration / std::f64::consts::TAU).max(1.0)
 }
 
-/// Adds to each frequency of a grid what a sine and a cosine of it, under weights that have been multiplied with the values
-/// already, take away from these at even or uneven times; `squares` is the sum of the squared weights.
+/// Adds to each frequency of a grid what a sine and a cosine of it, under weights that have been multiplied
+/// with the values already, take away from these at even or uneven times; `squares` is the sum of the squared
+/// weights.
 ///
 /// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
 /// and a cosine.
@@ -67,8 +68,8 @@ fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
     peaks
 }
 
-/// The strongest steady lines of a residual that comes in segments, of one phase for a record, as of a machine next door:
-/// peaks of the periodogram.
+/// The strongest steady lines of a residual that comes in segments, of one phase for a record, as of a
+/// machine next door: peaks of the periodogram.
 pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line> {
     let (lowest, step, count) = grid(data, data.facts.duration);
     let mut gains = vec![0.0; count];
@@ -84,11 +85,11 @@ pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line>
 /// Decay over the longest segment, as a logarithm, that a second mode is looked for with.
 pub(crate) const DECAYS: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
 
-/// The strongest lines that decay from each segment's beginning, in a phase of its own, as of a second mode struck anew; with
-/// the rate of decay in 1/s.
+/// The strongest lines that decay from each segment's beginning, in a phase of its own, as of a second mode
+/// struck anew; with the rate of decay in 1/s.
 ///
-/// A steady sine takes away only 2/(r·T) of a line that decays at a rate r over a span T, so that each rate is looked for by
-/// itself: sine and cosine under exp(−r·t).
+/// A steady sine takes away only 2/(r·T) of a line that decays at a rate r over a span T, so that each rate
+/// is looked for by itself: sine and cosine under exp(−r·t).
 pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<(Line, f64)> {
     let span = data.longest_span();
     let (lowest, step, count) = grid(data, span);

@@ -273,8 +273,8 @@ struct Outcome {
     right: bool,
 }
 
-/// Ten records of each effect, of sizes over a factor of four, releases over a factor of two, nominal simulators off by up to
-/// 10 % in half of them; and a hundred without any effect.
+/// Ten records of each effect, of sizes over a factor of four, releases over a factor of two, nominal
+/// simulators off by up to 10 % in half of them; and a hundred without any effect.
 fn bank(only: Option<&str>) -> Vec<Outcome> {
     let cases: Vec<(&'static str, &[f64])> = CASES.iter().chain(CHAINS).copied().collect();
     let wanted = |id: &str| only.is_none_or(|only| only == id);

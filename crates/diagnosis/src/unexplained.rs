@@ -6,9 +6,9 @@
 //! - how far the spectrum of the residual stands out in a band about a harmonic of the swing, or midway between two,
 //!   above the bands beside it. That needs no basis, and sees torques and sensors alike.
 //!
-//! Either compares two variances: were nothing left, both would be the noise's. The evidence is the log likelihood ratio
-//! of two Gaussian variances against a common one, so that a noise of any color, if it is smooth over a few bands,
-//! counts for nothing, and few samples say little.
+//! Either compares two variances: were nothing left, both would be the noise's. The evidence is the log
+//! likelihood ratio of two Gaussian variances against a common one, so that a noise of any color, if it is
+//! smooth over a few bands, counts for nothing, and few samples say little.
 
 use crate::dictionary::{Acting, columns_of};
 use crate::facts::below_images;
@@ -43,8 +43,8 @@ const BESIDE: i32 = 1;
 /// How often is looked: in every band, with a free torque and with a free sensor. The evidence is the largest of all.
 const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
 
-/// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the correlations 2/3
-/// and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
+/// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the
+/// correlations 2/3 and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
 const WORTH: f64 = 108.0 / 29.0;
 
 /// Part of the largest eigenvalue below which a direction of the basis is one of the others once more.
@@ -127,8 +127,8 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     bands
 }
 
-/// What stands out of the spectrum, and the noise about the swing's own frequency: its variance and the squares that it is
-/// taken from.
+/// What stands out of the spectrum, and the noise about the swing's own frequency: its variance and the
+/// squares that it is taken from.
 fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
     let mut evidence: f64 = 0.0;

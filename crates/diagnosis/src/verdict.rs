@@ -5,26 +5,27 @@ use crate::fit::Fit;
 use crate::search::Pool;
 use crate::statistics::chi_squared_above;
 
-/// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered evidence at its
-/// word; a training bank may teach another value.
+/// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered
+/// evidence at its word; a training bank may teach another value.
 pub(crate) const TEMPERATURE: f64 = 1.0;
 
 /// Prior odds of a set of so many effects, each size as a whole, against none.
 const PRIOR_ODDS: [f64; 6] = [1.0, 1.0, 0.5, 0.25, 0.125, 0.0625];
 
-/// Share of what recalibration leaves that is without a name, at which `unknown` is as likely a verdict as the named effects
-/// that explain the rest.
+/// Share of what recalibration leaves that is without a name, at which `unknown` is as likely a verdict as
+/// the named effects that explain the rest.
 ///
-/// In training banks nearly every set that leaves something behind is wrong, however little it is: the smaller this share, the
-/// better. But laws of the vocabulary are idealizations of what acts in a machine, and a set that explains all but
-/// a few hundredths of a gap is worth its names, with the confidence that [`crate::confidence`] gives it.
+/// In training banks nearly every set that leaves something behind is wrong, however little it is: the
+/// smaller this share, the better. But laws of the vocabulary are idealizations of what acts in a machine,
+/// and a set that explains all but a few hundredths of a gap is worth its names, with the confidence that
+/// [`crate::confidence`] gives it.
 pub(crate) const UNKNOWN_SHARE: f64 = 0.03;
 
 /// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
 const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
 
-/// Prior odds that something acts that has no name. A likelihood ratio of two variances that chance alone exceeds once in a
-/// thousand records makes them even.
+/// Prior odds that something acts that has no name. A likelihood ratio of two variances that chance alone
+/// exceeds once in a thousand records makes them even.
 const UNKNOWN_ODDS: f64 = 0.01;
 
 /// A set with its evidence.
@@ -44,9 +45,9 @@ pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
 
 /// Every set with its probability, best first; the calibrated simulator alone is the empty one.
 ///
-/// A set of k effects has to pay the larger of the Bayesian information criterion's price of its parameters and k times half
-/// the gain that chance alone exceeds with the false-alarm probability: where the best of all candidates gains
-/// exactly that, a set with it is as likely as the calibrated simulator alone.
+/// A set of k effects has to pay the larger of the Bayesian information criterion's price of its parameters
+/// and k times half the gain that chance alone exceeds with the false-alarm probability: where the best of
+/// all candidates gains exactly that, a set with it is as likely as the calibrated simulator alone.
 pub(crate) fn weigh<'a>(
     pool: &'a Pool,
     calibrated: &Fit,
@@ -82,8 +83,9 @@ pub(crate) fn weigh<'a>(
 /// Part of the best set's probability down to which another can come before it for its members' sake.
 const NEAR_BEST: f64 = 0.2;
 
-/// The same with that set in front, of the size of the best and nearly as probable, whose members are each the most probable:
-/// where rivals share the probability of one part of a set, the rest should not decide between them.
+/// The same with that set in front, of the size of the best and nearly as probable, whose members are each
+/// the most probable: where rivals share the probability of one part of a set, the rest should not decide
+/// between them.
 ///
 /// # Reference
 /// Barbieri, Berger, Annals of Statistics 32 (2004) 870: the median probability model.
@@ -107,8 +109,8 @@ pub(crate) fn by_members(mut weighed: Vec<Weighed<'_>>) -> Vec<Weighed<'_>> {
     weighed
 }
 
-/// The same after sets have been passed over, for what they predict, in favor of one behind them: they lose their probability to
-/// the others.
+/// The same after sets have been passed over, for what they predict, in favor of one behind them: they lose
+/// their probability to the others.
 pub(crate) fn without_passed_over<'a>(mut weighed: Vec<Weighed<'a>>, chosen: &Fit) -> Vec<Weighed<'a>> {
     let own = &chosen.hypothesis.candidates;
     let place = weighed.iter().position(|w| w.fit.hypothesis.candidates == *own).unwrap_or(0);
@@ -136,8 +138,8 @@ pub(crate) fn acts(evidence: f64) -> f64 {
     1.0 / (1.0 + (-evidence).exp() / UNKNOWN_ODDS)
 }
 
-/// Probability that the answer is something without a name: that anything without a name acts, times how much of the gap it
-/// would be. The odds that it is the answer are (share/0.03)^2.885.
+/// Probability that the answer is something without a name: that anything without a name acts, times how much
+/// of the gap it would be. The odds that it is the answer are (share/0.03)^2.885.
 pub(crate) fn unknown(acts: f64, share: f64) -> f64 {
     let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
     acts * odds / (1.0 + odds)

@@ -73,9 +73,10 @@ pub(crate) struct Shift {
     pub(crate) torque: Interval,
 }
 
-/// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it goes on from what was
-/// fitted; or from start states, and going on no worse than what these parameters' scatter costs. What shows only where a
-/// record begins, as a mode that is struck there or a stop that the first swings reach, has nothing to go on from.
+/// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it
+/// goes on from what was fitted; or from start states, and going on no worse than what these parameters'
+/// scatter costs. What shows only where a record begins, as a mode that is struck there or a stop that the
+/// first swings reach, has nothing to go on from.
 fn predicts(after: &HeldOut, recalibrated: &HeldOut, further: usize, samples: usize) -> bool {
     // Fitted to one half of the samples, each parameter adds two parts in so many to the mean square of the other.
     let scatter = 1.0 + 2.0 * further as f64 / samples.max(1) as f64;
@@ -85,8 +86,8 @@ fn predicts(after: &HeldOut, recalibrated: &HeldOut, further: usize, samples: us
 }
 
 impl<'a> Work<'a> {
-    /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does: that is a constant
-    /// torque.
+    /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does:
+    /// that is a constant torque.
     pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
         let own = &repaired.hypothesis;
         let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
@@ -119,8 +120,9 @@ impl<'a> Work<'a> {
         Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
-    /// Goes through the sets in the order of their probability and takes the first that also predicts held-out parts: better
-    /// than the calibrated simulator, and not clearly worse than any other of the best sets.
+    /// Goes through the sets in the order of their probability and takes the first that also predicts
+    /// held-out parts: better than the calibrated simulator, and not clearly worse than any other of the best
+    /// sets.
     pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
         let own = |followed: &'a Fit, fitted: &'a Fit| Both {
             longer: self.data,
@@ -164,8 +166,8 @@ impl<'a> Work<'a> {
         Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
     }
 
-    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its interval from a
-    /// bootstrap over segments.
+    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its
+    /// interval from a bootstrap over segments.
     pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
         let count = repaired.hypothesis.candidates.len();
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)

@@ -2,10 +2,10 @@
 
 /// An effect as pieces of code.
 ///
-/// Expressions are written so that Python and Modelica read them alike: `+ - * /`, parentheses, and `sin`, `exp`, `abs`,
-/// `min`, `max`, `sign`. They may use `time`, `position`, `velocity`, `direction` (the sign of the velocity), `drive`
-/// (the input's torque), the nominal `inertia`, `damping`, `stiffness`, `rest_angle`, and in braces the effect's own
-/// parameters and hidden states: `{torque}`.
+/// Expressions are written so that Python and Modelica read them alike: `+ - * /`, parentheses, and `sin`,
+/// `exp`, `abs`, `min`, `max`, `sign`. They may use `time`, `position`, `velocity`, `direction` (the sign of
+/// the velocity), `drive` (the input's torque), the nominal `inertia`, `damping`, `stiffness`, `rest_angle`,
+/// and in braces the effect's own parameters and hidden states: `{torque}`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Export {
     /// The torque that it adds; none where it acts otherwise, as a delay of the input does.

@@ -274,8 +274,8 @@ enum Named {
     Classical(String),
 }
 
-/// Where the command line sets `estimator.name` alone, the file's keys for its own estimator are left over: an unknown key
-/// among these is told with the choice that leaves them out.
+/// Where the command line sets `estimator.name` alone, the file's keys for its own estimator are left over:
+/// an unknown key among these is told with the choice that leaves them out.
 fn of_another(error: SettingsError, document: &Document) -> SettingsError {
     let name =
         document.get("estimator.name").filter(|name| matches!(name.origin, settings::Origin::Override(_)));

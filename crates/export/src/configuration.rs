@@ -5,8 +5,8 @@ use dynamics::chain::Observed;
 use dynamics::{Coordinate, Quantity};
 use std::fmt::Write;
 
-/// The repaired simulator as a configuration that `trainer simulate` runs: the start, the sampling and the length of the
-/// first record, the effects one table each.
+/// The repaired simulator as a configuration that `trainer simulate` runs: the start, the sampling and the
+/// length of the first record, the effects one table each.
 #[must_use]
 pub fn configuration(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();

@@ -29,7 +29,8 @@ fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'
     all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
 }
 
-/// The equation of motion as text; its numbers follow, one a line, what acts on the measurement, and what is not part of it.
+/// The equation of motion as text; its numbers follow, one a line, what acts on the measurement, and what is
+/// not part of it.
 #[must_use]
 pub fn equation_text(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.text;

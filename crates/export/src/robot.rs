@@ -21,7 +21,8 @@ pub fn mjcf(repaired: &Repaired) -> String {
         Coordinate::Angle => ("hinge", "0 1 0"),
         Coordinate::Displacement => ("slide", "1 0 0"),
     };
-    // A point mass at a distance that carries half of the inertia has the weight asked for; the armature carries the rest.
+    // A point mass at a distance that carries half of the inertia has the weight asked for; the armature
+    // carries the rest.
     let inertia = nominal.inertia();
     let (mass, place, armature) = match terms.weight {
         Some((torque, angle)) => {

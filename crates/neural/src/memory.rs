@@ -9,8 +9,9 @@ const GIB: f64 = (1_u64 << 30) as f64;
 /// factor, the peaks' part of it and what the factor makes of that; Jacobians before and after they are put together.
 const AT_ONCE: f64 = 4.0;
 
-/// Refuses hidden widths, `estimator.hidden`, whose `parameters` take more memory than there may be: matrices of doubles,
-/// parameters by parameters and points by parameters, where `points` are those that the settings ask for.
+/// Refuses hidden widths, `estimator.hidden`, whose `parameters` take more memory than there may be: matrices
+/// of doubles, parameters by parameters and points by parameters, where `points` are those that the settings
+/// ask for.
 ///
 /// # Errors
 /// [`SettingsError::BadValue`] with the size and what to reduce.

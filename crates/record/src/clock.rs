@@ -63,8 +63,8 @@ pub struct Clock {
     pub reason: String,
     /// Time of every sample, in seconds, on the stamps' own origin.
     pub times_s: Vec<f64>,
-    /// Sampling rate by regression of stamps on the sample index, lost samples counted where the stamps tell how many, in
-    /// hertz; stated for every clock.
+    /// Sampling rate by regression of stamps on the sample index, lost samples counted where the stamps tell
+    /// how many, in hertz; stated for every clock.
     pub sample_rate_hz: f64,
     /// Its standard error, widened for the autocorrelation of the stamps' deviations, in hertz.
     pub sample_rate_std_error_hz: f64,
@@ -264,7 +264,8 @@ mod tests {
         assert!((clock.sample_rate_hz - 1e3 / 10.039).abs() < 1e-3);
     }
 
-    /// At 625 Hz a lost sample makes a step of 3.2 ms, which is no long one among steps of 1 and 2 ms; counting finds it.
+    /// At 625 Hz a lost sample makes a step of 3.2 ms, which is no long one among steps of 1 and 2 ms;
+    /// counting finds it.
     #[test]
     fn a_loss_that_rounded_stamps_hide_from_the_steps_is_in_the_times() {
         let numbers: Vec<usize> = (0..3000).filter(|i| *i != 1234).collect();

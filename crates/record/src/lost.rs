@@ -17,8 +17,8 @@ pub(crate) struct Numbers {
     pub(crate) lost: usize,
 }
 
-/// Part of a phase error by which the tracked phase of the even clock moves, pass by pass: each pass sharpens the interval that
-/// the next counts with, and less has to be made up for by following.
+/// Part of a phase error by which the tracked phase of the even clock moves, pass by pass: each pass sharpens
+/// the interval that the next counts with, and less has to be made up for by following.
 const GAINS: [f64; 5] = [0.3, 0.2, 0.1, 0.05, 0.05];
 
 /// Groups in a stretch that a first interval is taken from.
@@ -30,15 +30,17 @@ const LASTING: usize = 4;
 /// Most groups whose count is mended.
 const MOST_MENDED: usize = 500;
 
-/// Part of an interval that stamps may scatter by, root mean square, for their steps to be counted: a step then scatters by
+/// Part of an interval that stamps may scatter by, root mean square, for their steps to be counted: a step
+/// then scatters by
 /// 0.21 intervals, and one of 120 is miscounted.
 const SCATTER: f64 = 0.15;
 
-/// Factor by which counting has to bring groups nearer to an even clock where it does not bring all within that range: where a
-/// burst lost samples in several places, it still comes out far better than no count.
+/// Factor by which counting has to bring groups nearer to an even clock where it does not bring all within
+/// that range: where a burst lost samples in several places, it still comes out far better than no count.
 const NEARER: f64 = 3.0;
 
-/// Range of the distances of groups' ends from an even clock, in intervals: the last sample of a group waits for up to one.
+/// Range of the distances of groups' ends from an even clock, in intervals: the last sample of a group waits
+/// for up to one.
 const LATENESS: f64 = 1.2;
 
 impl Numbers {
@@ -47,12 +49,14 @@ impl Numbers {
         Self { of_samples: (0..samples).map(|index| index as f64).collect(), ends: ends.to_vec(), lost: 0 }
     }
 
-    /// Counts lost samples from the stamps at the ends of groups; `None` where the stamps speak against any, or cannot tell.
+    /// Counts lost samples from the stamps at the ends of groups; `None` where the stamps speak against any,
+    /// or cannot tell.
     ///
-    /// The phase of an even clock is tracked from group to group. Where a group and the next ones all lie later than it by
-    /// whole intervals, so many samples are missing. The count stands if every group then lies as near to an even clock (which
-    /// may drift) as groups without a loss do, and if that improves by more than the information criterion's price of two numbers,
-    /// place and length, for each gap. Where in its group a gap lies, the values tell: they run most smoothly.
+    /// The phase of an even clock is tracked from group to group. Where a group and the next ones all lie
+    /// later than it by whole intervals, so many samples are missing. The count stands if every group then
+    /// lies as near to an even clock (which may drift) as groups without a loss do, and if that improves by
+    /// more than the information criterion's price of two numbers, place and length, for each gap. Where in
+    /// its group a gap lies, the values tell: they run most smoothly.
     pub(crate) fn with_lost(
         ends: &[(f64, f64)],
         values: &[f64],
@@ -116,8 +120,8 @@ impl Numbers {
     }
 }
 
-/// Moves lost samples between neighboring groups: where a burst lost its last ones, its last sample waited for longer than an interval,
-/// and the loss seems to belong to the next burst.
+/// Moves lost samples between neighboring groups: where a burst lost its last ones, its last sample waited
+/// for longer than an interval, and the loss seems to belong to the next burst.
 fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     let Some(ends) = counted.get(..whole) else { return };
     let line = Line::through(ends);
@@ -133,11 +137,13 @@ fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     }
 }
 
-/// Counts one sample more, or one fewer, from the group on where that brings all groups nearest to an even clock that may drift;
-/// tells whether there was such a group. A tracked count can miss a single sample, which shifts all that follows.
+/// Counts one sample more, or one fewer, from the group on where that brings all groups nearest to an even
+/// clock that may drift; tells whether there was such a group. A tracked count can miss a single sample,
+/// which shifts all that follows.
 ///
-/// A step at group k changes the sum of squares by −2Δ·Σᵢ≥ₖ rᵢ + Δ²·‖Pk‖², with what is left of the step once constants, the
-/// line and the parabola are taken out. It has to fall by 2·ln N of the variance Δ²/12 of a last sample's wait.
+/// A step at group k changes the sum of squares by −2Δ·Σᵢ≥ₖ rᵢ + Δ²·‖Pk‖², with what is left of the step once
+/// constants, the line and the parabola are taken out. It has to fall by 2·ln N of the variance Δ²/12 of a
+/// last sample's wait.
 fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let Some(ends) = counted.get(..whole) else { return false };
     let line = Line::through(ends);
@@ -193,8 +199,8 @@ fn intervals(ends: &[(f64, f64)]) -> Vec<f64> {
     (0..=10).filter_map(at).filter(|interval| *interval > 0.0).collect()
 }
 
-/// Numbers of the groups' ends for a known interval. A count that takes back goes wrong less often where little is lost, one that
-/// does not where much is.
+/// Numbers of the groups' ends for a known interval. A count that takes back goes wrong less often where
+/// little is lost, one that does not where much is.
 fn count(ends: &[(f64, f64)], interval: f64, gain: f64, takes_back: bool, whole: usize) -> Ends {
     let Some(&(first, start)) = ends.first() else { return Vec::new() };
     let mut counted = vec![(first, start)];

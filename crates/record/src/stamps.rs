@@ -21,8 +21,8 @@ pub struct StampStatistics {
     pub gaps: usize,
     /// The decimal step that stamps are rounded to, in seconds, where there is one.
     pub rounding_s: Option<f64>,
-    /// Samples that are missing, where the stamps tell how many: every gap is then whole intervals of an even clock long.
-    /// Repeated stamps can tell it too.
+    /// Samples that are missing, where the stamps tell how many: every gap is then whole intervals of an even
+    /// clock long. Repeated stamps can tell it too.
     pub lost: usize,
     /// Root mean square distance of the groups' last stamps from an even clock, lost samples counted, in seconds.
     pub deviation_s: f64,
@@ -31,15 +31,15 @@ pub struct StampStatistics {
     /// Where no stamp is repeated: standard deviation of independent errors of the stamps, from second differences of
     /// their distances from an even clock, rounding included, in seconds. What changes slowly cancels. 0 otherwise.
     pub scatter_s: f64,
-    /// Root mean square of the parabola in those distances, in seconds: the logger's clock and the sensor's change their rates
-    /// against one another.
+    /// Root mean square of the parabola in those distances, in seconds: the logger's clock and the sensor's
+    /// change their rates against one another.
     pub bend_s: f64,
     /// The same over its standard error, widened for wander of what is left.
     pub bend_standard_errors: f64,
     /// Largest distance from the parabola, in seconds.
     pub left_by_bend_s: f64,
-    /// Standard errors by which the values run more smoothly on the even clock than on the stamps; negative where they run
-    /// less smoothly, 0 where stamps are repeated.
+    /// Standard errors by which the values run more smoothly on the even clock than on the stamps; negative
+    /// where they run less smoothly, 0 where stamps are repeated.
     pub preference_for_even: f64,
 }
 
@@ -164,8 +164,8 @@ mod tests {
         }
     }
 
-    /// Half a change of the rate times the time squared, less its line, is (change/2)·T²·(x² − x + 1/6) for x = t/T, whose mean
-    /// square is (change/2)²·T⁴/180.
+    /// Half a change of the rate times the time squared, less its line, is (change/2)·T²·(x² − x + 1/6) for x
+    /// = t/T, whose mean square is (change/2)²·T⁴/180.
     #[test]
     fn a_changing_rate_bends_the_stamps() {
         let change = 2e-5;

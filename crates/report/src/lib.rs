@@ -7,8 +7,8 @@
 //! What was run decides the page: [`render_run`] shows one estimator's estimate,
 //! [`render_comparison`] many methods on one envelope, [`render_prediction`] many methods on peaks that they
 //! did not see, [`render_diagnosis`] where the gap between a simulator and records lies, [`render_trials`] how often a
-//! diagnosis is right, [`render_run_table`] the runs of a sweep. The tables of comparison and prediction [`comparison_markdown`] and [`prediction_markdown`] give as
-//! Markdown too.
+//! diagnosis is right, [`render_run_table`] the runs of a sweep. The tables of comparison and prediction
+//! [`comparison_markdown`] and [`prediction_markdown`] give as Markdown too.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -80,8 +80,8 @@ struct Content {
     rows: Vec<RunTableRow>,
 }
 
-/// Every run folder below a folder, newest first. Files, hidden folders and folders of something else are passed over; an
-/// empty folder is a run that did not come to its first file.
+/// Every run folder below a folder, newest first. Files, hidden folders and folders of something else are
+/// passed over; an empty folder is a run that did not come to its first file.
 ///
 /// # Errors
 /// [`RunError::Io`] where the folder itself cannot be listed; a run that cannot be read is an entry of its own.

@@ -87,7 +87,8 @@ impl EventLog {
 
     /// Adds a line at the end of the file; a torn one gives way to it.
     ///
-    /// The file is locked meanwhile: shares of a sweep write into one log, and each line's digest follows from the one before.
+    /// The file is locked meanwhile: shares of a sweep write into one log, and each line's digest follows
+    /// from the one before.
     pub(crate) fn append(path: &Path, disk: &Disk, event: &Event) -> Result<(), RunError> {
         let mut file = disk.open_to_append(path).map_err(RunError::io(path, "open"))?;
         file.lock().map_err(RunError::io(path, "lock"))?;
@@ -99,7 +100,8 @@ impl EventLog {
         let body = text.strip_suffix('}').unwrap_or(&text);
         let line = format!("{body},\"digest\":\"{}\"}}\n", chained(&log.digest, body));
         if log.torn_line.is_some() {
-            // In place: who waits for the lock waits for this very file, and would write into one that another has displaced.
+            // In place: who waits for the lock waits for this very file, and would write into one that
+            // another has displaced.
             disk.shorten(&file, log.text.len() as u64).map_err(RunError::io(path, "shorten"))?;
         }
         disk.write(&mut file, line.as_bytes()).map_err(RunError::io(path, "write"))?;
@@ -122,8 +124,8 @@ fn event(line: &[u8]) -> Result<Event, serde_json::Error> {
     serde_json::from_slice(line)
 }
 
-/// What of a log can be read, for whoever shows what there is: a line that is damaged or cut short is passed over. To go on
-/// with a run takes [`EventLog::read`].
+/// What of a log can be read, for whoever shows what there is: a line that is damaged or cut short is passed
+/// over. To go on with a run takes [`EventLog::read`].
 pub(crate) fn readable(bytes: &[u8]) -> impl DoubleEndedIterator<Item = Event> {
     lines(bytes).filter_map(|line| event(line).ok())
 }

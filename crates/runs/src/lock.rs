@@ -53,7 +53,8 @@ impl Lock {
         Ok(Self { file })
     }
 
-    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments. Who has it is not said.
+    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments. Who has it
+    /// is not said.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.

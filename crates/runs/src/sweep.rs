@@ -9,8 +9,9 @@
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
 //! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
-//! was not begun or one that goes on where it was. A run that was killed goes on in its folder; one that failed is made again
-//! in another one. Several processes may work on one sweep: only the files of `state/` say what is done.
+//! was not begun or one that goes on where it was. A run that was killed goes on in its folder; one that
+//! failed is made again in another one. Several processes may work on one sweep: only the files of `state/`
+//! say what is done.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -25,7 +26,8 @@ use thiserror::Error;
 
 /// Name of the manifest.
 const MANIFEST: &str = "sweep.json";
-/// Folder of the runs' configurations; its lock is that of freezing, since the sweep's own is held throughout or not at all.
+/// Folder of the runs' configurations; its lock is that of freezing, since the sweep's own is held throughout
+/// or not at all.
 const CONFIGS: &str = "configs";
 const STATE: &str = "state";
 const RUNS: &str = "runs";

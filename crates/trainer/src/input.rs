@@ -18,7 +18,8 @@ pub(crate) struct Input {
     pub(crate) extraction: Extraction,
     pub(crate) oracle: DecayFit,
     /// The same record through each pipeline and each clock that makes a difference; that in force first; none before
-    /// [`Self::with_pipelines`]. That comes before any fit: of a long record it takes seconds, which nobody who stops a fit should wait for.
+    /// [`Self::with_pipelines`]. That comes before any fit: of a long record it takes seconds, which nobody
+    /// who stops a fit should wait for.
     pub(crate) pipelines: Vec<PipelineRow>,
 }
 

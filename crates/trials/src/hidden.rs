@@ -103,7 +103,7 @@ pub struct HiddenEffect {
     pub parameters: Vec<f64>,
     /// The law that acted: `vocabulary`, or its name.
     pub law: String,
-    /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration can absorb of
-    /// it, over the noise's standard deviation.
+    /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration
+    /// can absorb of it, over the noise's standard deviation.
     pub detectability: f64,
 }

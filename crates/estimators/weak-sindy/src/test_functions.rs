@@ -94,9 +94,9 @@ fn positions(steps: usize, width: usize) -> impl Iterator<Item = usize> {
 /// The test functions of a record, none of which the others span.
 ///
 /// The narrowest are two steps between peaks wide where `most` allows that many, otherwise so wide that half
-/// of them do; then twice as wide, and so on to the whole record, until `most` are kept. The narrow ones come first because they
-/// are the least alike: a set that starts with the wide ones has combinations that nearly vanish at every
-/// peak but not between, which the whitening blows up.
+/// of them do; then twice as wide, and so on to the whole record, until `most` are kept. The narrow ones come
+/// first because they are the least alike: a set that starts with the wide ones has combinations that nearly
+/// vanish at every peak but not between, which the whitening blows up.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct TestFunctions {
     functions: Vec<TestFunction>,

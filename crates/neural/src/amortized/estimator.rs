@@ -61,8 +61,8 @@ impl<N: Skilled> Amortized<N> {
     /// [`fields`](super::fields) besides the network's own keys.
     ///
     /// # Errors
-    /// [`SettingsError::Declaration`] where a key is not declared; [`SettingsError::BadValue`] where there are fewer peaks
-    /// at most than at least.
+    /// [`SettingsError::Declaration`] where a key is not declared; [`SettingsError::BadValue`] where there
+    /// are fewer peaks at most than at least.
     pub fn new(network: N, settings: &Resolved) -> Result<Self, SettingsError> {
         let (prior, training): (Prior, _) = (settings.section("estimator")?, settings.section("estimator")?);
         let [fewest, most] = prior.peaks;

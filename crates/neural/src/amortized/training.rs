@@ -90,8 +90,8 @@ impl State {
 }
 
 impl Training {
-    /// Trains an encoder from start values, or from the state that was kept. `rate_of` gives the λ that parameters read from whatever is
-    /// watched.
+    /// Trains an encoder from start values, or from the state that was kept. `rate_of` gives the λ that
+    /// parameters read from whatever is watched.
     pub(super) fn train<E: Encoder>(
         &self,
         prior: &Prior,

@@ -379,8 +379,8 @@ mod tests {
         assert_eq!(BOX.reach(&[1.0, 0.5], &[0.0, 0.0]).0, f64::INFINITY);
     }
 
-    /// Inside box and ball, the model's value as said, and no worse than the step cut short of the wall or any point on the
-    /// gradient's ray.
+    /// Inside box and ball, the model's value as said, and no worse than the step cut short of the wall or
+    /// any point on the gradient's ray.
     #[test]
     fn the_chosen_step_is_the_best_of_those_that_stay_inside() {
         const SHARE: f64 = 0.995;

@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 /// The `schema` field of a diagnosis.
 pub const DIAGNOSIS_SCHEMA: &str = "ringdown.diagnosis/1";
 
-/// Distance of two best fits in noise units from which on two explanations are told apart; below it they are one class. The
-/// diagnosis's own, which this layer does not reach.
+/// Distance of two best fits in noise units from which on two explanations are told apart; below it they are
+/// one class. The diagnosis's own, which this layer does not reach.
 pub const DISTINCT_DISTANCE: f64 = 3.29;
 
 /// A diagnosis of the gap between a nominal simulator and records of one system.
@@ -88,8 +88,8 @@ pub struct DiagnosisVerdict {
     pub effects: Vec<String>,
     /// Probability of this status and of these effects together.
     pub confidence: f64,
-    /// Probability that anything beyond noise is left beside these effects, however little of the gap it is; absent from answers
-    /// before it was written.
+    /// Probability that anything beyond noise is left beside these effects, however little of the gap it is;
+    /// absent from answers before it was written.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub left_over: Option<f64>,
     /// Classes of effects that these data cannot tell apart.

@@ -86,8 +86,8 @@ fn same(folder: &Path, kept: &Value, asked: &Value) -> Result<(), KeptError> {
     })
 }
 
-/// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer does not name
-/// is not compared.
+/// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer
+/// does not name is not compared.
 pub(super) fn check_answer(answer: &Path, records: &[PathBuf], path: &Path) -> Result<(), TrainerError> {
     let shown = || answer.display().to_string();
     let unusable = |problem: String| KeptError::NoDiagnosis { answer: shown(), problem };

@@ -31,7 +31,8 @@ struct Units {
 
 /// The scores of a method from its trials, `exponential` being the best exponential's on the same draws.
 ///
-/// `common` is the number of draws that every method was fitted on. p-values are not adjusted yet: [`adjust`] does that once all methods of a problem are known.
+/// `common` is the number of draws that every method was fitted on. p-values are not adjusted yet: [`adjust`]
+/// does that once all methods of a problem are known.
 pub(crate) fn outcome(
     problem: &Ready,
     trials: &[Placed],
@@ -304,8 +305,8 @@ mod tests {
         assert_eq!(form(""), "");
     }
 
-    /// Draw by draw: both failed; the method; the exponential; both came to rest too early; both are off alike; the method is
-    /// off by less.
+    /// Draw by draw: both failed; the method; the exponential; both came to rest too early; both are off
+    /// alike; the method is off by less.
     #[test]
     fn what_fails_where_the_exponential_fails_is_no_worse() {
         let units = |predictions: [Option<f64>; 6]| {

@@ -17,7 +17,8 @@ const STATE: &str = ".state";
 /// The checkpoints of a run.
 ///
 /// A finished fit is kept at once where it took longer than the interval between checkpoints; shorter ones are
-/// gathered until together they did, so that a thousand fits of a millisecond do not wait for the disk a thousand times.
+/// gathered until together they did, so that a thousand fits of a millisecond do not wait for the disk a
+/// thousand times.
 pub(crate) struct Ledger {
     folder: RunFolder,
     /// Digest of what the run was begun with: a checkpoint of another run is refused.
@@ -157,7 +158,8 @@ impl Ledger {
     }
 }
 
-/// The file of a fit's state: what of the name every system takes, and a digest, since names may differ in the rest alone.
+/// The file of a fit's state: what of the name every system takes, and a digest, since names may differ in
+/// the rest alone.
 fn state_file(name: &str) -> String {
     let shown = name.replace(|c: char| !c.is_ascii_alphanumeric(), "-");
     let whole = digest(name.as_bytes());

@@ -311,8 +311,8 @@ fn garbled(bytes: &[u8], generator: &mut impl rand::Rng) -> Vec<u8> {
     found
 }
 
-/// Behind the seal: what another build of the program, or a hand, has sealed is refused or gone on with. It ends no run in
-/// a panic.
+/// Behind the seal: what another build of the program, or a hand, has sealed is refused or gone on with. It
+/// ends no run in a panic.
 #[test]
 fn a_sealed_checkpoint_may_hold_anything() {
     let root = scratch();

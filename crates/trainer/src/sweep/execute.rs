@@ -155,8 +155,8 @@ enum Before {
     Open(RunFolder, Ledger),
 }
 
-/// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or where it failed
-/// there. One that is damaged or in another process's hands is left alone, and said.
+/// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or
+/// where it failed there. One that is damaged or in another process's hands is left alone, and said.
 fn begun_before(
     sweep: &FrozenSweep,
     label: &str,

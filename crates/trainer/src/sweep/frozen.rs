@@ -127,8 +127,8 @@ fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerE
     })
 }
 
-/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written before the
-/// manifest, of which the frozen configurations come first.
+/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written
+/// before the manifest, of which the frozen configurations come first.
 fn beginning(path: &Path) -> Result<RunFolder, RunError> {
     match RunFolder::check_free(path) {
         Ok(()) => Ok(RunFolder::open(path)),

@@ -1,9 +1,9 @@
 //! Weak-form sparse identification of the missing term.
 //!
-//! The equation of motion is multiplied by test functions that vanish with their derivative at both ends of a window, and
-//! integrated by parts, so that no second derivative of the record is taken: ∫φ″θ = −∫φ·(c·θ̇ + k·θ + …). Terms of the
-//! library are thrown out one by one, first the one that is missed least; the Bayesian information criterion chooses among
-//! the laws on that path, and the term that is missed most is named.
+//! The equation of motion is multiplied by test functions that vanish with their derivative at both ends of a
+//! window, and integrated by parts, so that no second derivative of the record is taken: ∫φ″θ = −∫φ·(c·θ̇ +
+//! k·θ + …). Terms of the library are thrown out one by one, first the one that is missed least; the Bayesian
+//! information criterion chooses among the laws on that path, and the term that is missed most is named.
 //!
 //! # Reference
 //! D. A. Messenger, D. M. Bortz, Multiscale Model. Simul. 19 (2021) 1474–1497.

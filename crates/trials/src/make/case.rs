@@ -340,9 +340,10 @@ const HARDLY_APART: f64 = 5.0;
 
 /// Effects of which each is as detectable as wanted beyond what recalibration *and the other one* make up for.
 ///
-/// Two that are so detectable alone may cancel: dry friction flattens the end of a decay and drag its beginning. With sizes d₁
-/// and d₂ alone and d₁₂ together their correlation is ρ = (d₁₂² − d₁² − d₂²)/(2·d₁·d₂), and of each d·√(1 − ρ²) is its own: both
-/// are hidden anew at so many times the size. `None` where that is out of reach.
+/// Two that are so detectable alone may cancel: dry friction flattens the end of a decay and drag its
+/// beginning. With sizes d₁ and d₂ alone and d₁₂ together their correlation is ρ = (d₁₂² − d₁² −
+/// d₂²)/(2·d₁·d₂), and of each d·√(1 − ρ²) is its own: both are hidden anew at so many times the size. `None`
+/// where that is out of reach.
 fn apart(
     setup: &Setup,
     wanted: f64,

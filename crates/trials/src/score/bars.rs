@@ -7,8 +7,8 @@ use crate::hidden::Bank;
 use runs::result::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
 /// Size in noise units at which an effect is told from its closest rival in 19 of 20 records, with one, two and three
-/// releases; from the linearized law of a decay of 3.5 Hz with a damping ratio of 0.006, released at 40° (and 10°; at 60°,
-/// 25°, 6°).
+/// releases; from the linearized law of a decay of 3.5 Hz with a damping ratio of 0.006, released at 40° (and
+/// 10°; at 60°, 25°, 6°).
 const SEPARABLE: [(&str, [f64; 3]); 11] = [
     ("gravity", [354.0, 301.0, 122.0]),
     ("cubic_stiffness", [354.0, 301.0, 122.0]),

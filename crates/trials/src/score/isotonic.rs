@@ -2,7 +2,8 @@
 
 use runs::result::ProbabilityMap;
 
-/// Fewest cases that a map is fitted to: a block's mean scatters by 0.2 with fewer than six, and there is more than one.
+/// Fewest cases that a map is fitted to: a block's mean scatters by 0.2 with fewer than six, and there is
+/// more than one.
 const FEWEST: usize = 20;
 
 /// A block that rises no further: sums of stated probabilities, of outcomes, and their count.
@@ -19,8 +20,8 @@ impl Block {
     }
 }
 
-/// Least squares among maps that never fall, by pooling adjacent violators. A knot stands at the mean of a block's stated
-/// probabilities; a map of too few cases has none and changes nothing.
+/// Least squares among maps that never fall, by pooling adjacent violators. A knot stands at the mean of a
+/// block's stated probabilities; a map of too few cases has none and changes nothing.
 ///
 /// # Reference
 /// M. Ayer, H. D. Brunk, G. M. Ewing, W. T. Reid, E. Silverman, Ann. Math. Statist. 26 (1955) 641–647.

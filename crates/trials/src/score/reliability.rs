@@ -78,8 +78,8 @@ fn calibration_error(sorted: &[(f64, bool)]) -> f64 {
 
 /// Reliability of stated probabilities. `None` of none.
 ///
-/// The bootstrap draws cases. Scatter alone makes a calibration error: what it would be on average for probabilities that
-/// are exactly right is stated beside it.
+/// The bootstrap draws cases. Scatter alone makes a calibration error: what it would be on average for
+/// probabilities that are exactly right is stated beside it.
 pub(crate) fn reliability(
     subject: &str,
     banks: &str,
