@@ -83,7 +83,8 @@ pub struct Gap {
     pub ceiling: f64,
     /// The noise floor.
     pub noise_floor: NoiseFloor,
-    /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀.
+    /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀; what is below −1, worse by the gap itself, is
+    /// stated as −1.
     pub closure: Interval,
     /// The same with the recalibrated simulator in R₀'s place: what the effects did.
     pub closure_of_recalibrated: Interval,

@@ -17,8 +17,11 @@ pub(crate) struct Stages<'a> {
 /// Blocks of a segment: swings, of which it holds about six.
 const BLOCKS: usize = 6;
 
+/// A simulator that doubles the square of the gap, or worse: closures are stated down to here.
+const LOWEST_CLOSURE: f64 = -1.0;
+
 /// Ends of an interval of closures of a gap that is not told from none.
-const ANY_CLOSURE: [f64; 2] = [-1.0, 1.0];
+const ANY_CLOSURE: [f64; 2] = [LOWEST_CLOSURE, 1.0];
 
 /// Squares by block of a segment, on the scale of a variance's sum: what the fitted start states have taken
 /// is put back.
@@ -58,7 +61,7 @@ fn mean_square(squares: &Squares, samples: f64) -> f64 {
 
 fn closure(after: f64, before: f64, noise: f64) -> f64 {
     let excess = before - noise;
-    if excess > 0.0 { 1.0 - (after - noise) / excess } else { 0.0 }
+    if excess > 0.0 { (1.0 - (after - noise) / excess).max(LOWEST_CLOSURE) } else { 0.0 }
 }
 
 /// Interval of a ratio of sums of squares, block by block.
@@ -75,7 +78,7 @@ fn interval(squares: [&Squares; 3], block: impl Fn([f64; 3]) -> Block) -> Option
 
 /// The gap. Intervals hold the sums of squares of the simulators and of the noise floor against one another,
 /// swing by swing ([`ratio_interval`]). Where the gap is not told from none its closure may be anything from
-/// −1 to 1.
+/// [`LOWEST_CLOSURE`] to 1.
 pub(crate) fn gap(
     stages: &Stages<'_>,
     (floor, floors): (NoiseFloor, &[Vec<Option<f64>>]),
@@ -91,7 +94,8 @@ pub(crate) fn gap(
     let closed = |before: &Squares, value: f64| {
         let left =
             interval([&repaired, before, &floors], |[after, before, noise]| [after - noise, before - noise]);
-        Interval { value, interval_95: left.map_or(ANY_CLOSURE, |[low, high]| [1.0 - high, 1.0 - low]) }
+        let ends = |[low, high]: [f64; 2]| [1.0 - high, 1.0 - low].map(|end| end.max(LOWEST_CLOSURE));
+        Interval { value, interval_95: left.map_or(ANY_CLOSURE, ends) }
     };
     let over = interval([&repaired, &floors, &floors], |[after, noise, _]| [after, noise]);
     let ratio = (rm / noise).sqrt();

@@ -6,7 +6,7 @@ use crate::statistics::student_above;
 pub(crate) type Block = [f64; 2];
 
 /// The 95 % interval of Σa/Σb, where the sums come in blocks and the blocks in runs of neighbors; `None` where the
-/// data cannot tell Σb from zero, so that every ratio is possible.
+/// data cannot tell Σb from zero or below, so that every ratio is possible.
 ///
 /// A ratio R is in the interval if Σ(a − R·b) differs from zero by no more than t standard errors, which is a
 /// quadratic in R. Variances come from differences of neighbors, cov(Σa, Σb) = n·Σ(aⱼ₊₁ − aⱼ)(bⱼ₊₁ − bⱼ)/(2m)
@@ -33,7 +33,7 @@ pub(crate) fn ratio_interval(runs: &[Vec<Block>]) -> Option<[f64; 2]> {
     let scale = t * t * blocks / (2.0 * count);
     let [square, product, constant] = [b * b - scale * bb, a * b - scale * ab, a * a - scale * aa];
     let under = product * product - square * constant;
-    (square > 0.0 && under >= 0.0)
+    (b > 0.0 && square > 0.0 && under >= 0.0)
         .then(|| [(product - under.sqrt()) / square, (product + under.sqrt()) / square])
 }
 
@@ -70,6 +70,8 @@ mod tests {
         let blocks =
             |sign: f64| (0..40).map(move |at| [1.0, if at % 2 == 0 { sign } else { -1.0 }]).collect();
         assert_eq!(ratio_interval(&[blocks(1.0)]), None);
+        // A positive sum that noise has made plainly negative says no more.
+        assert_eq!(ratio_interval(&[vec![[1.0, -1.0]; 40]]), None);
         assert_eq!(ratio_interval(&[]), None);
         assert_eq!(ratio_interval(&[vec![[1.0, 1.0]]]), None);
     }

@@ -149,7 +149,8 @@ pub struct GapSummary {
     /// 95 % interval of the noise floor.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub noise_floor_interval_95: [f64; 2],
-    /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀.
+    /// 1 − (R² − s₀²)/(R₀² − s₀²) with the repaired R and the given simulator's R₀; what is below −1, worse by the gap itself, is
+    /// stated as −1.
     pub closure: WithInterval,
     /// The same with the recalibrated simulator in the given one's place.
     pub closure_of_recalibrated: WithInterval,

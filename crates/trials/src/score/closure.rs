@@ -2,7 +2,7 @@
 
 use super::judgment::Judgment;
 use super::statistics::proportion;
-use crate::hidden::Hidden;
+use crate::hidden::{Bank, Hidden};
 use dynamics::chain::Observed;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{Active, DynamicsError, Effect, Hold, Input, Nominal, SYSTEM_HIDDEN, System};
@@ -16,11 +16,13 @@ use truth::Truth;
 const PERIODS: f64 = 6.0;
 /// Samples in a period that are compared: a swing holds no more than its harmonics.
 const PER_PERIOD: f64 = 25.0;
+/// What a diagnosis states of a closure that is lower still: worse by the gap itself.
+const LOWEST: f64 = -1.0;
 /// Steps of the fit of a start state.
 const STEPS: usize = 40;
 
 const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances of the repaired and of the nominal simulator from the \
-    motion without noise, start states fitted in segments of six periods";
+    motion without noise, start states fitted in segments of six periods; at least −1";
 
 /// Closure of an answer's repaired simulator on the clean motion: 1 − m²/m₀², where m and m₀ are the root mean square
 /// distances of the repaired and of the nominal simulator from the motion that generated the records, start states
@@ -30,9 +32,13 @@ const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances
 /// effects that its gap was computed with.
 ///
 /// # Errors
-/// In words, why there is no such number: hidden or named effects in the measuring chain, no spring, no gap to close, a
+/// In words, why there is no such number: measured residuals, hidden or named effects in the measuring chain, no spring, no gap to close, a
 /// law outside the vocabulary, or a coefficient outside its range.
 pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult) -> Result<f64, String> {
+    // What the simulator of a measured record leaves is motion too, and belongs to the gap that the diagnosis sees.
+    if hidden.bank == Bank::Measured {
+        return Err("measured residuals hold motion that nobody knows".to_owned());
+    }
     if hidden.records.is_empty() {
         return Err("the system cannot be said in the vocabulary".to_owned());
     }
@@ -239,10 +245,11 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> ClosureStudy {
     for judgment in judged {
         match (&judgment.case.true_closure, judgment.answer()) {
             (Ok(closure), Some(answer)) => {
-                let [low, high] = answer.gap.closure.interval_95;
-                held.push(low <= *closure && *closure <= high);
-                below += u64::from(*closure < low);
-                above += u64::from(*closure > high);
+                let [low, high] = answer.gap.closure.interval_95.map(|end| end.max(LOWEST));
+                let closure = closure.max(LOWEST);
+                held.push(low <= closure && closure <= high);
+                below += u64::from(closure < low);
+                above += u64::from(closure > high);
             }
             (Err(reason), Some(_)) => *left_out.entry(reason.clone()).or_default() += 1,
             (_, None) => *left_out.entry("no answer".to_owned()).or_default() += 1,
@@ -254,7 +261,6 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> ClosureStudy {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::hidden::Bank;
     use crate::score::sample::{answered, case};
     use dynamics::Start;
     use dynamics::chain::Chain;
@@ -347,6 +353,12 @@ mod tests {
         assert_eq!(why(&own, &nominal, &drift), "a named effect lies in the measuring chain");
         let impossible = answer(&[("coulomb_friction", &[("torque", -1.0)])], None);
         assert_eq!(why(&own, &nominal, &impossible), "a coefficient of the answer is outside its range");
+        own.bank = Bank::Measured;
+        assert_eq!(
+            why(&own, &nominal, &answer(&[], None)),
+            "measured residuals hold motion that nobody knows"
+        );
+        own.bank = Bank::Single;
         own.records.clear();
         assert_eq!(why(&own, &nominal, &drift), "the system cannot be said in the vocabulary");
     }
