@@ -4,7 +4,7 @@ use crate::envelopes::{bent, exponential, scattered};
 use crate::line::least_squares;
 use crate::{Check, Subject, query_times};
 use envelope::Envelope;
-use estimator::{Entry, Estimate, FitError, Tag};
+use estimator::{Entry, Estimate, FitError, Reached, Tag};
 use seed::Seed;
 use settings::{Document, Kind, Resolved, Section};
 
@@ -21,6 +21,7 @@ pub const CHECKS: &[Check] = &[
     Check { name: "a_slower_clock_slows_the_decay", applies: method, run: slower },
     Check { name: "an_added_decay_is_added", applies: method, run: added },
     Check { name: "untrained_it_is_wrong", applies: iterative, run: untrained },
+    Check { name: "away_from_its_end_it_states_no_interval", applies: always, run: no_interval },
     Check { name: "it_recovers_a_pure_exponential", applies: method, run: pure },
     Check { name: "its_error_falls_with_the_square_root_of_the_peaks", applies: method, run: falls },
     Check { name: "it_beats_the_null_estimator", applies: method, run: beats_null },
@@ -254,6 +255,21 @@ fn untrained(subject: &Subject<'_>) -> Result<(), String> {
         }
         if estimate.steps != 0 {
             return Err(format!("seed {seed}: {} steps on a budget of none", estimate.steps));
+        }
+    }
+    Ok(())
+}
+
+/// What a fit does not know it does not state: an interval belongs to a solution, not to where a budget ran out.
+fn no_interval(subject: &Subject<'_>) -> Result<(), String> {
+    let envelope = given(bent())?;
+    for steps in [0, 1, 2, 3] {
+        let estimate = subject.fit(&envelope, 0, Some(steps)).map_err(|error| error.to_string())?;
+        let reached = estimate.stop.reached;
+        let stated =
+            estimate.uncertainty.is_some() || estimate.predictions.iter().any(|p| p.std_error.is_some());
+        if stated && reached != Reached::Converged {
+            return Err(format!("after {steps} steps it is {}, and states an interval", reached.name()));
         }
     }
     Ok(())

@@ -91,6 +91,12 @@ struct Polar {
     angle: usize,
 }
 
+/// Whether an effect has a hidden motion of its own whose start is fitted with the record's.
+#[must_use]
+pub fn has_fitted_hidden_start(id: &str) -> bool {
+    Candidate::ALL.iter().any(|candidate| candidate.id() == id && candidate.free_hidden() > 0)
+}
+
 impl Candidate {
     /// Every candidate, in the order of the vocabulary. A constant torque is the rest angle's shift and therefore
     /// part of the calibration.

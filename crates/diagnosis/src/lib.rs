@@ -69,6 +69,7 @@ pub use answer::{
     Budget, Calibrated, Cell, Detectability, Diagnosis, EffectProbability, Experiment, Finding, Gap,
     Interval, MeasuringChain, ParameterEstimate, Rivalry, Series, SetScore, Stage, Status, Verdict, Where,
 };
+pub use candidate::has_fitted_hidden_start;
 pub use conclusion::DISTINCT_DISTANCE;
 pub use diagnose::{Settings, diagnose};
 pub use error::DiagnosisError;

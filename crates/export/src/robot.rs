@@ -21,30 +21,31 @@ pub fn mjcf(repaired: &Repaired) -> String {
         Coordinate::Angle => ("hinge", "0 1 0"),
         Coordinate::Displacement => ("slide", "1 0 0"),
     };
-    // A point mass at a distance that carries half of the inertia has the weight asked for; the armature
-    // carries the rest.
+    // A point mass at a distance that carries half of the inertia has the weight asked for; body and armature share
+    // the rest. MuJoCo takes no body whose mass or inertia is below 1e-15, so that none is a small part of the whole.
     let inertia = nominal.inertia();
-    let (mass, place, armature) = match terms.weight {
+    let (mass, place, own) = match terms.weight {
         Some((torque, angle)) => {
             let mass = 2.0 * torque * torque / (inertia * GRAVITY * GRAVITY);
             let arm = torque / (mass * GRAVITY);
-            (mass, [-arm * angle.sin(), 0.0, -arm * angle.cos()], inertia / 2.0)
+            (mass, [-arm * angle.sin(), 0.0, -arm * angle.cos()], inertia / 4.0)
         }
-        None => (1e-9 * inertia, [0.0; 3], inertia),
+        // On the axis of a hinge a mass moves nothing; of a slide it is the inertia.
+        None => (inertia / 2.0, [0.0; 3], inertia / 2.0),
     };
+    let armature = own;
     let [x, y, z] = place;
     let _ = write!(
         text,
         "  <compiler angle=\"radian\"/>\n  <option timestep=\"{:?}\" integrator=\"implicitfast\" gravity=\"0 0 -{GRAVITY}\"/>\n  <worldbody>\n    \
          <body name=\"body\">\n      <inertial pos=\"{x:?} {y:?} {z:?}\" mass=\"{mass:?}\" \
-         diaginertia=\"{tiny:?} {tiny:?} {tiny:?}\"/>\n      \
+         diaginertia=\"{own:?} {own:?} {own:?}\"/>\n      \
          <joint name=\"joint\" type=\"{kind}\" axis=\"{axis}\" damping=\"{:?}\" stiffness=\"{:?}\" \
          springref=\"{:?}\"",
         timestep(repaired),
         nominal.damping(),
         nominal.stiffness(),
         terms.rest,
-        tiny = 1e-9 * inertia,
     );
     if let Some(friction) = terms.friction {
         // MuJoCo's friction yields a little; by default so much that it is a part of the answer.

@@ -15,15 +15,12 @@ pub fn passes(error_percent: f64, tolerance_percent: f64) -> bool {
     error_percent <= tolerance_percent
 }
 
-/// The largest error; what is not a number counts as the largest of all.
+/// The largest error; what is not a number counts as the largest of all. Not a number for none.
 #[must_use]
 pub fn worst(errors: impl IntoIterator<Item = f64>) -> f64 {
-    errors.into_iter().fold(
-        0.0,
-        |worst: f64, error| {
-            if worst.is_nan() || error.is_nan() { f64::NAN } else { worst.max(error) }
-        },
-    )
+    let larger =
+        |one: f64, other: f64| if one.is_nan() || other.is_nan() { f64::NAN } else { one.max(other) };
+    errors.into_iter().reduce(larger).unwrap_or(f64::NAN)
 }
 
 /// The median; of an even number of entries the mean of the middle two; not a number for none.

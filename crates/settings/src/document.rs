@@ -61,7 +61,7 @@ impl Document {
     /// Reads TOML text; `file` is the name that messages use.
     ///
     /// # Errors
-    /// [`SettingsError::Syntax`] with line and column where the text is not TOML.
+    /// [`SettingsError::Syntax`] with line and column where the text is not TOML, or a name in it needs quotes.
     pub fn parse(file: &str, text: &str) -> Result<Self, SettingsError> {
         let table = DeTable::parse(text).map_err(|error| {
             let (line, column) = place(text, error.span().map_or(0, |span| span.start));
@@ -121,9 +121,6 @@ impl Document {
         let bad = || SettingsError::BadOverride { argument: argument.to_owned() };
         let (key, text) = argument.split_once('=').ok_or_else(bad)?;
         let key = key.trim();
-        let is_name = |part: &str| {
-            !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
-        };
         if !key.split('.').all(is_name) {
             return Err(bad());
         }
@@ -194,6 +191,18 @@ impl Document {
                 format!("{prefix}.{}", name.get_ref())
             };
             let (line, column) = place(text, name.span().start);
+            // A dotted key is split at its dots again, and written without quotes.
+            if !is_name(name.get_ref()) {
+                return Err(SettingsError::Syntax {
+                    file: self.file.clone(),
+                    line,
+                    column,
+                    problem: format!(
+                        "the name {:?} has other signs than letters, digits, _ and -",
+                        name.get_ref()
+                    ),
+                });
+            }
             let origin = Origin::File { file: self.file.clone(), line, column };
             if let DeValue::Table(inner) = value.get_ref() {
                 self.tables.push(key.clone());
@@ -255,6 +264,11 @@ fn plain(value: &DeValue<'_>) -> Result<Value, String> {
 }
 
 /// Line and column, both from 1, of a byte offset; columns count characters.
+/// Whether a name may be part of a dotted key.
+fn is_name(part: &str) -> bool {
+    !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
+}
+
 fn place(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

@@ -1,7 +1,5 @@
 //! The one place that prints.
 
-#![expect(clippy::print_stderr, reason = "this module owns the terminal")]
-
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::OnceLock;
 
@@ -37,21 +35,21 @@ pub(crate) fn table(text: &str, red: &[&str]) {
     result(&lines.collect::<Vec<_>>().join("\n"));
 }
 
-/// A remark, on standard error.
+/// A remark, on standard error. Where that cannot be written there is nobody to tell, and the work goes on.
 pub(crate) fn remark(text: &str) {
-    eprintln!("{text}");
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 
 /// An error, on standard error.
 pub(crate) fn error(text: &str) {
-    eprintln!("error: {text}");
+    remark(&format!("error: {text}"));
 }
 
 /// What one of many failed of, on standard error; red on a terminal.
 pub(crate) fn failure(text: &str) {
     if std::io::stderr().is_terminal() {
-        eprintln!("\u{1b}[31m{text}\u{1b}[0m");
+        remark(&format!("\u{1b}[31m{text}\u{1b}[0m"));
     } else {
-        eprintln!("error: {text}");
+        error(text);
     }
 }

@@ -6,6 +6,9 @@ use crate::error::DynamicsError;
 use crate::law::Values;
 use crate::units::Quantity;
 
+/// Largest rate of a clock, at the start as at the end.
+const FASTEST: f64 = 1.0;
+
 const DESCRIPTION: Description = Description {
     id: "clock_drift",
     title: "Clock drift",
@@ -18,7 +21,7 @@ const DESCRIPTION: Description = Description {
             name: "rate",
             symbol: "r",
             quantity: Quantity::Ratio,
-            range: Range { minimum: -0.5, maximum: 1.0, closed: true },
+            range: Range { minimum: -0.5, maximum: FASTEST, closed: true },
             meaning: "how much faster than true time the clock runs at the start",
         },
         Parameter {
@@ -60,16 +63,23 @@ impl Step for ClockDrift {
 
     fn check(&[rate, change, ..]: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
         let slowest = -(1.0 + rate) / extent.duration_s;
-        if change > slowest {
-            return Ok(());
+        let fastest = (FASTEST - rate) / extent.duration_s;
+        let refused = |relation, bound, reason| {
+            Err(DynamicsError::Contradiction {
+                effect: DESCRIPTION.id,
+                parameter: "change",
+                value: change,
+                relation,
+                bound,
+                reason,
+            })
+        };
+        if change <= slowest {
+            return refused("above", slowest, "below it the clock runs backward before the record ends");
         }
-        Err(DynamicsError::Contradiction {
-            effect: DESCRIPTION.id,
-            parameter: "change",
-            value: change,
-            relation: "above",
-            bound: slowest,
-            reason: "below it the clock runs backward before the record ends",
-        })
+        if change > fastest {
+            return refused("at most", fastest, "above it the clock gains more than a second in a second");
+        }
+        Ok(())
     }
 }

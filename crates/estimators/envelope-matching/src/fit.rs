@@ -23,6 +23,13 @@ struct Found {
     stop: Stop,
 }
 
+impl Found {
+    /// Whether the covariance of Gauss and Newton holds here: it is that of a minimum.
+    fn is_minimum(&self) -> bool {
+        self.stop.reached == Reached::Converged
+    }
+}
+
 impl Estimator for EnvelopeMatchingConfig {
     fn fit(&self, envelope: &Envelope, context: &FitContext<'_>) -> Result<Estimate, FitError> {
         if envelope.len() < FEWEST_PEAKS {
@@ -39,7 +46,7 @@ impl Estimator for EnvelopeMatchingConfig {
         Ok(Estimate {
             decay_rate,
             log_amplitude: matching.scaling.log_amplitude(found.parameters.x),
-            uncertainty: uncertainty(&matching, &found),
+            uncertainty: uncertainty(&matching, &found).filter(|_| found.is_minimum()),
             stop: found.stop,
             steps: found.steps,
             parameters: 2,
@@ -164,7 +171,7 @@ fn predictions(matching: &Matching, found: &Found, query_times: &[f64]) -> Vec<P
     let scaling = &matching.scaling;
     let times: Vec<f64> = query_times.iter().map(|&time| scaling.unit_time(time)).collect();
     let variance = found.at.loss / (matching.len() as f64 - 2.0);
-    let inverse = found.at.normal.try_inverse().filter(|_| found.steps > 0);
+    let inverse = found.at.normal.try_inverse().filter(|_| found.is_minimum());
     let predict = |reading: Option<Reading>| {
         let (value, gradient) = reading.unwrap_or((f64::NAN, Vector2::zeros()));
         let leverage = inverse.map(|inverse| gradient.dot(&(inverse * gradient)));

@@ -5,7 +5,7 @@ use crate::field::VectorField;
 use crate::objective::{Objective, Reading};
 use envelope::Envelope;
 use estimator::{
-    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Scaling, Step, Uncertainty,
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Uncertainty,
 };
 use nalgebra::DVector;
 use neural::{
@@ -86,7 +86,12 @@ fn describe(
     let fitted: Vec<f64> = scaled.iter().map(|&z| scaling.log_amplitude(z)).collect();
     let decay_rate = scaling.rate_per_centered_time(-objective.projected_slope(&scaled));
     let linearized = objective.linearize(&minimum.parameters)?;
-    let laplace = laplace(objective, &linearized);
+    let stop = LevenbergMarquardt::stop(minimum);
+    let laplace = match stop.reached {
+        // Away from the minimum the loss has no such shape.
+        Reached::Converged => laplace(objective, &linearized),
+        _ => None,
+    };
     let uncertainty = laplace.as_ref().and_then(|laplace| {
         let error = laplace.deviation(&objective.slope_gradient(&linearized.jacobian));
         let error = scaling.rate_per_centered_time(error);
@@ -99,7 +104,7 @@ fn describe(
         // The trajectory's own start: the envelope's time is zero at the first peak.
         log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
         uncertainty,
-        stop: LevenbergMarquardt::stop(minimum),
+        stop,
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,

@@ -4,7 +4,7 @@ use crate::config::PinnConfig;
 use crate::objective::Objective;
 use envelope::Envelope;
 use estimator::{
-    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Scaling, Step, Uncertainty,
+    Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Uncertainty,
 };
 use nalgebra::DVector;
 use neural::{
@@ -101,7 +101,12 @@ fn describe(
         values(network.forward(&column))?.into_iter().map(|z| scaling.log_amplitude(z)).collect();
     let mut tensors = network.named_tensors()?;
     tensors.push(NamedTensor { name: "decay_rate".to_owned(), shape: vec![1], values: vec![rate] });
-    let laplace = laplace(objective, &minimum.parameters)?;
+    let stop = LevenbergMarquardt::stop(minimum);
+    let laplace = match stop.reached {
+        // Away from the minimum the loss has no such shape.
+        Reached::Converged => laplace(objective, &minimum.parameters)?,
+        _ => None,
+    };
     let uncertainty = laplace.as_ref().and_then(|laplace| {
         let error = laplace.deviation(&of_rate(minimum.parameters.len()));
         let error = scaling.rate_per_centered_time(error);
@@ -112,7 +117,7 @@ fn describe(
         // The network's own value at the first peak, where the envelope's time is zero.
         log_amplitude: fitted.first().copied().unwrap_or(f64::NAN),
         uncertainty,
-        stop: LevenbergMarquardt::stop(minimum),
+        stop,
         steps: minimum.steps,
         parameters: minimum.parameters.len(),
         fitted_log_amplitudes: fitted,

@@ -26,7 +26,8 @@ impl Calibration {
 
 impl Training {
     /// The factors with which 95 % intervals hold the truth in 95 % of simulated envelopes, which the
-    /// network has not been trained on and reads as it reads any other. `None` where somebody asked to stop.
+    /// network has not been trained on and reads in batches: each is looked at until the last of its batch is settled, which is
+    /// oftener than one read alone. `None` where somebody asked to stop.
     ///
     /// Reference: Papadopoulos, Proedrou, Vovk, Gammerman, Inductive confidence machines for regression,
     /// ECML 2002, normalized by the stated error.

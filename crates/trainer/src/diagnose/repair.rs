@@ -2,7 +2,7 @@
 
 use super::read::{Given, observed};
 use super::result::title;
-use diagnosis::{Diagnosis, EffectProbability};
+use diagnosis::{Diagnosis, EffectProbability, has_fitted_hidden_start};
 use dynamics::{Active, DynamicsError, Effect, Start, System, Units};
 use export::Repaired;
 
@@ -13,10 +13,18 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     // The effects that the repaired fit has are those that carry a share of the gap.
     for row in found.effects.iter().filter(|row| row.gap_share.is_some()) {
         match active(row) {
-            Ok(active) => match active.effect() {
-                Effect::System(_) => effects.push(active),
-                Effect::MeasuringChain(_) => chain.push(active),
-            },
+            Ok(active) => {
+                match active.effect() {
+                    Effect::System(_) => {
+                        if has_fitted_hidden_start(row.id) {
+                            let title = title(row.id);
+                            left_out.push(format!("{title}: the second body's own motion at the start; here it starts moving along"));
+                        }
+                        effects.push(active);
+                    }
+                    Effect::MeasuringChain(_) => chain.push(active),
+                }
+            }
             Err(error) => left_out.push(format!("{}: {error}", title(row.id))),
         }
     }

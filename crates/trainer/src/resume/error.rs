@@ -11,6 +11,11 @@ pub(crate) enum ResumeError {
     )]
     NoRun { folder: String },
     #[error(
+        "{folder}: is of `trainer {command}`, which is not run again from its folder alone; `trainer {command} … --out {folder} \
+         --resume` looks whether it answers the same question"
+    )]
+    OfAnotherCommand { folder: String, command: &'static str },
+    #[error(
         "{file}: has been changed since the run began: its digest is not that in events.jsonl; bring it back as it was, \
          or begin anew in another folder"
     )]

@@ -163,7 +163,16 @@ fn environment_of(beginning: &Beginning<'_>) -> Environment {
 pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError> {
     let Some(event) = folder.events()?.last(START).cloned() else { return Ok(None) };
     let begun = serde_json::from_value(event.details);
-    begun.map(Some).map_err(|_| ResumeError::NoRun { folder: folder.path().display().to_string() }.into())
+    begun.map(Some).map_err(|_| {
+        let shown = folder.path().display().to_string();
+        let asks = |command| ResumeError::OfAnotherCommand { folder: shown.clone(), command };
+        let holds = |file| folder.path().join(file).exists();
+        match () {
+            () if holds("diagnosis.json") => asks("diagnose").into(),
+            () if holds("cases") => asks("trials").into(),
+            () => ResumeError::NoRun { folder: shown }.into(),
+        }
+    })
 }
 
 /// Whether the last word of a run's log is that it is finished.
@@ -211,14 +220,16 @@ pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeE
     Ok(())
 }
 
-/// A finished run is shown as it is.
+/// A finished run is shown as it is, and ends as it ended: one that failed its check has not passed since.
 fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
     if arguments.output.json {
         console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
     } else if !arguments.output.quiet {
         console::result(&format!("{}: this run is finished; nothing was changed", folder.path().display()));
     }
-    Ok(Outcome::Done)
+    let log = folder.events()?;
+    let has_failed = log.last(END).is_some_and(|end| end.details.get("pass") == Some(&false.into()));
+    Ok(if has_failed { Outcome::CheckFailed } else { Outcome::Done })
 }
 
 /// Writes the last event: that the run is finished, or where to go on. A finished run needs no checkpoints.

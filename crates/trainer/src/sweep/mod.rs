@@ -60,7 +60,10 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     execute::execute(&sweep, &jobs, threads(arguments), output, cancel)?;
     let _saving = Saving::begin();
     let table = finish(&mut sweep)?;
-    let event = if cancel.is_requested() { "interrupted" } else { "end" };
+    let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
+    // Who asks to stop when the last run is done has missed it.
+    let interrupted = cancel.is_requested() && own().any(|(_, line)| is_missing(line, false));
+    let event = if interrupted { "interrupted" } else { "end" };
     sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
     let path = sweep.folder.path().display().to_string();
     if output.json {
@@ -69,14 +72,13 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         print_table(&table);
         console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
     }
-    if cancel.is_requested() {
+    if interrupted {
         if !output.quiet {
             console::remark(&format!("interrupted; trainer sweep --out {path} --resume goes on"));
         }
         return Ok(Outcome::Interrupted);
     }
-    let own = sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
-    let is_fine = own.map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
+    let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
     Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
 }
 

@@ -11,6 +11,8 @@ use std::path::Path;
 pub(super) struct Finished {
     /// Name of its folder.
     pub(super) name: String,
+    /// Whether it came to its end, rather than being stopped.
+    pub(super) is_complete: bool,
     /// When it began and ended, in milliseconds since 1970.
     pub(super) began_ms: i64,
     pub(super) ended_ms: i64,
@@ -48,7 +50,9 @@ impl Finished {
         let shown = |name| Some((name, std::fs::read_to_string(path.join(name)).ok()?));
         let (mut metrics, mut tags) = (Vec::new(), Vec::new());
         flatten("", &result, &mut metrics, &mut tags);
+        let is_complete = folder.events()?.last("end").is_some();
         Ok(Self {
+            is_complete,
             files: SHOWN.into_iter().filter_map(shown).collect(),
             began_ms,
             ended_ms,

@@ -59,9 +59,10 @@ fn admitted(name: &str) -> String {
 }
 
 fn meta(run: &Finished, artifacts: &Path) -> String {
-    /// Codes of `SourceType.LOCAL` and `RunStatus.FINISHED` (`mlflow/protos/service.proto`).
+    /// Codes of `SourceType.LOCAL`, `RunStatus.FINISHED` and `RunStatus.KILLED` (`mlflow/protos/service.proto`).
     const LOCAL: u8 = 4;
     const FINISHED: u8 = 3;
+    const KILLED: u8 = 5;
     let id = id(run);
     yaml(&[
         ("artifact_uri", json!(artifacts.display().to_string())),
@@ -76,7 +77,7 @@ fn meta(run: &Finished, artifacts: &Path) -> String {
         ("source_type", json!(LOCAL)),
         ("source_version", json!("")),
         ("start_time", json!(run.began_ms)),
-        ("status", json!(FINISHED)),
+        ("status", json!(if run.is_complete { FINISHED } else { KILLED })),
         ("tags", json!([])),
         ("user_id", json!("")),
     ])
