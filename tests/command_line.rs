@@ -36,6 +36,14 @@ fn a_result_that_cannot_be_written_is_an_error() {
 }
 
 #[test]
+fn a_message_that_cannot_be_written_changes_no_exit_code() {
+    let Ok(full) = File::options().write(true).open("/dev/full") else { return };
+    let mut command = Command::new(env!("CARGO_BIN_EXE_trainer"));
+    let status = command.arg("nowhere.toml").current_dir(root()).stderr(full).status().unwrap();
+    assert_eq!(status.code(), Some(2));
+}
+
+#[test]
 fn a_reader_that_goes_away_is_none() {
     let mut command = Command::new(env!("CARGO_BIN_EXE_trainer"));
     command.args(["list", "effects"]).current_dir(root()).stdout(Stdio::piped()).stderr(Stdio::piped());

@@ -26,6 +26,28 @@ fn refusal(arguments: &[&str]) -> String {
     message
 }
 
+/// A shipped configuration of one method is that method as it stands in the paper's table and in comparisons.
+#[test]
+fn shipped_configurations_write_an_estimators_defaults() {
+    let mut compared = 0;
+    for entry in std::fs::read_dir(root().join("configs")).unwrap() {
+        let path = entry.unwrap().path();
+        if !std::fs::read_to_string(&path).unwrap().contains("\n[estimator]") {
+            continue;
+        }
+        let explained = json(&["explain", path.to_str().unwrap()]);
+        for setting in explained["settings"].as_array().unwrap() {
+            let key = setting["key"].as_str().unwrap();
+            if key.starts_with("estimator.") && key != "estimator.name" && !setting["default"].is_null() {
+                let number = |of: &str| setting[of].as_f64().ok_or(&setting[of]);
+                assert_eq!(number("value"), number("default"), "{}: {key}", path.display());
+                compared += 1;
+            }
+        }
+    }
+    assert!(compared > 50, "{compared}");
+}
+
 /// Files of a scratch folder, by name.
 fn files(contents: &[(&str, &str)]) -> TempDir {
     let folder = tempfile::tempdir().unwrap();

@@ -46,7 +46,12 @@ fn is_driven(id: &str) -> bool {
 }
 
 fn repaired(effects: &[(&str, &[f64])]) -> Repaired {
-    let nominal = Nominal::new(5e-4, 1.9e-4, 0.238, 0.02).unwrap();
+    of_size(1.0, effects)
+}
+
+/// The same motion of a body so many times as large.
+fn of_size(size: f64, effects: &[(&str, &[f64])]) -> Repaired {
+    let nominal = Nominal::new(size * 5e-4, size * 1.9e-4, size * 0.238, 0.02).unwrap();
     let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
     Repaired {
         system: System::new(nominal, active).unwrap(),
@@ -180,8 +185,12 @@ fn the_mujoco_joint_moves_as_our_own_simulation_does() {
         assert!(!text.contains("Not part of it"), "{text}");
         std::fs::write(name, text).unwrap();
     }
+    // A balance wheel and smaller: MuJoCo takes no body of less than 1e-15.
+    std::fs::write(folder.join("case_05.xml"), mjcf(&of_size(1e-6, &[]))).unwrap();
+    std::fs::write(folder.join("case_06.xml"), mjcf(&of_size(1e-9, &[]))).unwrap();
     let Some(found) = run(MUJOCO, &folder, "import mujoco") else { return };
-    for (case, found) in cases.iter().zip(&found) {
+    assert_eq!(found.len(), cases.len() + 2);
+    for (case, found) in cases.iter().chain([&cases[0]; 2]).zip(&found) {
         let off = distance(found, &own(&repaired(case)));
         assert!(off < 0.01, "{case:?}: {off}");
     }

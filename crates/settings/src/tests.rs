@@ -146,6 +146,18 @@ fn broken_toml_has_line_and_column() {
     assert!(message.starts_with("a.toml:2:"), "{message}");
 }
 
+/// It would be written without its quotes, and split at its dots.
+#[test]
+fn a_name_that_needs_quotes_is_refused() {
+    for text in ["[fit.\"a b\"]\nx = 1\n", "\"fit.seeds\" = 1\n", "[\"\"]\n"] {
+        let message = message(text, &[]);
+        assert!(
+            message.starts_with("a.toml:1:") && message.contains("letters, digits, _ and -"),
+            "{message}"
+        );
+    }
+}
+
 #[test]
 fn an_override_without_a_key_is_refused() {
     for argument in ["seed", "=3", "a..b=1", "a b=1"] {

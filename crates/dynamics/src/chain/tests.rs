@@ -361,6 +361,7 @@ fn impossible_parameters_are_named() {
         ("timestamp_batching", &[0.1, 0.05], "bursts overtake each other"),
         ("timestamp_jitter", &[0.01], "half the sample period"),
         ("clock_drift", &[0.0, -0.2], "the clock runs backward"),
+        ("clock_drift", &[0.0, 1e9], "gains more than a second in a second"),
         ("dropouts", &[0.95, 1.0], "`dropouts`: `share` is 0.95; expected from 0 to 0.9"),
         ("dropouts", &[0.1, 0.0], "`dropouts`: `length` is 0; expected a finite number of 1 or above"),
         ("outliers", &[1.5, 1.0], "`outliers`: `probability` is 1.5; expected from 0 to 1"),
