@@ -85,7 +85,7 @@ impl SindyConfig {
         Estimate {
             decay_rate,
             log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
-            uncertainty: uncertainty(scaled, law, decay_rate).filter(|_| steps > 0),
+            uncertainty: uncertainty(scaled, law, decay_rate).filter(|_| path.halt.is_none()),
             stop,
             steps,
             parameters: law.parameters(),
@@ -94,18 +94,18 @@ impl SindyConfig {
                 bytes: model_text(scaled, law, path, criteria, "").into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
-            predictions: predicted(scaled, law, steps, query_times),
+            predictions: predicted(scaled, law, path.halt.is_none(), query_times),
             equation: Some(equation),
         }
     }
 }
 
 /// The law at the times asked about. Its regression left residuals orthogonal to its own regressors; before
-/// the first regression there is no error to state.
-fn predicted(scaled: &Scaled, law: &Law, steps: u64, query_times: &[f64]) -> Vec<Prediction> {
+/// it has settled there is no error to state.
+fn predicted(scaled: &Scaled, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
     let columns: Vec<Column> = law.terms.iter().map(|(column, _)| *column).collect();
     let instruments = || regressors(&columns, Some(law), scaled);
-    let asked = steps > 0 && !query_times.is_empty();
+    let asked = has_settled && !query_times.is_empty();
     predictions(law, scaled, asked.then(instruments), query_times)
 }
 

@@ -210,7 +210,7 @@ impl WeakSindyConfig {
         Estimate {
             decay_rate,
             log_amplitude: fitted.first().copied().unwrap_or(scaled.mean),
-            uncertainty: uncertainty(problem, law, decay_rate).filter(|_| steps > 0),
+            uncertainty: uncertainty(problem, law, decay_rate).filter(|_| path.halt.is_none()),
             stop,
             steps,
             parameters: law.parameters(),
@@ -219,16 +219,16 @@ impl WeakSindyConfig {
                 bytes: model_text(scaled, law, path, criteria, &method).into_bytes(),
             }),
             fitted_log_amplitudes: fitted,
-            predictions: predicted(problem, law, steps, query_times),
+            predictions: predicted(problem, law, path.halt.is_none(), query_times),
             equation: Some(equation),
         }
     }
 }
 
-/// The law at the times asked about; before the first regression there is no error to state.
-fn predicted(problem: &Problem<'_>, law: &Law, steps: u64, query_times: &[f64]) -> Vec<Prediction> {
+/// The law at the times asked about; before it has settled there is no error to state.
+fn predicted(problem: &Problem<'_>, law: &Law, has_settled: bool, query_times: &[f64]) -> Vec<Prediction> {
     let instruments = || problem.functions.instruments(law, problem.scaled);
-    let asked = steps > 0 && !query_times.is_empty();
+    let asked = has_settled && !query_times.is_empty();
     predictions(law, problem.scaled, asked.then(instruments), query_times)
 }
 
