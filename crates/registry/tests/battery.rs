@@ -14,7 +14,11 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 /// What an estimator is let off, and why. A waived check that passes fails.
-const WAIVERS: &[Waiver] = &[];
+const WAIVERS: &[Waiver] = &[Waiver {
+    estimator: "symbolic",
+    check: "away_from_its_end_it_states_no_interval",
+    reason: "its steps are generations of expressions; the constants of the one at hand are always fitted to the end",
+}];
 
 /// Envelopes of the short and of the long coverage test.
 const SHORT: u64 = 40;
