@@ -42,7 +42,7 @@ pub struct DiagnosisResult {
     /// The file of the nominal simulator.
     pub nominal: String,
     /// Digest of what that file states: its values, not its comments. Empty in files of older versions.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub nominal_digest: String,
     /// Root of the random draws.
     pub seed: u64,
