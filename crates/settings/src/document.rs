@@ -263,12 +263,12 @@ fn plain(value: &DeValue<'_>) -> Result<Value, String> {
     })
 }
 
-/// Line and column, both from 1, of a byte offset; columns count characters.
 /// Whether a name may be part of a dotted key.
 fn is_name(part: &str) -> bool {
     !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
 }
 
+/// Line and column, both from 1, of a byte offset; columns count characters.
 fn place(text: &str, offset: usize) -> (usize, usize) {
     let before = text.get(..offset).unwrap_or(text);
     let line = before.matches('\n').count() + 1;

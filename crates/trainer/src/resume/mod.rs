@@ -167,10 +167,12 @@ pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError>
         let shown = folder.path().display().to_string();
         let asks = |command| ResumeError::OfAnotherCommand { folder: shown.clone(), command };
         let holds = |file| folder.path().join(file).exists();
-        match () {
-            () if holds("diagnosis.json") => asks("diagnose").into(),
-            () if holds("cases") => asks("trials").into(),
-            () => ResumeError::NoRun { folder: shown }.into(),
+        if holds("diagnosis.json") {
+            asks("diagnose").into()
+        } else if holds("cases") {
+            asks("trials").into()
+        } else {
+            ResumeError::NoRun { folder: shown }.into()
         }
     })
 }

@@ -50,7 +50,7 @@ impl Finished {
         let shown = |name| Some((name, std::fs::read_to_string(path.join(name)).ok()?));
         let (mut metrics, mut tags) = (Vec::new(), Vec::new());
         flatten("", &result, &mut metrics, &mut tags);
-        let is_complete = folder.events()?.last("end").is_some();
+        let is_complete = crate::resume::is_finished(&folder)?;
         Ok(Self {
             is_complete,
             files: SHOWN.into_iter().filter_map(shown).collect(),
