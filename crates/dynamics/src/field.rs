@@ -36,6 +36,19 @@ pub(crate) struct State<S> {
     pub(crate) input: S,
 }
 
+impl State<f64> {
+    /// The same state in another kind of number.
+    pub(crate) fn over<S: Scalar>(&self) -> State<S> {
+        State {
+            time: S::from(self.time),
+            position: S::from(self.position),
+            velocity: S::from(self.velocity),
+            hidden: self.hidden.map(S::from),
+            input: S::from(self.input),
+        }
+    }
+}
+
 /// One effect of a system.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Term<S> {

@@ -186,3 +186,34 @@ fn at_rest_without_torque_a_ramp_moves_it_either_way() {
         assert!(response.steps < 300, "{}", response.steps);
     }
 }
+
+#[test]
+fn sticking_and_breaking_away_for_long_does_not_stall() {
+    // Regression: where a torque just reached the hold, rounding of the spring's torque let the body break away and
+    // stick again without end.
+    let mut generator = Seed::new(12).child("stick-slip").generator();
+    for round in 0..1000 {
+        let inertia = 10_f64.powf(generator.random_range(-4.0..1.0));
+        let omega = TAU * 10_f64.powf(generator.random_range(0.0..1.0));
+        let nominal = Nominal::new(inertia, 0.02 * omega * inertia, omega * omega * inertia, 0.05).unwrap();
+        let hold = nominal.stiffness() * 10_f64.powf(generator.random_range(-6.0..-3.0));
+        let forcing =
+            [hold * generator.random_range(0.5..2.0), omega * generator.random_range(0.3..2.0), 2.9];
+        let fall_off = [0.0, hold, 10_f64.powf(generator.random_range(-2.0..1.0))];
+        let coupling = [0.1 * inertia, 0.4 * nominal.stiffness(), 0.5 * omega * inertia];
+        let mut list: Vec<(&str, &[f64])> = vec![("periodic_forcing", &forcing)];
+        match round % 3 {
+            0 => list.push(("coulomb_friction", &fall_off[1..2])),
+            1 => list.push(("stribeck_friction", &fall_off)),
+            _ => list.extend([("stribeck_friction", &fall_off[..]), ("flexible_coupling", &coupling[..])]),
+        }
+        let system = with(nominal, &list);
+        let start = Start::release(0.05 + 10.0 * hold / nominal.stiffness());
+        let times: Vec<f64> = grid(200.0 / omega, 10.0 * omega).iter().map(|time| 23.0 + time).collect();
+        let tolerance = 10_f64.powf(generator.random_range(-10.0..-3.0));
+        let settings = Settings { tolerance, degree: 12, most_steps: 6_000, ..Settings::default() };
+        let mut model = Model::new(&system, &[], settings).unwrap();
+        let run = model.run(start.into(), None, &times);
+        assert!(run.is_ok(), "{round} {list:?} {nominal:?} {tolerance:e}: {:?}", run.err());
+    }
+}

@@ -7,6 +7,7 @@ use crate::input::Input;
 use crate::law::MOST_HIDDEN;
 use crate::nominal::Nominal;
 use crate::registry::{Effect, SystemEffect};
+use crate::scalar::Rounded;
 use serde::{Deserialize, Serialize};
 
 /// A nominal oscillator together with effects that act in it.
@@ -141,7 +142,10 @@ impl System {
 }
 
 /// Excess of the torque over the dry friction's hold that counts as balance, relative to the hold.
-pub(crate) const BALANCE: f64 = 1e-12;
+const BALANCE: f64 = 1e-12;
+
+/// How many times the bound on its rounding a torque may be off: a series groups its terms otherwise than the law does.
+pub(crate) const ROUNDING: f64 = 4.0;
 
 fn acting(active: &Active) -> Result<SystemEffect, DynamicsError> {
     match active.effect() {
@@ -181,10 +185,17 @@ impl Field<f64> {
         let torque = self.torque(state, &stuck);
         match self.holding_torque() {
             // A balance to rounding holds: whether it is about to break is seen from how the torque goes on.
-            Some(holding) if torque.abs() <= holding * (1.0 + BALANCE) => stuck,
+            Some(holding) if torque.abs() <= holding + self.balance(state) => stuck,
             _ if torque < 0.0 => self.moving(state, -1.0),
             _ => self.moving(state, 1.0),
         }
+    }
+
+    /// By how much a torque may miss the dry friction's hold and still be in balance with it, in N·m: what is left of
+    /// torques that cancel is rounding. At rest only.
+    pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
+        let torque = self.over::<Rounded>().torque(&state.over(), &self.moving(state, 0.0));
+        BALANCE * self.holding_torque().unwrap_or(0.0) + ROUNDING * torque.error
     }
 
     /// The mode of a state that moves in a direction, or sticks where that is 0.

@@ -3,7 +3,7 @@
 use super::march::March;
 use super::series::{LENGTH, Series, slope, value};
 use crate::edges::Edge;
-use crate::system::BALANCE;
+use std::ops::RangeInclusive;
 
 /// Parts of a step at which the sign of a margin is looked at.
 const LOOKS: u32 = 8;
@@ -16,27 +16,34 @@ impl March<'_> {
     pub(super) fn first_edge(&self, number: usize, degree: usize, size: f64) -> Option<(Edge, f64)> {
         let piece = self.model.graphs.get(number)?;
         let mut first: Option<(Edge, f64)> = None;
-        let [_, velocity, ..] = self.state;
+        let point = self.point();
         let field = &self.model.field;
-        let balance = BALANCE * field.holding_torque().unwrap_or(0.0) / field.nominal.inertia;
+        // At rest what a torque exceeds the hold by may be rounding; how it goes on is not.
+        let rests = point.velocity == 0.0 && field.holding_torque().is_some();
+        let balance = if rests { field.balance(&point) } else { 0.0 };
+        let resolution = 4.0 * f64::EPSILON * self.time.abs();
         for &(edge, node) in &piece.graph.edges {
             let margin = piece.graph.series(node).get(..=degree).unwrap_or_default();
             let until = first.map_or(size, |(_, time)| time);
-            let mut balanced: Series = [0.0; LENGTH];
-            let margin = if edge == Edge::Reversal && velocity == 0.0 {
-                // Just broken away: what the torque exceeds the hold by is rounding, how it goes on is not.
-                for (slot, coefficient) in balanced.iter_mut().zip(margin) {
-                    *slot = *coefficient;
+            let time = match edge {
+                Edge::BreakAway { .. } if rests => {
+                    let known = 2.0 * (balance + resolution * slope(margin, 0.0).abs());
+                    from_rest(margin, 0, -known..=known, until, resolution)
                 }
-                let [_, acceleration, ..] = &mut balanced;
-                if acceleration.abs() <= balance {
-                    *acceleration = 0.0;
+                Edge::Reversal if rests => {
+                    let next = margin.get(2).map_or(0.0, |next| 2.0 * next.abs());
+                    let balance = balance / field.nominal.inertia;
+                    from_rest(
+                        margin,
+                        1,
+                        -4.0 * (balance + resolution * next)..=0.5 * balance,
+                        until,
+                        resolution,
+                    )
                 }
-                balanced.get(..=degree).unwrap_or_default()
-            } else {
-                margin
+                _ => crossing(margin, until, Some(resolution)),
             };
-            if let Some(time) = crossing(margin, until, 4.0 * f64::EPSILON * self.time.abs()) {
+            if let Some(time) = time {
                 first = Some((edge, time));
             }
         }
@@ -44,9 +51,32 @@ impl March<'_> {
     }
 }
 
+/// As [`crossing`], where the coefficient of one order tells by how much the torque exceeds the hold of dry friction:
+/// nothing where it lies in `balance`. What sticks, what breaks away and what turns back at once must not follow
+/// each other without end. So the three differ by more than rounding in what they call balance: a body may stick up to
+/// [`Field::balance`](crate::field::Field::balance) beyond the hold; it breaks away on account of the torque's
+/// slope within twice that; and it turns back on account of it from four times that short of the hold to half of it
+/// beyond.
+fn from_rest(
+    margin: &[f64],
+    order: usize,
+    balance: RangeInclusive<f64>,
+    until: f64,
+    resolution: f64,
+) -> Option<f64> {
+    if margin.get(order).is_some_and(|excess| !balance.contains(excess)) {
+        return crossing(margin, until, None);
+    }
+    let mut balanced: Series = [0.0; LENGTH];
+    for (slot, coefficient) in balanced.iter_mut().zip(margin).skip(order + 1) {
+        *slot = *coefficient;
+    }
+    crossing(balanced.get(..margin.len()).unwrap_or_default(), until, Some(resolution))
+}
+
 /// When a margin, positive now, first becomes negative within a time; 0 where it is about to. `resolution` is
-/// how exactly the present time is known.
-fn crossing(margin: &[f64], until: f64, resolution: f64) -> Option<f64> {
+/// how exactly the present time is known; without it the first coefficient that is not zero is known to be no rounding.
+fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> {
     let mut power = 1.0;
     let mut total = 0.0;
     for coefficient in margin {
@@ -60,9 +90,11 @@ fn crossing(margin: &[f64], until: f64, resolution: f64) -> Option<f64> {
     }
     // On the edge itself the lowest coefficients are rounding; what counts is how the margin goes on.
     let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
-    while lowest.abs() * power
-        <= ON_THE_EDGE * total + rest.first().map_or(0.0, |next| next.abs() * power * resolution)
-    {
+    let rounding = |rest: &[f64], power: f64| {
+        let next = rest.first().map_or(0.0, |next| next.abs() * power);
+        resolution.map_or(0.0, |resolution| ON_THE_EDGE * total + next * resolution)
+    };
+    while lowest.abs() * power <= rounding(rest, power) {
         margin = rest;
         (lowest, rest) = match rest.split_first() {
             Some((first, rest)) => (*first, rest),

@@ -4,16 +4,13 @@ use super::graph::{Graph, MOST_STATES};
 use super::march::March;
 use super::series::{Series, slope, value};
 use crate::field::State;
-use crate::scalar::Rounded;
+use crate::system::ROUNDING;
 
 /// Parts of a step at which its defect is looked at.
 const PARTS: [f64; 2] = [1.0, 0.6];
 
 /// Largest defect of a step in units of the tolerance: what the first neglected term brings, times the degree.
 const MOST_DEFECT: f64 = 20.0;
-
-/// How many times the bound on its rounding a rate may be off: a series groups its terms otherwise than the law does.
-const ROUNDING: f64 = 4.0;
 
 impl March<'_> {
     /// The largest step for which the last two coefficients of every series are below the tolerance, and
@@ -85,13 +82,7 @@ impl March<'_> {
     /// How much of each rate of the state may be rounding.
     #[cold]
     fn rounding(&self, point: &State<f64>) -> [f64; MOST_STATES] {
-        let point = State {
-            time: Rounded::from(point.time),
-            position: Rounded::from(point.position),
-            velocity: Rounded::from(point.velocity),
-            hidden: point.hidden.map(Rounded::from),
-            input: Rounded::from(point.input),
-        };
+        let point = point.over();
         let (acceleration, hidden) = self.model.rounded.rates(&point, &self.mode);
         let mut errors = [0.0; MOST_STATES];
         let rates = [point.velocity, acceleration].into_iter().chain(hidden);
