@@ -9,7 +9,7 @@ use crate::period::swing;
 use crate::segments::Data;
 use crate::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
-use record::{ClockKind, StampStatistics};
+use record::{ClockKind, StampStatistics, counted};
 
 /// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a
 /// stop shows.
@@ -75,15 +75,12 @@ pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<F
 
 /// Whether the stamps tell that samples are missing.
 fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
+    let (gaps, lost) = (counted(stamps.gaps, "gap"), counted(stamps.lost, "sample"));
     let text = match (stamps.gaps, stamps.lost) {
         (0, 0) => return None,
-        (0, lost) => format!("bursts come later than their samples account for: {lost} samples are missing"),
-        (gaps, 0) => format!("{gaps} gaps in the stamps are longer than 1.5 sampling intervals"),
-        (gaps, lost) => {
-            format!(
-                "{lost} samples are missing in {gaps} gaps, which are whole sampling intervals longer than others"
-            )
-        }
+        (0, _) => format!("bursts come later than their samples account for: {lost} missing"),
+        (_, 0) => format!("{gaps} of more than 1.5 sampling intervals in the stamps"),
+        (_, _) => format!("{lost} missing in {gaps} of the stamps, by whole sampling intervals"),
     };
     Some(Finding { effect: Some("dropouts"), text })
 }
@@ -99,9 +96,21 @@ const WAITS: f64 = 0.75;
 /// Probability with which values that say nothing of the clock are said to prefer one.
 const PREFERS_BY_CHANCE: f64 = 0.01;
 
+/// Part of the noise variance from which on what adds to it is named.
+const LARGE: f64 = 0.05;
+
+/// Size over the whole record, in units of the noise, from which on it is named too: ten times the noise, at which
+/// every effect of the body's is expected to be found.
+const VISIBLE: f64 = 10.0;
+
+/// Whether what adds a part to the noise variance is named.
+fn matters(share: f64, samples: usize) -> bool {
+    share > LARGE || share * samples as f64 > VISIBLE * VISIBLE
+}
+
 /// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more
-/// than a part of the noise variance. Scatter is one where the values do not share it (they run more smoothly
-/// on an even clock), drift where the stamps bend away from an even clock by more than their scatter
+/// than a part of the noise variance, or by ten times the noise in all. Scatter is one where the values do not share it (they contradict
+/// it), drift where the stamps bend away from an even clock by more than their scatter
 /// explains.
 fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> {
     let stamps = &observations.stamps;
@@ -115,14 +124,14 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
     // Second differences of N stamps are worth N/1.94 independent ones; their squares scatter by √(2·1.94/N).
     let error = (2.0 * 1.94 / observations.len() as f64).sqrt();
     if stamps.scatter_s > rounding
-        && share * (1.0 - normal_above(PREFERS_BY_CHANCE) * error) > QUANTIZED
+        && matters(share * (1.0 - normal_above(PREFERS_BY_CHANCE) * error), observations.len())
         && stamps.preference_for_even > normal_above(PREFERS_BY_CHANCE)
     {
         findings.push(Finding {
             effect: Some("timestamp_jitter"),
             text: format!(
                 "stamps scatter by {:.4} ms about an even clock, on which the values run more smoothly ({:.1} standard \
-                 errors): believed, they would add {:.0} % of the noise variance",
+                 errors): believed, they would add {:.1} % of the noise variance",
                 1e3 * scatter.sqrt(),
                 stamps.preference_for_even,
                 100.0 * share
@@ -136,7 +145,7 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
     if (stamps.repeated == 0 || stamps.lost == 0 && waits)
         && stamps.bend_standard_errors > DRIFTS
         && stamps.bend_s > rounding
-        && share > QUANTIZED
+        && matters(share, observations.len())
         && observations.clock != ClockKind::Host
     {
         findings.push(Finding {
@@ -208,18 +217,15 @@ fn flat_top(values: &[f64]) -> Option<String> {
     })
 }
 
-/// Part of the noise variance from which on the rounding of the values is named.
-const QUANTIZED: f64 = 0.05;
-
 /// Whether the rounding to the sensor's steps is a part of the noise, and the nominal simulator does not know of it.
 pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option<Finding> {
     let step = data.resolution?;
     let share = step * step / 12.0 / (noise * noise);
     let stated = nominal.sensor_resolution().is_some_and(|stated| (0.5..2.0).contains(&(step / stated)));
-    (share > QUANTIZED && !stated).then(|| Finding {
+    (matters(share, data.samples()) && !stated).then(|| Finding {
         effect: Some("sensor_quantization"),
         text: format!(
-            "the values lie on steps of {step:e}, whose rounding makes up {:.0} % of the noise variance",
+            "the values lie on steps of {step:e}, whose rounding makes up {:.1} % of the noise variance",
             100.0 * share.min(1.0)
         ),
     })

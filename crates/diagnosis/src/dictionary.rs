@@ -6,6 +6,7 @@ use crate::fit::{Fit, solve};
 use crate::matrices::{element, entry};
 use crate::projection::Projection;
 use crate::response::bent;
+use crate::second_mode::{SecondMode, driven_modes};
 use crate::segments::Data;
 use crate::spectrum::{decaying_lines, frequencies, lines};
 use crate::tangent::{Path, matrix, plain_moment, stack};
@@ -247,15 +248,6 @@ impl Dictionary {
                 entries.push(Entry { candidate, shape, columns: from..from + count, positive });
             }
         }
-        let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
-        let mut further = Vec::new();
-        if candidates.contains(&coupling) {
-            let body = second_body(data) * nominal.inertia;
-            further = decaying_lines(data, &residuals, SECOND_MODES)
-                .into_iter()
-                .map(|(line, rate)| (coupling, vec![body, line.frequency, rate], line.gain))
-                .collect();
-        }
         let mut columns = matrix(projection.rows(), &all);
         let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
         projection.apply(&mut columns);
@@ -267,6 +259,17 @@ impl Dictionary {
         let residual: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
         let mut residual = DMatrix::from_vec(residual.len(), 1, residual);
         projection.apply(&mut residual);
+        let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
+        let mut further = Vec::new();
+        if candidates.contains(&coupling) {
+            let body = second_body(data) * nominal.inertia;
+            let lines = decaying_lines(data, &residuals, SECOND_MODES).into_iter();
+            further.extend(lines.map(|(line, rate)| (coupling, vec![body, line.frequency, rate], line.gain)));
+            let driven = driven_modes(data, paths, projection, &residual, SECOND_MODES).into_iter();
+            further.extend(driven.map(|SecondMode { frequency, rate, inertia, gain }| {
+                (coupling, vec![inertia.min(body), frequency, rate], gain)
+            }));
+        }
         Self {
             products: columns.tr_mul(&columns),
             scores: columns.tr_mul(&residual).column(0).clone_owned(),

@@ -38,8 +38,8 @@ pub enum DiagnosisError {
     },
     /// Values that do not change, or by no more than the sensor resolves.
     #[error(
-        "record {record} does not move: its values span {span:e} {unit}, and the sensor resolves {resolution:e} \
-         {unit}. Check the column, or release from farther out"
+        "record {record} does not move: {}. Check the column, or release from farther out",
+        still(*.span, *.resolution, .unit)
     )]
     NoMotion {
         /// Which record, from 1.
@@ -106,4 +106,13 @@ pub enum DiagnosisError {
     /// The dynamics refuse.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+}
+
+/// How little the values of a record move.
+fn still(span: f64, resolution: f64, unit: &str) -> String {
+    if span == 0.0 {
+        return "all its values are the same".to_owned();
+    }
+    let span = format!("its values span {span:.1e} {unit}");
+    if resolution > 0.0 { format!("{span}, and the sensor resolves {resolution:.1e} {unit}") } else { span }
 }

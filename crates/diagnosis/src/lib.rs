@@ -52,6 +52,7 @@ mod response;
 mod rounding;
 mod score;
 mod search;
+mod second_mode;
 mod segments;
 mod settle;
 mod single_effect;

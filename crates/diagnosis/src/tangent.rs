@@ -19,11 +19,38 @@ use record::Quantity;
 
 /// The step from one sample to the next.
 #[derive(Debug, Clone, Copy)]
-struct Step {
+pub(crate) struct Step {
     transition: Matrix2<f64>,
     /// Response to the torque at the step's begin and at its end.
     from: Vector2<f64>,
     to: Vector2<f64>,
+}
+
+/// Terms of the exponential's series.
+const TERMS: usize = 26;
+
+impl Step {
+    /// The step over a time h in seconds of I·δ̈ + γ·δ̇ + κ·δ = f, with f linear.
+    pub(crate) fn of(h: f64, stiffness: f64, damping: f64, inertia: f64) -> Self {
+        let rate = Matrix2::new(0.0, 1.0, -stiffness / inertia, -damping / inertia) * h;
+        let (mut transition, mut one, mut two) = (Matrix2::zeros(), Matrix2::zeros(), Matrix2::zeros());
+        let mut power = Matrix2::identity();
+        for k in 0..TERMS {
+            // power is (A·h)ᵏ/k!
+            let n = k as f64;
+            transition += power;
+            one += power / (n + 1.0);
+            two += power / ((n + 1.0) * (n + 2.0));
+            power = power * rate / (n + 1.0);
+        }
+        let push = Vector2::new(0.0, h / inertia);
+        Self { transition, from: (one - two) * push, to: two * push }
+    }
+
+    /// Deviation and its rate after the step.
+    pub(crate) fn after(&self, state: Vector2<f64>, from: f64, to: f64) -> Vector2<f64> {
+        self.transition * state + self.from * from + self.to * to
+    }
 }
 
 /// A motion on one segment, with what a small torque does to it.
@@ -45,9 +72,6 @@ pub(crate) struct Path {
     pub(crate) record: usize,
     pub(crate) first: bool,
 }
-
-/// Terms of the exponential's series.
-const TERMS: usize = 26;
 
 impl Path {
     /// The paths of all segments of a fit.
@@ -95,6 +119,23 @@ impl Path {
         Ok(paths)
     }
 
+    /// A motion by itself, for tests of what looks at it.
+    #[cfg(test)]
+    pub(crate) fn of_motion(times: Vec<f64>, motion: Motion) -> Self {
+        Self {
+            times,
+            motion,
+            input: Vec::new(),
+            gain: Vec::new(),
+            steps: Vec::new(),
+            stiffness: Vec::new(),
+            damping: Vec::new(),
+            inertia: 1.0,
+            record: 0,
+            first: true,
+        }
+    }
+
     pub(crate) fn len(&self) -> usize {
         self.times.len()
     }
@@ -123,29 +164,13 @@ impl Path {
         self.steps = rows
             .map(|((((time, stiffness), damping), velocity), acceleration)| {
                 let h = time.1 - time.0;
-                let rate = Matrix2::new(
-                    0.0,
-                    1.0,
-                    -0.5 * (stiffness.0 + stiffness.1) / inertia,
-                    -0.5 * (damping.0 + damping.1) / inertia,
-                ) * h;
-                let (mut transition, mut one, mut two) =
-                    (Matrix2::zeros(), Matrix2::zeros(), Matrix2::zeros());
-                let mut power = Matrix2::identity();
-                for k in 0..TERMS {
-                    // power is (A·h)ᵏ/k!
-                    let n = k as f64;
-                    transition += power;
-                    one += power / (n + 1.0);
-                    two += power / ((n + 1.0) * (n + 2.0));
-                    power = power * rate / (n + 1.0);
-                }
-                let push = Vector2::new(0.0, h / inertia);
+                let mut step =
+                    Step::of(h, 0.5 * (stiffness.0 + stiffness.1), 0.5 * (damping.0 + damping.1), inertia);
                 if directed && velocity.0 * velocity.1 < 0.0 && acceleration.0 != 0.0 {
                     let ratio = (acceleration.1 / acceleration.0).clamp(0.0, 2.0);
-                    transition = Matrix2::new(1.0, 0.0, 0.0, ratio) * transition;
+                    step.transition = Matrix2::new(1.0, 0.0, 0.0, ratio) * step.transition;
                 }
-                Step { transition, from: (one - two) * push, to: two * push }
+                step
             })
             .collect();
     }
@@ -169,7 +194,7 @@ impl Path {
             };
             column.push(value * gain);
             if let (Some(step), Some(&after)) = (steps.next(), next.next()) {
-                state = step.transition * state + step.from * torque + step.to * after;
+                state = step.after(state, torque, after);
             }
         }
         column

@@ -10,6 +10,7 @@ use crate::line::Line;
 use crate::lost::Numbers;
 use crate::record::Record;
 use crate::stamps::{StampStatistics, stamp_rounding, statistics};
+use crate::words::counted;
 use serde::{Deserialize, Serialize};
 
 /// What a configuration asks for.
@@ -139,8 +140,7 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     // Whatever the even clock was judged by, it was judged with the lost samples counted.
     let even = |reason: String| match found.lost {
         0 => (ClockKind::UniformIndex, reason),
-        1 => (ClockKind::IndexWithGaps, format!("{reason}; 1 sample was lost")),
-        lost => (ClockKind::IndexWithGaps, format!("{reason}; {lost} samples were lost")),
+        lost => (ClockKind::IndexWithGaps, format!("{reason}; {} lost", counted(lost, "sample"))),
     };
     if found.repeated > 0 {
         let share = 100.0 * found.repeated as f64 / stamps.len() as f64;
@@ -157,17 +157,17 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     }
     if found.gaps > 0 && found.lost > 0 && preference > SIGNIFICANT {
         let reason = format!(
-            "{} samples are missing in {} gaps; with these counted the values run more smoothly on an even clock of \
-             {rate:.2} Hz than on the stamps ({preference:.1} standard errors)",
-            found.lost, found.gaps
+            "{} missing in {}; counted in, the values run more smoothly on an even clock of {rate:.2} Hz than on the \
+             stamps ({preference:.1} standard errors)",
+            counted(found.lost, "sample"),
+            counted(found.gaps, "gap"),
         );
         return (ClockKind::IndexWithGaps, reason);
     }
     if found.gaps > 0 {
         let reason = format!(
-            "{} steps are longer than 1.5 times the median step: samples are missing, so the index \
-             is no clock",
-            found.gaps
+            "{} of more than 1.5 times the median step: samples are missing, so the index is no clock",
+            counted(found.gaps, "gap"),
         );
         return (ClockKind::Host, reason);
     }
@@ -275,7 +275,7 @@ mod tests {
         assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 1), "{}", clock.reason);
         assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
         assert!(clock.reason.contains("reproduces every stamp"), "{}", clock.reason);
-        assert!(clock.reason.contains("1 sample was lost"), "{}", clock.reason);
+        assert!(clock.reason.contains("1 sample lost"), "{}", clock.reason);
         let wrong = clock.times_s.iter().zip(&times).map(|(found, time)| (found - time).abs());
         assert!(wrong.fold(0.0, f64::max) < 0.2e-3, "a loss of 1.6 ms is in none of the times");
     }
@@ -290,7 +290,7 @@ mod tests {
         assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 7), "{}", clock.reason);
         assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
         assert!(clock.reason.contains("parabola"), "{}", clock.reason);
-        assert!(clock.reason.contains("7 samples were lost"), "{}", clock.reason);
+        assert!(clock.reason.contains("7 samples lost"), "{}", clock.reason);
     }
 
     /// Where jitter alone makes many steps long, few losses among them are no gaps; counting finds these too.
@@ -305,7 +305,7 @@ mod tests {
         assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 3), "{}", clock.reason);
         assert_eq!(clock.kind, ClockKind::IndexWithGaps, "{}", clock.reason);
         assert!(clock.reason.contains("more smoothly"), "{}", clock.reason);
-        assert!(clock.reason.contains("3 samples were lost"), "{}", clock.reason);
+        assert!(clock.reason.contains("3 samples lost"), "{}", clock.reason);
     }
 
     fn jittered() -> Vec<f64> {

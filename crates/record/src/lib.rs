@@ -21,6 +21,7 @@ mod roughness;
 mod stamps;
 mod statement;
 mod unit;
+mod words;
 
 pub use clock::{Clock, ClockChoice, ClockKind};
 pub use csv_file::CsvColumns;
@@ -31,6 +32,7 @@ pub use record::{Quantity, Record};
 pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};
 pub use unit::{TimeUnit, Unit};
+pub use words::counted;
 
 /// Fewest samples that make a record.
 pub const FEWEST_SAMPLES: usize = 8;

@@ -1,38 +1,135 @@
 //! How smoothly values run on a clock.
 
-/// By how many standard errors the values run more smoothly on the even clock than on the stamps.
+/// Samples over which sums are taken as one draw: neighborhoods that share samples are correlated, these are hardly.
+const BLOCK: usize = 25;
+
+/// By how many standard errors the values contradict the stamps more than the even clock; negative where they
+/// contradict the even clock more. Without motion, or without scatter of the stamps, a standard normal draw at most.
 ///
-/// Five neighbors deviate from a cubic by one number, their fourth divided difference scaled to unit
-/// noise. On a clock that is wrong by δ it grows by δ times the speed. The squares under either clock are
-/// compared in pairs, over stretches that do not overlap. Stamps must increase.
+/// Five neighbors deviate from a cubic by one number: their fourth divided difference scaled to unit noise, h on the
+/// stamps and e on the even clock. Were the stamps the times of reading, h would be noise, and independent of the
+/// scatter's own mark q = h − e, which is the scatter times the speed; were the even clock, e would be. What noise itself
+/// puts into h·q and −e·q is σ²·(1 − cos α), with α the angle between the two sets of weights and σ² the smaller of the
+/// mean squares of h and e. So Σ (h·q − σ²·(1 − cos α)) and Σ (−e·q − σ²·(1 − cos α)) tell, over their scatter from
+/// block to block, how far each clock is contradicted: a regression of the deviations on the scatter's mark rather
+/// than a comparison of squares, which needs twice the scatter. Where the values share a part of the scatter, the
+/// contradiction counts the less the nearer that part is to one half. Stamps must increase.
 pub(crate) fn preference_for_even(stamps: &[f64], values: &[f64], even: &[f64]) -> f64 {
-    let squares = |times: &[f64]| -> Vec<f64> {
-        times.chunks_exact(5).zip(values.chunks_exact(5)).map(|(t, y)| off_cubic(t, y).powi(2)).collect()
+    let windows = stamps.windows(5).zip(even.windows(5)).zip(values.windows(5));
+    let marks: Vec<Mark> = windows.map(|((stamps, even), values)| Mark::of(stamps, even, values)).collect();
+    let square = |part: fn(&Mark) -> f64| {
+        marks.iter().map(|mark| part(mark) * part(mark)).sum::<f64>() / marks.len().max(1) as f64
     };
-    let differences: Vec<f64> =
-        squares(stamps).iter().zip(squares(even)).map(|(host, even)| host - even).collect();
-    let count = differences.len() as f64;
-    let mean = differences.iter().sum::<f64>() / count;
-    let variance = differences.iter().map(|d| (d - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let z = mean / (variance / count).sqrt();
-    if z.is_finite() { z } else { 0.0 }
+    let noise = square(|mark| mark.host).min(square(|mark| mark.even));
+    let contradiction = |part: fn(&Mark) -> f64| {
+        let sums: Vec<f64> = marks
+            .chunks(BLOCK)
+            .map(|block| block.iter().map(|mark| part(mark) - noise * (1.0 - mark.cosine)).sum())
+            .collect();
+        let sum = sums.iter().sum::<f64>();
+        (sum, sum / sums.iter().map(|sum| sum * sum).sum::<f64>().sqrt())
+    };
+    let (of_host, host) = contradiction(|mark| mark.host * (mark.host - mark.even));
+    let (of_even, even) = contradiction(|mark| mark.even * (mark.even - mark.host));
+    // The part of the scatter that the values share: 0 for the even clock, 1 for the stamps.
+    let shared = of_even / (of_host + of_even);
+    let preference = if shared < 0.5 {
+        host * (1.0 - 2.0 * shared).min(1.0)
+    } else {
+        -even * (2.0 * shared - 1.0).min(1.0)
+    };
+    // Where nothing scatters, or nothing moves beyond the noise, there is nothing to go by.
+    if preference.is_finite() && of_host + of_even > 0.0 { preference } else { 0.0 }
 }
 
-/// Distance of points from a cubic, in the noise of a point: Σ cᵢ·yᵢ with cᵢ = 1/Π (tᵢ − tⱼ), scaled to
+/// How far five neighbors deviate from a cubic on either clock.
+struct Mark {
+    host: f64,
+    even: f64,
+    /// Cosine of the angle between the two sets of weights.
+    cosine: f64,
+}
+
+impl Mark {
+    fn of(stamps: &[f64], even: &[f64], values: &[f64]) -> Self {
+        let (of_host, of_even) = (weights(stamps), weights(even));
+        let length = |weights: &[f64; 5]| weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
+        let product: f64 = of_host.iter().zip(&of_even).map(|(host, even)| host * even).sum();
+        Self {
+            host: off_cubic(stamps, values),
+            even: off_cubic(even, values),
+            cosine: product / (length(&of_host) * length(&of_even)),
+        }
+    }
+}
+
+/// Weights of five points in their fourth divided difference: 1/Π (tᵢ − tⱼ).
+fn weights(times: &[f64]) -> [f64; 5] {
+    let mut weights = [0.0; 5];
+    for (at, (slot, time)) in weights.iter_mut().zip(times).enumerate() {
+        let others = times.iter().enumerate().filter(|(other, _)| *other != at);
+        *slot = 1.0 / others.map(|(_, other)| time - other).product::<f64>();
+    }
+    weights
+}
+
+/// Distance of five points from a cubic, in the noise of a point: Σ cᵢ·yᵢ with their [`weights`], scaled to
 /// Σ cᵢ² = 1.
 pub(crate) fn off_cubic(times: &[f64], values: &[f64]) -> f64 {
     // Relative to the first value, so that values at rest lie on the cubic exactly.
     let origin = values.first().copied().unwrap_or_default();
-    let (mut sum, mut norm) = (0.0, 0.0);
-    for (at, (&time, &value)) in times.iter().zip(values).enumerate() {
-        let product: f64 = times
-            .iter()
-            .enumerate()
-            .filter(|(other, _)| *other != at)
-            .map(|(_, other)| time - other)
-            .product();
-        sum += (value - origin) / product;
-        norm += 1.0 / (product * product);
+    let weights = weights(times);
+    let sum: f64 = weights.iter().zip(values).map(|(weight, value)| weight * (value - origin)).sum();
+    sum / weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::preference_for_even;
+    use rand::{RngExt, SeedableRng};
+    use rand_chacha::ChaCha8Rng;
+    use rand_distr::StandardNormal;
+
+    const SAMPLES: usize = 6500;
+
+    /// Preferences over 200 records of a decaying swing of amplitude 1 at noise 1e-3, with stamps that scatter by
+    /// so many seconds. `host` says whether the values were read when the stamps say.
+    fn preferences(amplitude: f64, scatter: f64, host: bool) -> Vec<f64> {
+        let mut generator = ChaCha8Rng::seed_from_u64(5);
+        let mut normal = move || generator.sample::<f64, _>(StandardNormal);
+        let even: Vec<f64> = (0..SAMPLES).map(|index| index as f64 / 260.0).collect();
+        let record = |_: usize| {
+            let stamps: Vec<f64> = even.iter().map(|time| time + scatter * normal()).collect();
+            let read = if host { &stamps } else { &even };
+            let motion = |time: f64| amplitude * (-0.1 * time).exp() * (33.0 * time).cos();
+            let values: Vec<f64> = read.iter().map(|time| motion(*time) + 1e-3 * normal()).collect();
+            preference_for_even(&stamps, &values, &even)
+        };
+        (0..200).map(record).collect()
     }
-    sum / norm.sqrt()
+
+    fn above(preferences: &[f64], limit: f64) -> usize {
+        preferences.iter().filter(|preference| **preference > limit).count()
+    }
+
+    /// The scatter times the root mean square speed is 0.15 of the noise: twelve times the noise in all.
+    #[test]
+    fn scatter_of_twelve_times_the_noise_is_seen_whichever_clock_is_right() {
+        let scatter = 0.15e-3 / (33.0 * 0.5_f64.sqrt() * ((1.0 - (-5.0_f64).exp()) / 5.0).sqrt());
+        let (host, even) = (preferences(1.0, scatter, true), preferences(1.0, scatter, false));
+        assert!(above(&even, 2.33) >= 185, "{}", above(&even, 2.33));
+        assert_eq!(above(&host, 0.0), 0);
+        assert!(above(&host, -2.33) <= 5, "{}", above(&host, -2.33));
+    }
+
+    #[test]
+    fn without_motion_nothing_is_preferred_beyond_chance() {
+        for scatter in [1e-5, 1e-4, 4e-4] {
+            for host in [true, false] {
+                let found = preferences(0.0, scatter, host);
+                let (even, stamps) = (above(&found, 2.33), 200 - above(&found, -2.33));
+                assert!(even <= 8 && stamps <= 8, "{scatter}: {even} {stamps}");
+            }
+        }
+    }
 }

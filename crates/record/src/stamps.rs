@@ -38,8 +38,8 @@ pub struct StampStatistics {
     pub bend_standard_errors: f64,
     /// Largest distance from the parabola, in seconds.
     pub left_by_bend_s: f64,
-    /// Standard errors by which the values run more smoothly on the even clock than on the stamps; negative
-    /// where they run less smoothly, 0 where stamps are repeated.
+    /// Standard errors by which the values contradict the stamps more than an even clock; negative where they contradict
+    /// the even clock more, 0 where stamps are repeated.
     pub preference_for_even: f64,
 }
 

@@ -79,6 +79,12 @@ impl Law {
         Self::new(mix(self.constant, other.constant), terms.collect(), trajectory.collect(), scaled)
     }
 
+    /// Largest distance of the trajectory from another at the same peaks.
+    pub fn distance(&self, trajectory: &[f64]) -> f64 {
+        let pairs = self.trajectory.iter().zip(trajectory);
+        pairs.map(|(own, other)| (own - other).abs()).fold(0.0, f64::max)
+    }
+
     /// Coefficients and the initial value.
     pub fn parameters(&self) -> usize {
         2 + self.terms.len()

@@ -29,11 +29,6 @@ pub(crate) fn two_digits(value: f64) -> String {
     }
 }
 
-/// So many of something, in words that agree: `1 run`, `3 runs`.
-pub(crate) fn counted(count: usize, noun: &str) -> String {
-    format!("{count} {noun}{}", if count == 1 { "" } else { "s" })
-}
-
 /// The result as a person wants to read it.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
     let mut parts = vec![headline(result), numbers(result)];

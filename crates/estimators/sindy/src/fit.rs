@@ -52,7 +52,7 @@ impl SindyConfig {
                 return Ok(false);
             };
             let before = along.as_ref().map_or(&scaled.logs, |along| &along.trajectory);
-            let change = largest_difference(&law.trajectory, before);
+            let change = law.distance(before);
             if change > last_change && along.is_some() {
                 relaxation = f64::max(relaxation / 2.0, 1.0 / 16.0);
             }
@@ -141,10 +141,6 @@ fn regress(columns: &[Column], along: Option<&Law>, scaled: &Scaled) -> Option<L
     let terms = columns.iter().copied().zip(solution.iter().copied().skip(2)).collect();
     let law = Law::new(constant, terms, trajectory, scaled);
     law.squares.is_finite().then_some(law)
-}
-
-fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
 /// The scatter about the law, spread over the peaks as a line's slope sees it: the projection of the

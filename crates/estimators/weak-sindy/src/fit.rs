@@ -100,7 +100,7 @@ impl Problem<'_> {
             if !law.law.squares.is_finite() {
                 return Ok(false);
             }
-            let change = largest_difference(&law.law.trajectory, &latest.law.trajectory);
+            let change = law.law.distance(&latest.law.trajectory);
             if change > last_change {
                 relaxation = f64::max(relaxation / 2.0, 1.0 / 16.0);
             }
@@ -230,10 +230,6 @@ fn predicted(problem: &Problem<'_>, law: &Law, has_settled: bool, query_times: &
     let instruments = || problem.functions.instruments(law, problem.scaled);
     let asked = has_settled && !query_times.is_empty();
     predictions(law, problem.scaled, asked.then(instruments), query_times)
-}
-
-fn largest_difference(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(one, other)| (one - other).abs()).fold(0.0, f64::max)
 }
 
 /// The scatter about the law, as the test functions carry it to a constant rate.

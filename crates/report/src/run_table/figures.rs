@@ -6,6 +6,7 @@ use super::cells::{setting, short_name};
 use crate::figures::{Figure, csv, number};
 use crate::format;
 use crate::plot::{Axis, DotRow, DotRows};
+use scoring::median;
 
 /// Errors below this, in percent, are drawn at it: the spacing of doubles, where digits end.
 const LEAST_PERCENT: f64 = 100.0 * f64::EPSILON;
@@ -73,17 +74,9 @@ fn parts(
     parts.join(", ")
 }
 
-/// The middle one, or the mean of the two middle ones; not a number where one is none.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    let middle = values.len() / 2;
-    let at = |index: usize| values.get(index).copied().unwrap_or(f64::NAN);
-    if values.len() % 2 == 1 { at(middle) } else { 0.5 * (at(middle.wrapping_sub(1)) + at(middle)) }
-}
-
 fn gaps(table: &RunTable) -> Option<Figure> {
     let groups = groups(table);
-    let middle = |group: &Group<'_>| median(group.rows.iter().filter_map(|row| row.error_percent).collect());
+    let middle = |group: &Group<'_>| median(group.rows.iter().filter_map(|row| row.error_percent));
     let worst = |group: &Group<'_>| {
         group.rows.iter().filter_map(|row| row.worst_error_percent).max_by(f64::total_cmp).unwrap_or(f64::NAN)
     };
