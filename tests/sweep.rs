@@ -3,6 +3,7 @@
 use crate::support::{result, root, timeless_files, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
+use std::fs::File;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
@@ -90,15 +91,22 @@ fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
         .args([arguments, &["--out", out], options].concat())
         .current_dir(root())
         .stdout(Stdio::null())
-        .stderr(Stdio::null())
+        .stderr(File::create(format!("{out}.stderr")).unwrap())
         .spawn()
         .unwrap()
 }
 
-/// Waits until so many runs came to their end, or the sweep did.
+/// Waits until so many runs came to their end.
 fn wait_for(child: &mut Child, out: &str, runs: usize) {
     let since = Instant::now();
-    while ends(out).len() < runs && child.try_wait().unwrap().is_none() {
+    while ends(out).len() < runs {
+        if let Some(status) = child.try_wait().unwrap() {
+            assert!(
+                ends(out).len() >= runs,
+                "{status}: {}",
+                std::fs::read_to_string(format!("{out}.stderr")).unwrap()
+            );
+        }
         assert!(since.elapsed() < Duration::from_secs(120), "no run came to its end");
         std::thread::sleep(Duration::from_millis(5));
     }

@@ -1,10 +1,11 @@
 //! `trainer trials`: blind answers, seals that hold, and going on after an interruption.
 
-use crate::support::{number, result, trainer};
+use crate::support::{number, result, root, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::time::SystemTime;
+use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
 
 /// A dozen short cases.
 const TINY: &[&str] = &[
@@ -67,6 +68,26 @@ fn said(arguments: &[&str]) -> (i32, String) {
     (output.status.code().unwrap(), String::from_utf8_lossy(&output.stderr).into_owned())
 }
 
+/// Sends SIGINT to a scoring that has opened its first cases.
+fn scoring_stops_when_told(out: &str) {
+    let spoken = tempfile::NamedTempFile::new().unwrap();
+    let mut child = Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(["trials", "--score", out, "--threads", "1"])
+        .current_dir(root())
+        .stdout(Stdio::null())
+        .stderr(spoken.reopen().unwrap())
+        .spawn()
+        .unwrap();
+    let said = || std::fs::read_to_string(spoken.path()).unwrap();
+    while !said().contains("cases opened") {
+        assert!(child.try_wait().unwrap().is_none(), "{}", said());
+        std::thread::sleep(Duration::from_millis(2));
+    }
+    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert_eq!(child.wait().unwrap().code(), Some(130), "{}", said());
+    assert!(said().contains("every answer is kept"), "{}", said());
+}
+
 #[test]
 fn trials_are_blind_sealed_and_resumable() {
     let (code, scores, folder) = result(&[&["trials"], TINY].concat());
@@ -107,6 +128,7 @@ fn trials_are_blind_sealed_and_resumable() {
     let again: Value = serde_json::from_slice(&again.stdout).unwrap();
     let first_scores = without_times(scores);
     assert_eq!(without_times(again), first_scores);
+    scoring_stops_when_told(out);
     let truth = root.join("truth/000003.json");
     let text = std::fs::read_to_string(&truth).unwrap();
     std::fs::write(&truth, text.replacen("\"miscalibrated\": ", "\"miscalibrated\":  ", 1)).unwrap();

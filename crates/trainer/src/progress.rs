@@ -48,6 +48,11 @@ impl Progress {
         Self::new(cases, "cases made", false, quiet)
     }
 
+    /// Over the cases of trials, as their truths are opened and simpler diagnosers asked.
+    pub(crate) fn over_cases_opened(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases opened", false, quiet)
+    }
+
     fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
         let terminal = std::io::stderr().is_terminal();
         let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());

@@ -49,7 +49,7 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
         let folder = RunFolder::open(folder);
         let manifest = make::read_manifest(&folder)?
             .ok_or_else(|| TrialsError::NoTrials { folder: folder.path().display().to_string() })?;
-        return finish(arguments, &folder, &manifest, &pool, &open::failed(&folder)?, start);
+        return finish(arguments, &folder, &manifest, &pool, &open::failed(&folder)?, cancel, start);
     }
     let document = read_config(&as_experiment(arguments))?;
     check_task(&document, "trials", "configs/trials-quick.toml")?;
@@ -67,7 +67,7 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
         folder.write_reproducible(&open::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
     }
     folder.record_event("opened", &json!({ "truths": made.sealed.len() }))?;
-    finish(arguments, &folder, &made.manifest, &pool, &failed, start)
+    finish(arguments, &folder, &made.manifest, &pool, &failed, cancel, start)
 }
 
 /// The arguments as those of an experiment: configuration, overrides, folder, threads.
@@ -129,9 +129,19 @@ fn finish(
     manifest: &TrialsManifest,
     pool: &ThreadPool,
     failed: &BTreeMap<String, String>,
+    cancel: &Cancel,
     start: Instant,
 ) -> Result<Outcome, TrainerError> {
-    let Opened { cases, mut baselines } = open::open(folder, manifest, pool, failed)?;
+    let silent = arguments.output.quiet || arguments.output.json;
+    let Some(opened) = open::open(folder, manifest, pool, failed, (cancel, silent))? else {
+        folder.record_event("interrupted", &json!({ "during": "the scoring" }))?;
+        crate::console::remark(&format!(
+            "interrupted during the scoring, every answer is kept; trainer trials --score {} scores them",
+            folder.path().display()
+        ));
+        return Ok(Outcome::Interrupted);
+    };
+    let Opened { cases, mut baselines } = opened;
     baselines.insert(0, most_common(&cases));
     let trials = Trials {
         name: manifest.name.clone(),

@@ -5,6 +5,8 @@ use super::error::TrialsError;
 use super::make::WITHOUT;
 use crate::diagnose;
 use crate::error::TrainerError;
+use crate::progress::Progress;
+use estimator::Cancel;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use runs::RunFolder;
@@ -63,23 +65,36 @@ pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError
     })
 }
 
-/// Opens every truth and reads every answer. `failed` says why an answer is missing, where that is known.
+/// Opens every truth and reads every answer; `None` where interrupted. `failed` says why an answer is missing, where
+/// that is known.
 pub(crate) fn open(
     folder: &RunFolder,
     manifest: &TrialsManifest,
     pool: &ThreadPool,
     failed: &BTreeMap<String, String>,
-) -> Result<Opened, TrainerError> {
-    let opened: Vec<(AnsweredCase, Named)> = pool.install(|| {
-        manifest.cases.par_iter().map(|line| one(folder, line, failed)).collect::<Result<_, _>>()
+    (cancel, silent): (&Cancel, bool),
+) -> Result<Option<Opened>, TrainerError> {
+    let progress = Progress::over_cases_opened(manifest.cases.len() as u64, silent);
+    let opened: Vec<Option<(AnsweredCase, Named)>> = pool.install(|| {
+        let lines = manifest.cases.par_iter().map(|line| {
+            if cancel.is_requested() {
+                return Ok(None);
+            }
+            let opened = one(folder, line, failed)?;
+            progress.one_of_many_done();
+            Ok(Some(opened))
+        });
+        lines.collect::<Result<_, TrainerError>>()
     })?;
+    progress.finish();
+    let Some(opened) = opened.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
     let (cases, named): (Vec<AnsweredCase>, Vec<Named>) = opened.into_iter().unzip();
     let baseline = |(index, diagnoser): (usize, &Diagnoser)| Baseline {
         id: diagnoser.id.to_owned(),
         method: diagnoser.method.to_owned(),
         answers: named.iter().map(|own| own.get(index).cloned().flatten()).collect(),
     };
-    Ok(Opened { baselines: DIAGNOSERS.iter().enumerate().map(baseline).collect(), cases })
+    Ok(Some(Opened { baselines: DIAGNOSERS.iter().enumerate().map(baseline).collect(), cases }))
 }
 
 fn one(
