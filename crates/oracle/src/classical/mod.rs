@@ -49,18 +49,6 @@ pub enum Reached {
     Stalled,
 }
 
-impl Reached {
-    /// The name as results write it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::BudgetSpent => "budget_spent",
-            Self::Stalled => "stalled",
-        }
-    }
-}
-
 /// What a classical method makes of an envelope.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClassicalFit {
