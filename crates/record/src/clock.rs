@@ -85,7 +85,8 @@ impl Clock {
     /// 2. gaps: samples are missing, the index is no clock; host, unless the values run more smoothly (as in 5) on the
     ///    index with the lost samples counted. Among steps of rounded or jittered stamps a loss may be no long one, so that
     ///    only counting finds it: below, too, lost samples are counted in an index that is even;
-    /// 3. an even clock reproduces every stamp to the step the stamps are rounded to: even in the index;
+    /// 3. an even clock reproduces every stamp to a millionth of an interval, or to the step the stamps are rounded to:
+    ///    even in the index;
     /// 4. an even clock and a parabola do: the logger's clock and the sensor's change their rates against one another,
     ///    and a sensor samples by its own; even in the index;
     /// 5. the values themselves: on the clock they were taken by, five neighbors lie closer to a cubic.
@@ -171,6 +172,10 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
         );
         return (ClockKind::Host, reason);
     }
+    if found.largest_deviation_s <= EVEN * line.slope {
+        let reason = format!("the stamps are even: {rate:.4} Hz, to a millionth of a sampling interval");
+        return even(reason);
+    }
     if let Some(rounding) = found.rounding_s.filter(|step| found.largest_deviation_s <= *step) {
         let reason = format!(
             "an even clock of {rate:.4} Hz reproduces every stamp to within the {:.3} ms the stamps \
@@ -207,6 +212,9 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     };
     (ClockKind::Host, reason)
 }
+
+/// Distance from an even clock, in sampling intervals, up to which stamps are even, whatever the values say.
+const EVEN: f64 = 1e-6;
 
 /// Standard errors that a preference must have: 1 % of chance, one-sided.
 const SIGNIFICANT: f64 = 2.33;
@@ -325,6 +333,14 @@ mod tests {
         let clock = auto(jittered());
         assert_eq!(clock.kind, ClockKind::Host, "{}", clock.reason);
         assert!(clock.reason.contains("when they say"), "{}", clock.reason);
+    }
+
+    /// Regression: a rate that is stated gives stamps that doubles cannot hold exactly; the values have no say in that.
+    #[test]
+    fn stamps_from_a_stated_rate_are_even() {
+        let clock = auto((0..2000).map(|i| i as f64 / 610.35).collect());
+        assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+        assert!(clock.reason.contains("610.3500 Hz"), "{}", clock.reason);
     }
 
     #[test]
