@@ -109,9 +109,8 @@ fn matters(share: f64, samples: usize) -> bool {
 }
 
 /// Errors of the stamps that matter: those that move the values, at their root mean square speed, by more
-/// than a part of the noise variance, or by ten times the noise in all. Scatter is one where the values do not share it (they contradict
-/// it), drift where the stamps bend away from an even clock by more than their scatter
-/// explains.
+/// than a part of the noise variance, or by ten times the noise in all. Scatter is one where the values
+/// contradict it, drift where the stamps bend away from an even clock by more than their scatter explains.
 fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> {
     let stamps = &observations.stamps;
     let noise = white_noise(observations, kept);
