@@ -39,7 +39,9 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         findings.push(Finding {
             effect: Some("outliers"),
             text: format!(
-                "{outliers} isolated samples lie farther off their neighbors than noise brings them, and were left out"
+                "{} farther off than noise brings them from their neighbors, and {} left out",
+                counted(outliers, "isolated sample"),
+                if outliers == 1 { "was" } else { "were" },
             ),
         });
     }

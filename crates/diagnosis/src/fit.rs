@@ -10,6 +10,9 @@
 //! diagonal); Nielsen, Technical University of Denmark IMM-REP-1999-05 (how the damping follows the gain);
 //! Bock, in Modelling of Chemical Reaction Systems, Springer 1981, 102 (multiple shooting).
 
+use crate::candidate::Parameter;
+pub(crate) use crate::ending::Effort;
+use crate::ending::{Ending, SHORT};
 use crate::hypothesis::Hypothesis;
 use crate::matrices::{element, entry, raised};
 use crate::response::{Prediction, Simulator};
@@ -26,6 +29,14 @@ pub(crate) struct Point {
     pub(crate) starts: Vec<Vec<f64>>,
 }
 
+impl Point {
+    /// Degrees of freedom that so many samples keep.
+    pub(crate) fn freedom(&self, samples: usize) -> f64 {
+        let starts: usize = self.starts.iter().map(Vec::len).sum();
+        (samples as f64 - starts as f64 - self.globals.len() as f64).max(1.0)
+    }
+}
+
 /// A fitted hypothesis.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Fit {
@@ -40,32 +51,6 @@ pub(crate) struct Fit {
     pub(crate) at_bound: Vec<bool>,
     /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance.
     pub(crate) inverse: DMatrix<f64>,
-}
-
-/// How long to go on.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Effort {
-    /// Steps tried at most.
-    steps: usize,
-    /// Relative decrease of the squares at which to stop.
-    small: f64,
-    /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
-    /// has still to grow says nothing about them.
-    sizes_first: usize,
-    /// Whether segments that fit much worse than others are heeded less until the others are fitted: friction that
-    /// is not yet right stops the motion half a swing too early or too late somewhere, and that one segment would
-    /// hold all coefficients.
-    wary: bool,
-}
-
-impl Effort {
-    /// To rank proposals.
-    pub(crate) const SEARCH: Self = Self { steps: 40, small: 1e-4, sizes_first: 2, wary: true };
-    /// For parts held out: begun at the fit to all, there is not far to go.
-    pub(crate) const HELD_OUT: Self = Self { steps: 12, small: 1e-6, sizes_first: 0, wary: false };
-    /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained
-    /// so little is the last of a quadratic convergence.
-    pub(crate) const FINAL: Self = Self { steps: 60, small: 1e-6, sizes_first: 0, wary: false };
 }
 
 /// What is moved.
@@ -99,8 +84,7 @@ impl Fit {
 
     /// Degrees of freedom of the residual.
     pub(crate) fn freedom(&self) -> f64 {
-        let starts: usize = self.point.starts.iter().map(Vec::len).sum();
-        (self.samples() as f64 - starts as f64 - self.globals() as f64).max(1.0)
+        self.point.freedom(self.samples())
     }
 
     pub(crate) fn autocorrelation_time(&self) -> f64 {
@@ -168,23 +152,17 @@ fn begin_again(
     Ok(settle(simulator, hypothesis, segments, &mut point.starts, at))
 }
 
+/// The damping that a fit begins with, and begins with again.
+const FIRST_DAMPING: f64 = 1e-4;
+
 /// The damping falls by this at most after a step that gained what was promised; it stays where a step gained
 /// less than half.
 const LOWEST_CUT: f64 = 1.0 / 3.0;
 
-/// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones.
-const RAISE: f64 = 2.0;
-
-/// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
-pub(crate) const SHORT: f64 = 1e-2;
-
-/// A gain of so many times the smallest one is little, and so many steps in a row that gained little, however
-/// short they were, end a fit: in an uneven valley it would go on like that until its steps are spent.
-const LITTLE: f64 = 2.0;
-const CREPT: usize = 5;
-
-/// Damping at which steps are so short that nothing comes of them.
-const MOST_DAMPING: f64 = 1e6;
+/// The damping rises by this after a step that gained nothing, and by its square and cube after the next ones. Too
+/// little more of it gives the same step once more: with Nielsen's 2 and a damping of 1e-4, four steps out of five
+/// that followed a failed one failed as well.
+const RAISE: f64 = 8.0;
 
 /// Mean square relative to the median segment's, beyond which a segment is heeded less.
 const DOUBTFUL: f64 = 2.0;
@@ -270,6 +248,49 @@ impl Equations {
         Some((step, starts))
     }
 
+    /// Where a step leads from a point, every parameter within its range, and by how much it would decrease the squares
+    /// if the motion were linear in everything; no point where the system cannot be solved.
+    fn trial(
+        &self,
+        from: &Point,
+        damping: f64,
+        parameters: &[Parameter],
+        mut held: Vec<bool>,
+    ) -> (Option<Point>, f64) {
+        let mut promised = f64::INFINITY;
+        // Each round holds at least one parameter more.
+        for _ in 0..=parameters.len() {
+            let Some((step, own)) = self.step(damping, &held) else { break };
+            promised = self.promised(&step, &own);
+            let mut next = from.clone();
+            let mut fresh = false;
+            let moves = next.globals.iter_mut().zip(step.iter()).zip(parameters).zip(&mut held);
+            for (((value, step), parameter), held) in moves {
+                let wanted = *value + step;
+                let outside = wanted < parameter.lower || wanted > parameter.upper;
+                if outside && !*held {
+                    let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
+                    // At the end already: hold it and solve again. Otherwise go there.
+                    if *value == end {
+                        (*held, fresh) = (true, true);
+                    }
+                    *value = end;
+                } else {
+                    *value = wanted;
+                }
+            }
+            for (start, step) in next.starts.iter_mut().zip(own) {
+                for (value, step) in start.iter_mut().zip(step.iter()) {
+                    *value += step;
+                }
+            }
+            if !fresh {
+                return (Some(next), promised);
+            }
+        }
+        (None, promised)
+    }
+
     /// By how much a step would decrease the squares if the motion were linear in everything.
     fn promised(&self, step: &DVector<f64>, starts: &[DVector<f64>]) -> f64 {
         let own: f64 = self.blocks.iter().zip(starts).map(|(block, own)| block.right.dot(own)).sum();
@@ -297,12 +318,10 @@ pub(crate) fn fit(
     }
     let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
     let mut at = evaluate(&mut simulator, &data.segments, &point)?;
-    let mut damping = 1e-4;
+    let mut damping = FIRST_DAMPING;
     let mut raise = RAISE;
     let mut converged = false;
-    let mut small = 0;
-    let mut crept = 0;
-    let mut steps = 0;
+    let mut ending = Ending::new(effort);
     let uneven = !hypothesis.smooth();
     let mut wary = uneven && effort.wary;
     let mut weights = if wary { trust(&at) } else { vec![1.0; data.segments.len()] };
@@ -310,57 +329,21 @@ pub(crate) fn fit(
     let mut settled = false;
     // Where beginning again came to nothing on the way, it is tried once more at the end only.
     let mut in_vain = false;
-    while steps < effort.steps {
-        steps += 1;
-        let sizes = steps <= effort.sizes_first;
-        let mut held: Vec<bool> =
-            parameters.iter().map(|p| moving == Moving::Starts || sizes && p.shape).collect();
-        let mut trial = None;
-        let mut promised = f64::INFINITY;
-        // Each round holds at least one parameter more.
-        for _ in 0..=globals {
-            let Some((step, own)) = system.step(damping, &held) else { break };
-            promised = system.promised(&step, &own);
-            let mut next = point.clone();
-            let mut fresh = false;
-            let moves = next.globals.iter_mut().zip(step.iter()).zip(&parameters).zip(&mut held);
-            for (((value, step), parameter), held) in moves {
-                let wanted = *value + step;
-                let outside = wanted < parameter.lower || wanted > parameter.upper;
-                if outside && !*held {
-                    let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
-                    // At the end already: hold it and solve again. Otherwise go there.
-                    if *value == end {
-                        (*held, fresh) = (true, true);
-                    }
-                    *value = end;
-                } else {
-                    *value = wanted;
-                }
-            }
-            for (start, step) in next.starts.iter_mut().zip(own) {
-                for (value, step) in start.iter_mut().zip(step.iter()) {
-                    *value += step;
-                }
-            }
-            if !fresh {
-                trial = Some(next);
-                break;
-            }
-        }
+    for step in 1..=effort.steps {
+        let sizes = step <= effort.sizes_first;
+        let held = parameters.iter().map(|p| moving == Moving::Starts || sizes && p.shape).collect();
+        let before = weighted(&at, &weights);
+        let (trial, promised) = system.trial(&point, damping, &parameters, held);
         // Nothing more to be had: no need to try.
-        let done = damping <= SHORT && promised <= effort.small * weighted(&at, &weights);
+        let done = ending.promises_nothing(promised / before, damping);
         let outcome = trial.filter(|_| !done || sizes).and_then(|next| {
-            let bound = weighted(&at, &weights);
-            let evaluation = evaluate_below(&mut simulator, &data.segments, &next, &weights, bound)?;
+            let evaluation = evaluate_below(&mut simulator, &data.segments, &next, &weights, before)?;
             Some((next, evaluation))
         });
         match outcome {
             Some((next, evaluation)) => {
-                let before = weighted(&at, &weights);
                 let decrease = before - weighted(&evaluation, &weights);
-                small = if damping <= SHORT && decrease <= effort.small * before { small + 1 } else { 0 };
-                crept = if decrease <= LITTLE * effort.small * before { crept + 1 } else { 0 };
+                ending.gained(decrease / before, damping, &evaluation);
                 point = next;
                 at = evaluation;
                 if wary {
@@ -369,38 +352,45 @@ pub(crate) fn fit(
                 let quality = decrease / promised;
                 damping = (damping * (1.0 - (2.0 * quality - 1.0).powi(3)).clamp(LOWEST_CUT, 1.0)).max(1e-12);
                 raise = RAISE;
-                if small == 0 {
+                if !ending.is_small() {
                     settled = false;
                 }
                 system = equations(&at, &weights, starts, globals);
             }
-            _ if done => small += 1,
+            _ if done => ending.nothing_left(),
             _ => {
                 damping = (damping * raise).max(1e-6);
                 raise *= RAISE;
+                if !sizes {
+                    ending.failed(promised / before, damping);
+                }
             }
         }
-        // Where no step of any length decreases the squares it is a minimum, if an uneven one.
-        let ended = !sizes && (small >= 1 || crept >= CREPT || damping > MOST_DAMPING);
-        if wary && (ended || steps >= effort.steps / 2) {
+        let ended = !sizes && ending.is_reached(damping);
+        if wary && (ended || step >= effort.steps / 2) {
             wary = false;
             weights = vec![1.0; data.segments.len()];
             begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)?;
             system = equations(&at, &weights, starts, globals);
-            (small, crept, damping, settled) = (0, 0, 1e-4, true);
+            ending.begin_again();
+            (damping, settled) = (FIRST_DAMPING, true);
             continue;
         }
         if uneven && !settled && (ended || damping > SHORT && !in_vain) {
             settled = true;
             if begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)? {
                 system = equations(&at, &weights, starts, globals);
-                (small, crept, damping) = (0, 0, 1e-4);
+                ending.begin_again();
+                damping = FIRST_DAMPING;
                 continue;
             }
             in_vain = true;
         }
         if ended {
             converged = true;
+            break;
+        }
+        if !sizes && !wary && ending.is_in_vain(weighted(&at, &weights), step) {
             break;
         }
     }

@@ -110,8 +110,9 @@ fn motion(data: &Data) -> f64 {
     values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / values.len().max(1) as f64
 }
 
-/// A fit on a horizon twice as long, begun where each joined segment begins.
-fn lengthened(longer: &Data, shorter: &Data, found: &Fit) -> Option<Fit> {
+/// A fit on a horizon twice as long, begun where each joined segment begins. It is given up where its mean square,
+/// for each degree of freedom, will not come below a bound.
+fn lengthened(longer: &Data, shorter: &Data, found: &Fit, below: f64) -> Option<Fit> {
     let places = shorter.firsts();
     let starts = longer
         .firsts()
@@ -122,7 +123,8 @@ fn lengthened(longer: &Data, shorter: &Data, found: &Fit) -> Option<Fit> {
         })
         .collect::<Option<_>>()?;
     let point = Point { globals: found.point.globals.clone(), starts };
-    fit(longer, &found.hypothesis, point, Moving::All, Effort::FINAL).ok()
+    let effort = Effort::FINAL.below(below * point.freedom(longer.samples()));
+    fit(longer, &found.hypothesis, point, Moving::All, effort).ok()
 }
 
 /// A fit on the unjoined segments that passes through the states of a fit on a longer horizon; only start states are
@@ -166,7 +168,7 @@ impl Horizon {
         if data.segments.len() == self.data.segments.len() {
             return None;
         }
-        let calibrated = lengthened(&data, &self.data, &self.calibrated)?;
+        let calibrated = lengthened(&data, &self.data, &self.calibrated, f64::INFINITY)?;
         Some(Self { by, data, calibrated })
     }
 
@@ -215,10 +217,11 @@ impl Horizon {
         let mut sets = best;
         let mut horizon = self.clone();
         while let Some(longer) = horizon.doubled(segments) {
+            let most = JUDGED * JUDGED * first;
             let kept: Vec<Fit> =
-                sets.iter().filter_map(|set| lengthened(&longer.data, &horizon.data, set)).collect();
+                sets.iter().filter_map(|set| lengthened(&longer.data, &horizon.data, set, most)).collect();
             let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
-            if smallest > JUDGED * JUDGED * first {
+            if smallest > most {
                 break;
             }
             sets.clone_from(&kept);

@@ -28,6 +28,7 @@ mod conclusion;
 mod confidence;
 mod diagnose;
 mod dictionary;
+mod ending;
 mod error;
 mod experiment;
 mod facts;

@@ -67,7 +67,7 @@ pub(crate) fn refine(
     let mut refined = Pool { fits: all, rejected };
     // A special case and what it is a case of are judged on the same samples.
     if let Some(best) = refined.ranked(time).first().map(|fit| (*fit).clone()) {
-        for fit in fit_all(data, &generalized(data, &best, candidates), Effort::FINAL) {
+        for fit in fit_all(data, &generalized(data, &best, candidates), |_| Effort::FINAL) {
             refined.admit(data, fit);
         }
     }

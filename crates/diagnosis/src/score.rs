@@ -12,7 +12,44 @@ pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
     let samples = fit.samples() as f64;
     let worth = samples / autocorrelation_time;
     let extra = fit.point.starts.iter().map(|start| start.len().saturating_sub(2)).sum::<usize>();
-    let parameters = (fit.globals() + extra) as f64;
     let mean = (fit.squares / samples).max(f64::MIN_POSITIVE);
-    -0.5 * worth * mean.ln() - 0.5 * parameters * worth.max(2.0).ln()
+    -0.5 * worth * mean.ln() - price(fit.globals() + extra, worth)
+}
+
+/// What parameters cost: (p/2)·ln(N/τ).
+fn price(parameters: usize, worth: f64) -> f64 {
+    0.5 * parameters as f64 * worth.max(2.0).ln()
+}
+
+/// The squares at which so many samples and parameters have a [`score`].
+pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorrelation_time: f64) -> f64 {
+    let samples = samples as f64;
+    let worth = samples / autocorrelation_time;
+    samples * (-2.0 * (score + price(parameters, worth)) / worth).exp()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{score, squares_at};
+    use crate::calibrate::baseline;
+    use crate::observations::Observations;
+    use crate::segments::cut;
+    use dynamics::Nominal;
+    use record::{Clock, ClockChoice, Quantity, Record};
+
+    #[test]
+    fn squares_and_score_go_together() {
+        let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
+        let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let nominal = Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
+        let observations = Observations::new(&record, &clock);
+        let data = cut(&[observations], &[vec![true; 1000]], &nominal).unwrap();
+        let found = baseline(&data, &nominal).unwrap().calibrated;
+        for time in [1.0, 7.0] {
+            let squares = squares_at(score(&found, time), found.samples(), found.globals(), time);
+            assert!((squares / found.squares - 1.0).abs() < 1e-9, "{time}: {squares} {}", found.squares);
+        }
+    }
 }

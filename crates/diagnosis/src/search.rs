@@ -10,6 +10,7 @@ use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
+use crate::score::{score, squares_at};
 use crate::segments::Data;
 use crate::spectrum::DECAYS;
 use rayon::prelude::*;
@@ -79,7 +80,7 @@ impl Pool {
     /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
     pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
         let mut ranked: Vec<&Fit> = self.fits.iter().collect();
-        ranked.sort_by(|a, b| crate::score::score(b, time).total_cmp(&crate::score::score(a, time)));
+        ranked.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
         ranked
     }
 }
@@ -218,11 +219,15 @@ fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
 }
 
 /// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
-pub(crate) fn fit_all(data: &Data, proposals: &[Proposal], effort: Effort) -> Vec<Fit> {
-    let fits: Vec<Option<Fit>> = proposals
-        .par_iter()
-        .map(|proposal| fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, effort).ok())
-        .collect();
+pub(crate) fn fit_all(
+    data: &Data,
+    proposals: &[Proposal],
+    effort: impl Fn(&Proposal) -> Effort + Sync,
+) -> Vec<Fit> {
+    let fitted = |proposal: &Proposal| {
+        fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, effort(proposal)).ok()
+    };
+    let fits: Vec<Option<Fit>> = proposals.par_iter().map(fitted).collect();
     fits.into_iter().flatten().collect()
 }
 
@@ -360,7 +365,13 @@ fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, propos
     let fresh: Vec<Proposal> =
         proposals.into_iter().filter(|proposal| !tried.contains(&proposal.hypothesis.ranks())).collect();
     tried.extend(fresh.iter().map(|proposal| proposal.hypothesis.ranks()));
-    for fit in fit_all(data, &fresh, Effort::SEARCH) {
+    let time = pool.autocorrelation_time();
+    let best = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| score(fit, time));
+    // What ends farther behind than anything is gone on from need not be fitted to its end.
+    let of_use = |proposal: &Proposal| {
+        squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
+    };
+    for fit in fit_all(data, &fresh, |proposal| Effort::SEARCH.below(of_use(proposal))) {
         pool.admit(data, fit);
     }
 }
@@ -390,6 +401,8 @@ fn begin(
     }) {
         proposals.push(proposal(data, calibrated, None, &[(*candidate, parameters.clone())]));
     }
+    // Pairs have to keep up with these.
+    settle(data, pool, tried, std::mem::take(&mut proposals));
     for gain in pairs(&dictionary)
         .iter()
         .take(breadth.pairs)
@@ -426,14 +439,13 @@ pub(crate) fn search(
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
     for _ in 0..2 * breadth.most_effects {
         let time = pool.autocorrelation_time();
-        let before =
-            pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| crate::score::score(fit, time));
+        let before = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| score(fit, time));
         let bases: Vec<Fit> = pool
             .ranked(time)
             .into_iter()
             .filter(|fit| !fit.hypothesis.candidates.is_empty())
             .take(breadth.beam)
-            .filter(|fit| before - crate::score::score(fit, time) < FAR_BEHIND)
+            .filter(|fit| before - score(fit, time) < FAR_BEHIND)
             .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
             .cloned()
             .collect();
@@ -464,7 +476,7 @@ pub(crate) fn search(
         }
         settle(data, &mut pool, &mut tried, proposals);
         let time = pool.autocorrelation_time();
-        let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| crate::score::score(fit, time)).collect();
+        let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| score(fit, time)).collect();
         let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
         if now - before < threshold
             && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))

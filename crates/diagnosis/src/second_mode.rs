@@ -7,7 +7,8 @@
 
 use crate::projection::Projection;
 use crate::segments::Data;
-use crate::tangent::{Path, matrix, stack};
+use crate::spectrum::that_lie_apart;
+use crate::tangent::{Path, Step, matrix, stack};
 use nalgebra::{DMatrix, Vector2};
 
 /// Ratio of neighboring frequencies of the second body.
@@ -68,15 +69,8 @@ pub(crate) fn driven_modes(
         })
         .collect();
     modes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut chosen: Vec<SecondMode> = Vec::new();
-    for mode in modes {
-        let ratio = |other: &SecondMode| (mode.frequency / other.frequency).ln().abs();
-        if chosen.iter().all(|other| ratio(other) > APART.ln()) {
-            chosen.push(mode);
-        }
-    }
-    chosen.truncate(most);
-    chosen
+    let ratio = |one: &SecondMode, other: &SecondMode| (one.frequency / other.frequency).ln().abs();
+    that_lie_apart(modes, |one, other| ratio(one, other) > APART.ln(), most)
 }
 
 /// The torque of a second body of inertia 1 on the first, along a path that it begins in step with; its
@@ -87,7 +81,7 @@ fn pull(path: &Path, frequency: f64, rate: f64) -> Vec<f64> {
     let mut state = Vector2::zeros();
     let mut torque = Vec::with_capacity(path.len());
     let mut next = path.times.iter().zip(&forces).skip(1);
-    let mut step = crate::tangent::Step::of(0.0, stiffness, 2.0 * rate, 1.0);
+    let mut step = Step::of(0.0, stiffness, 2.0 * rate, 1.0);
     let mut size = 0.0;
     for (time, force) in path.times.iter().zip(&forces) {
         torque.push(stiffness * state.x + 2.0 * rate * state.y);
@@ -95,7 +89,7 @@ fn pull(path: &Path, frequency: f64, rate: f64) -> Vec<f64> {
         // On an even clock all steps are the same.
         if (after - time - size).abs() > 1e-9 * size {
             size = after - time;
-            step = crate::tangent::Step::of(size, stiffness, 2.0 * rate, 1.0);
+            step = Step::of(size, stiffness, 2.0 * rate, 1.0);
         }
         state = step.after(state, *force, *later);
     }
@@ -107,7 +101,8 @@ mod tests {
     use super::*;
     use crate::response::Motion;
 
-    /// At a steady swing θ = sin Ωt the pull settles to Re[(ω² + 2irΩ)·Ω²/(ω² − Ω² + 2irΩ)·e^{iΩt}], taken as the sine's.
+    /// At a steady swing θ = sin Ωt the pull settles to the imaginary part of
+    /// (ω² + 2irΩ)·Ω²/(ω² − Ω² + 2irΩ)·exp(iΩt).
     #[test]
     fn the_pull_is_that_of_the_second_bodys_equation() {
         let (swing, frequency, rate) = (20.0_f64, 31.0, 1.5);

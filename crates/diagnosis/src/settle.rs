@@ -5,7 +5,8 @@
 //! a hollow of its own, and that one then holds the coefficients. So each segment may begin again: where it
 //! is, where its first samples point, or at rest at its mean value.
 
-use crate::fit::{SHORT, extended};
+use crate::ending::SHORT;
+use crate::fit::extended;
 use crate::hypothesis::Hypothesis;
 use crate::matrices::raised;
 use crate::response::{Prediction, Simulator};

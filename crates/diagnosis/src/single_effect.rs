@@ -43,7 +43,7 @@ pub fn single_effect(
     let candidates = Candidate::that_apply(&data.facts, data.quantity, nominal);
     let dictionary = Dictionary::at(&data, &base.calibrated, &candidates)?;
     let proposals = alone(&data, &base.calibrated, &dictionary);
-    let fits = fit_all(&data, &proposals, Effort::SEARCH);
+    let fits = fit_all(&data, &proposals, |_| Effort::SEARCH);
     let there = fits.iter().filter(|fit| !vanished(&data, fit));
     let best = std::iter::once(&base.calibrated)
         .chain(there)

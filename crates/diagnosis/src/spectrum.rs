@@ -114,14 +114,21 @@ pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> 
     }
     found.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));
     // One line, looked for with several rates, comes out once for each.
-    let mut chosen: Vec<(Line, f64)> = Vec::new();
-    for (line, rate) in found {
-        let width = |other: f64| 2.0 * rate.max(other) + 4.0 * step;
-        if chosen.iter().all(|(one, own)| (one.frequency - line.frequency).abs() > width(*own)) {
-            chosen.push((line, rate));
+    let width = |one: f64, other: f64| 2.0 * one.max(other) + 4.0 * step;
+    let apart = |(one, own): &(Line, f64), (other, its): &(Line, f64)| {
+        (one.frequency - other.frequency).abs() > width(*own, *its)
+    };
+    that_lie_apart(found, apart, most)
+}
+
+/// The first so many of a list, best first, that all lie apart: of several about one place the best stands.
+pub(crate) fn that_lie_apart<T>(found: Vec<T>, apart: impl Fn(&T, &T) -> bool, most: usize) -> Vec<T> {
+    let mut chosen: Vec<T> = Vec::new();
+    for one in found {
+        if chosen.len() < most && chosen.iter().all(|other| apart(&one, other)) {
+            chosen.push(one);
         }
     }
-    chosen.truncate(most);
     chosen
 }
 

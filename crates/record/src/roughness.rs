@@ -52,11 +52,10 @@ struct Mark {
 impl Mark {
     fn of(stamps: &[f64], even: &[f64], values: &[f64]) -> Self {
         let (of_host, of_even) = (weights(stamps), weights(even));
-        let length = |weights: &[f64; 5]| weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt();
         let product: f64 = of_host.iter().zip(&of_even).map(|(host, even)| host * even).sum();
         Self {
-            host: off_cubic(stamps, values),
-            even: off_cubic(even, values),
+            host: weighed(&of_host, values),
+            even: weighed(&of_even, values),
             cosine: product / (length(&of_host) * length(&of_even)),
         }
     }
@@ -72,14 +71,21 @@ fn weights(times: &[f64]) -> [f64; 5] {
     weights
 }
 
-/// Distance of five points from a cubic, in the noise of a point: Σ cᵢ·yᵢ with their [`weights`], scaled to
-/// Σ cᵢ² = 1.
-pub(crate) fn off_cubic(times: &[f64], values: &[f64]) -> f64 {
+fn length(weights: &[f64; 5]) -> f64 {
+    weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+}
+
+/// Σ cᵢ·yᵢ with weights scaled to Σ cᵢ² = 1.
+fn weighed(weights: &[f64; 5], values: &[f64]) -> f64 {
     // Relative to the first value, so that values at rest lie on the cubic exactly.
     let origin = values.first().copied().unwrap_or_default();
-    let weights = weights(times);
     let sum: f64 = weights.iter().zip(values).map(|(weight, value)| weight * (value - origin)).sum();
-    sum / weights.iter().map(|weight| weight * weight).sum::<f64>().sqrt()
+    sum / length(weights)
+}
+
+/// Distance of five points from a cubic, in the noise of a point: their fourth divided difference, scaled.
+pub(crate) fn off_cubic(times: &[f64], values: &[f64]) -> f64 {
+    weighed(&weights(times), values)
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Making cases: what the diagnosis is given goes to disk, truths stay sealed in memory.
 
 use super::arguments::TrialsArguments;
+use super::each::each;
 use super::error::TrialsError;
 use super::{left_out, open};
 use crate::error::TrainerError;
 use crate::progress::Progress;
 use estimator::Cancel;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use runs::RunFolder;
 use runs::result::{TRIALS_MANIFEST_SCHEMA, TrialsManifest, TrialsManifestLine};
 use serde_json::json;
@@ -41,23 +41,12 @@ pub(crate) fn make(
     let silent = arguments.output.quiet || arguments.output.json;
     let progress = Progress::over_cases_made(plan.len() as u64, silent);
     let file = arguments.config.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
-    let made: Vec<Option<(TrialsManifestLine, Sealed<Hidden>)>> = pool.install(|| {
-        (0..plan.len())
-            .into_par_iter()
-            .map(|number| {
-                if cancel.is_requested() {
-                    return Ok(None);
-                }
-                let failed = |source| TrialsError::Case { file: file.clone(), number, source };
-                let case = plan.case(number).map_err(failed)?;
-                let written = write(folder, &case)?;
-                progress.one_of_many_done();
-                Ok(Some(written))
-            })
-            .collect::<Result<_, TrainerError>>()
+    let numbers: Vec<usize> = (0..plan.len()).collect();
+    let made = each(&numbers, pool, cancel, &progress, |&number| {
+        let failed = |source| TrialsError::Case { file: file.clone(), number, source };
+        write(folder, &plan.case(number).map_err(failed)?)
     })?;
-    progress.finish();
-    let Some(made) = made.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let Some(made) = made else { return Ok(None) };
     let (cases, sealed) = made.into_iter().unzip();
     let manifest = TrialsManifest {
         schema: TRIALS_MANIFEST_SCHEMA.to_owned(),

@@ -3,6 +3,7 @@
 pub(crate) mod arguments;
 mod ask;
 mod baselines;
+mod each;
 mod error;
 mod make;
 mod open;
@@ -56,10 +57,10 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     let plan = TrialPlan::resolve(&document)?;
     let folder = begin(arguments, &plan, &pool)?;
     let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
-        return interrupted(&folder, "making the cases");
+        return interrupted(&folder, "making the cases", &go_on(&folder));
     };
     let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
-        return interrupted(&folder, "the diagnosis");
+        return interrupted(&folder, "the diagnosis", &go_on(&folder));
     };
     folder.write_json(open::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
@@ -113,12 +114,14 @@ fn begin(
     Ok(folder)
 }
 
-fn interrupted(folder: &RunFolder, during: &str) -> Result<Outcome, TrainerError> {
+/// How interrupted trials go on.
+fn go_on(folder: &RunFolder) -> String {
+    format!("go on with the same command, --out {} and --resume", folder.path().display())
+}
+
+fn interrupted(folder: &RunFolder, during: &str, remedy: &str) -> Result<Outcome, TrainerError> {
     folder.record_event("interrupted", &json!({ "during": during }))?;
-    crate::console::remark(&format!(
-        "interrupted during {during}; go on with the same command, --out {} and --resume",
-        folder.path().display()
-    ));
+    crate::console::remark(&format!("interrupted during {during}; {remedy}"));
     Ok(Outcome::Interrupted)
 }
 
@@ -134,12 +137,9 @@ fn finish(
 ) -> Result<Outcome, TrainerError> {
     let silent = arguments.output.quiet || arguments.output.json;
     let Some(opened) = open::open(folder, manifest, pool, failed, (cancel, silent))? else {
-        folder.record_event("interrupted", &json!({ "during": "the scoring" }))?;
-        crate::console::remark(&format!(
-            "interrupted during the scoring, every answer is kept; trainer trials --score {} scores them",
-            folder.path().display()
-        ));
-        return Ok(Outcome::Interrupted);
+        let score =
+            format!("every answer is kept; trainer trials --score {} scores them", folder.path().display());
+        return interrupted(folder, "the scoring", &score);
     };
     let Opened { cases, mut baselines } = opened;
     baselines.insert(0, most_common(&cases));

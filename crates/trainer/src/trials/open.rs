@@ -1,6 +1,7 @@
 //! Opening the seals: truths, answers and records from the folder, each held to the manifest's digest.
 
 use super::baselines::{DIAGNOSERS, Diagnoser};
+use super::each::each;
 use super::error::TrialsError;
 use super::make::WITHOUT;
 use crate::diagnose;
@@ -8,7 +9,6 @@ use crate::error::TrainerError;
 use crate::progress::Progress;
 use estimator::Cancel;
 use rayon::ThreadPool;
-use rayon::prelude::*;
 use runs::RunFolder;
 use runs::result::{DiagnosisResult, TrialsManifest, TrialsManifestLine};
 use std::collections::BTreeMap;
@@ -75,19 +75,9 @@ pub(crate) fn open(
     (cancel, silent): (&Cancel, bool),
 ) -> Result<Option<Opened>, TrainerError> {
     let progress = Progress::over_cases_opened(manifest.cases.len() as u64, silent);
-    let opened: Vec<Option<(AnsweredCase, Named)>> = pool.install(|| {
-        let lines = manifest.cases.par_iter().map(|line| {
-            if cancel.is_requested() {
-                return Ok(None);
-            }
-            let opened = one(folder, line, failed)?;
-            progress.one_of_many_done();
-            Ok(Some(opened))
-        });
-        lines.collect::<Result<_, TrainerError>>()
-    })?;
-    progress.finish();
-    let Some(opened) = opened.into_iter().collect::<Option<Vec<_>>>() else { return Ok(None) };
+    let lines = &manifest.cases;
+    let opened = each(lines, pool, cancel, &progress, |line| one(folder, line, failed))?;
+    let Some(opened) = opened else { return Ok(None) };
     let (cases, named): (Vec<AnsweredCase>, Vec<Named>) = opened.into_iter().unzip();
     let baseline = |(index, diagnoser): (usize, &Diagnoser)| Baseline {
         id: diagnoser.id.to_owned(),
