@@ -1,7 +1,7 @@
 //! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
 
 use crate::facts::Facts;
-use dynamics::{Class, Nominal, SystemEffect};
+use dynamics::{Class, Coordinate, Nominal, SystemEffect};
 use record::Quantity;
 use std::f64::consts::PI;
 
@@ -157,6 +157,7 @@ impl Candidate {
     /// Whether it can act on these records at all.
     fn applies(self, facts: &Facts, quantity: Quantity, nominal: &Nominal) -> bool {
         let spring = nominal.stiffness() > 0.0;
+        let is_angle = nominal.coordinate() == Coordinate::Angle;
         match self {
             Self::System(SystemEffect::InputDelay | SystemEffect::InputSaturation) => {
                 facts.input_torque > 0.0
@@ -168,7 +169,9 @@ impl Candidate {
             // A lag of one frequency is an amplitude and a phase besides: inside the start state.
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
             Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
-            Self::Chain(Distortion::Nonlinearity) => quantity == Quantity::Position,
+            // Sines of the coordinate: a length is not the argument of one.
+            Self::System(SystemEffect::Gravity) => is_angle,
+            Self::Chain(Distortion::Nonlinearity) => is_angle && quantity == Quantity::Position,
             _ => true,
         }
     }
@@ -388,7 +391,8 @@ impl Candidate {
 mod tests {
     use super::{Candidate, MainMode};
     use crate::facts::Facts;
-    use dynamics::SystemEffect;
+    use dynamics::{Coordinate, Nominal, SystemEffect};
+    use record::Quantity;
 
     const FACTS: Facts = Facts {
         amplitude: 0.7,
@@ -405,6 +409,20 @@ mod tests {
         stiffness: 484.0,
         tolerance: Facts::UNKNOWN_NOISE,
     };
+
+    #[test]
+    fn no_sine_is_taken_of_a_length() {
+        let angle = Nominal::new(1.0, 0.2, 484.0, 0.0).unwrap();
+        let length = angle.clone().with_coordinate(Coordinate::Displacement);
+        let ids = |nominal: &Nominal| -> Vec<&str> {
+            let those = Candidate::that_apply(&FACTS, Quantity::Position, nominal);
+            those.into_iter().map(Candidate::id).collect()
+        };
+        let mut of_angles = ids(&angle);
+        of_angles.retain(|id| !ids(&length).contains(id));
+        of_angles.sort_unstable();
+        assert_eq!(of_angles, ["gravity", "sensor_nonlinearity"]);
+    }
 
     #[test]
     fn parameters_are_the_laws_own() {

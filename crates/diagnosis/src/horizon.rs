@@ -8,7 +8,7 @@
 
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::response::Simulator;
-use crate::search::Pool;
+use crate::search::{Pool, vanished};
 use crate::segments::{Data, Segment};
 use dynamics::DynamicsError;
 use nalgebra::DVector;
@@ -218,8 +218,12 @@ impl Horizon {
         let mut horizon = self.clone();
         while let Some(longer) = horizon.doubled(segments) {
             let most = JUDGED * JUDGED * first;
-            let kept: Vec<Fit> =
-                sets.iter().filter_map(|set| lengthened(&longer.data, &horizon.data, set, most)).collect();
+            // What ends there as something else, or as nothing, does not follow.
+            let kept: Vec<Fit> = sets
+                .iter()
+                .filter_map(|set| lengthened(&longer.data, &horizon.data, set, most))
+                .filter(|fit| !vanished(&longer.data, fit))
+                .collect();
             let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
             if smallest > most {
                 break;

@@ -16,14 +16,18 @@ pub(crate) fn element(vector: &DVector<f64>, index: usize) -> f64 {
     vector.get(index).copied().unwrap_or(0.0)
 }
 
-/// A square matrix with its diagonal raised by a factor, and each entry by a little of the largest: a column
-/// without any effect still gets a pivot.
+/// Part of itself that each entry of a diagonal is raised by at least, against rounding.
+const LEAST: f64 = 1e-13;
+
+/// A normal matrix with its diagonal raised by a factor; a column without any effect gets a pivot all the same.
+///
+/// Each entry is raised by a part of itself, never of another: columns differ by many orders of magnitude with the units
+/// of their parameters.
 pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
-    let largest = matrix.diagonal().max().max(f64::MIN_POSITIVE);
     let mut raised = matrix.clone();
     for i in 0..matrix.nrows() {
         let own = entry(matrix, i, i);
-        set(&mut raised, i, i, own + factor * own + 1e-14 * largest);
+        set(&mut raised, i, i, if own > 0.0 { own * (1.0 + factor + LEAST) } else { 1.0 });
     }
     raised
 }
@@ -40,4 +44,31 @@ pub(crate) fn ridged(
         set(&mut ridged, i, i, own * (1.0 + ridge));
     }
     ridged
+}
+
+#[cfg(test)]
+mod tests {
+    use super::raised;
+    use nalgebra::{DMatrix, DVector};
+
+    /// A parameter in other units has its step in other units, and nothing else changes.
+    #[test]
+    fn a_step_does_not_depend_on_units() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[2.0, 0.3, 0.3, 1.0]);
+        let right = DVector::from_vec(vec![0.7, -0.4]);
+        let step = raised(&matrix, 1e-4).cholesky().unwrap().solve(&right);
+        for unit in [1e-12, 1e-6, 1e9] {
+            let units = DMatrix::from_diagonal(&DVector::from_vec(vec![1.0, unit]));
+            let other =
+                raised(&(&units * &matrix * &units), 1e-4).cholesky().unwrap().solve(&(&units * &right));
+            assert!((units * other - &step).norm() < 1e-12 * step.norm(), "{unit}");
+        }
+    }
+
+    #[test]
+    fn a_column_without_effect_does_not_move() {
+        let matrix = DMatrix::from_row_slice(2, 2, &[2.0, 0.0, 0.0, 0.0]);
+        let step = raised(&matrix, 0.0).cholesky().unwrap().solve(&DVector::from_vec(vec![1.0, 0.0]));
+        assert!((step[0] - 0.5).abs() < 1e-12 && step[1] == 0.0, "{step}");
+    }
 }
