@@ -98,8 +98,7 @@ pub fn has_fitted_hidden_start(id: &str) -> bool {
 }
 
 impl Candidate {
-    /// Every candidate, in the order of the vocabulary. A constant torque is the rest angle's shift and therefore
-    /// part of the calibration.
+    /// Every candidate.
     pub(crate) const ALL: &'static [Self] = &[
         Self::System(SystemEffect::CoulombFriction),
         Self::System(SystemEffect::StribeckFriction),
@@ -116,6 +115,7 @@ impl Candidate {
         Self::System(SystemEffect::FlexibleCoupling),
         Self::System(SystemEffect::InputDelay),
         Self::System(SystemEffect::InputSaturation),
+        Self::System(SystemEffect::ConstantTorque),
         Self::Chain(Distortion::Saturation),
         Self::Chain(Distortion::Lag),
         Self::Chain(Distortion::Nonlinearity),
@@ -165,6 +165,8 @@ impl Candidate {
             Self::System(
                 SystemEffect::Backlash | SystemEffect::StiffnessDrift | SystemEffect::FlexibleCoupling,
             ) => spring,
+            // On a spring it is a shift of the rest angle, which is part of the calibration.
+            Self::System(SystemEffect::ConstantTorque) => !spring,
             // A lag and a clock move what is observed by its time derivative, which an acceleration has not.
             // A lag of one frequency is an amplitude and a phase besides: inside the start state.
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,

@@ -235,6 +235,7 @@ impl Dictionary {
                     Candidate::System(
                         SystemEffect::CubicStiffness
                         | SystemEffect::AsymmetricStiffness
+                        | SystemEffect::ConstantTorque
                         | SystemEffect::Gravity
                         | SystemEffect::StiffnessDrift
                         | SystemEffect::DampingDrift
