@@ -415,7 +415,7 @@ mod tests {
     #[test]
     fn no_sine_is_taken_of_a_length() {
         let angle = Nominal::new(1.0, 0.2, 484.0, 0.0).unwrap();
-        let length = angle.clone().with_coordinate(Coordinate::Displacement);
+        let length = angle.with_coordinate(Coordinate::Displacement);
         let ids = |nominal: &Nominal| -> Vec<&str> {
             let those = Candidate::that_apply(&FACTS, Quantity::Position, nominal);
             those.into_iter().map(Candidate::id).collect()

@@ -13,8 +13,9 @@ use crate::gap::{Stages, gap, paired};
 use crate::held_out::HeldOut;
 use crate::horizon::Horizon;
 use crate::observations::Observations;
+use crate::pool::Pool;
 use crate::refine::refine;
-use crate::search::{Breadth, Pool, search};
+use crate::search::{Breadth, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
@@ -112,13 +113,17 @@ pub fn diagnose(
     };
     // On fewer samples a gain is so many times smaller; the search must not stop on that account.
     let enough = 0.5 * threshold / finer;
-    let (horizon, found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
+    let (horizon, mut found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
     lap("search");
     let segments = Unjoined { data: &data, base: &base };
     let data = &data.joined(horizon.by);
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
-    let pool = refine(data, &base.calibrated, &found, &candidates, finer);
+    let mut pool = refine(data, &Pool::of(&base.calibrated), &found, &candidates, finer);
+    if let Some((known, others)) = found.misled(&pool, &candidates) {
+        found = search(coarse, coarse_base, known, &others, &breadth, enough);
+        pool = refine(data, &pool, &found, &others, finer);
+    }
     let time = pool.autocorrelation_time();
     let weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, candidates.len()));
     lap("fits");

@@ -7,8 +7,8 @@
 //! at the end a record has one start state.
 
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::pool::{Pool, vanished};
 use crate::response::Simulator;
-use crate::search::{Pool, vanished};
 use crate::segments::{Data, Segment};
 use dynamics::DynamicsError;
 use nalgebra::DVector;

@@ -45,6 +45,7 @@ mod null;
 mod observations;
 mod outliers;
 mod period;
+mod pool;
 mod portrait;
 mod projection;
 mod ratio;

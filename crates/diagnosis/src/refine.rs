@@ -2,8 +2,9 @@
 
 use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
+use crate::pool::{Pool, vanished};
 use crate::score::score;
-use crate::search::{Pool, fit_all, generalized, vanished};
+use crate::search::{fit_all, generalized};
 use crate::segments::Data;
 use rayon::prelude::*;
 
@@ -19,19 +20,13 @@ const MOST: usize = 6;
 
 /// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ
 /// from the best of their size in one member: its rivals. There are `finer` times as many samples as the pool
-/// was fitted to. The calibrated simulator, fitted there already, comes first.
-pub(crate) fn refine(
-    data: &Data,
-    calibrated: &Fit,
-    pool: &Pool,
-    candidates: &[Candidate],
-    finer: f64,
-) -> Pool {
+/// was fitted to. What has been `refined` already, the calibrated simulator first, stays as it is.
+pub(crate) fn refine(data: &Data, refined: &Pool, pool: &Pool, candidates: &[Candidate], finer: f64) -> Pool {
     let time = pool.autocorrelation_time();
     let ranked: Vec<&Fit> =
         pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
     let score_of = |fit: &Fit| finer * score(fit, time);
-    let mut all = vec![calibrated.clone()];
+    let mut all: Vec<Fit> = refined.find(&[]).cloned().into_iter().collect();
     let mut rejected = pool.rejected.clone();
     let mut waiting = ranked.as_slice();
     // Where none of the best survives on every sample, the next ones have their turn.
@@ -55,12 +50,13 @@ pub(crate) fn refine(
         };
         let further = batch.iter().skip(MOST).filter(|fit| rival(fit)).take(MOST);
         let chosen: Vec<&Fit> = batch.iter().take(MOST).chain(further).copied().collect();
-        let refined: Vec<Option<Fit>> = chosen
-            .par_iter()
-            .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok())
-            .collect();
+        let again =
+            |found: &Fit| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::FINAL).ok();
+        let known = |found: &Fit| refined.find(&found.hypothesis.candidates).cloned();
+        let fitted: Vec<Option<Fit>> =
+            chosen.par_iter().map(|found| known(found).or_else(|| again(found))).collect();
         let (gone, fits): (Vec<Fit>, Vec<Fit>) =
-            refined.into_iter().flatten().partition(|fit| vanished(data, fit));
+            fitted.into_iter().flatten().partition(|fit| vanished(data, fit));
         rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
         all.extend(fits);
     }

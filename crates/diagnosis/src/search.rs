@@ -5,24 +5,17 @@
 //! best sets found so far and proposes what to add there, what to put in another's place, and what each member
 //! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
 
-use crate::candidate::{Candidate, MainMode};
+use crate::candidate::Candidate;
 use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
+use crate::pool::Pool;
 use crate::score::{score, squares_at};
 use crate::segments::Data;
 use crate::spectrum::DECAYS;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
-
-/// Every set that was fitted, best fit of each.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Pool {
-    pub(crate) fits: Vec<Fit>,
-    /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
-    pub(crate) rejected: Vec<Vec<Candidate>>,
-}
 
 /// How wide to search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -51,67 +44,6 @@ const FIRST_SIZE: f64 = 1e-3;
 pub(crate) struct Proposal {
     hypothesis: Hypothesis,
     point: Point,
-}
-
-impl Pool {
-    pub(crate) fn find(&self, candidates: &[Candidate]) -> Option<&Fit> {
-        self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
-    }
-
-    /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
-    pub(crate) fn admit(&mut self, data: &Data, fit: Fit) {
-        if vanished(data, &fit) {
-            self.rejected.push(fit.hypothesis.candidates);
-            return;
-        }
-        match self.fits.iter_mut().find(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
-            Some(known) if fit.squares < known.squares => *known = fit,
-            Some(_) => {}
-            None => self.fits.push(fit),
-        }
-    }
-
-    /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
-    pub(crate) fn autocorrelation_time(&self) -> f64 {
-        let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
-        best.map_or(1.0, Fit::autocorrelation_time)
-    }
-
-    /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
-    pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
-        let mut ranked: Vec<&Fit> = self.fits.iter().collect();
-        ranked.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
-        ranked
-    }
-}
-
-/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
-pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
-    let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
-    let mut members = fit.hypothesis.candidates.iter().zip(parts);
-    let starts_once = data.segments.len() <= data.inputs.len();
-    let swing = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
-        Ok(nominal) => MainMode {
-            frequency: (nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(),
-            decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
-            inertia: nominal.inertia(),
-            starts_once,
-        },
-        Err(_) => MainMode {
-            frequency: data.facts.frequency,
-            decay_rate: f64::INFINITY,
-            inertia: data.facts.inertia,
-            starts_once,
-        },
-    };
-    if members.any(|(candidate, part)| !candidate.is_itself(part, &swing)) {
-        return true;
-    }
-    let parameters = fit.hypothesis.parameters(&data.facts);
-    let calibrated = fit.hypothesis.calibrated.len();
-    let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
-    own.into_iter()
-        .any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
 }
 
 /// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
@@ -425,7 +357,7 @@ pub(crate) fn search(
     breadth: &Breadth,
     threshold: f64,
 ) -> Pool {
-    let mut pool = Pool { fits: vec![calibrated.clone()], rejected: Vec::new() };
+    let mut pool = Pool::of(calibrated);
     let mut tried = BTreeSet::new();
     tried.insert(Vec::new());
     let begun = !known.is_empty();

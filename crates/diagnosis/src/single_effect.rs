@@ -7,7 +7,8 @@ use crate::dictionary::Dictionary;
 use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit};
 use crate::observations::Observations;
-use crate::search::{alone, fit_all, vanished};
+use crate::pool::vanished;
+use crate::search::{alone, fit_all};
 use crate::segments::{MOST_SEARCHED, cut};
 use dynamics::Nominal;
 

@@ -2,7 +2,7 @@
 
 use crate::candidate::Candidate;
 use crate::fit::Fit;
-use crate::search::Pool;
+use crate::pool::Pool;
 use crate::statistics::chi_squared_above;
 
 /// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered

@@ -1,0 +1,150 @@
+//! The sets that a search has fitted.
+
+use crate::candidate::{Candidate, MainMode};
+use crate::fit::Fit;
+use crate::score::score;
+use crate::segments::Data;
+
+/// Every set that was fitted, best fit of each.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Pool {
+    pub(crate) fits: Vec<Fit>,
+    /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
+    pub(crate) rejected: Vec<Vec<Candidate>>,
+}
+
+impl Pool {
+    /// The calibrated simulator alone.
+    pub(crate) fn of(calibrated: &Fit) -> Self {
+        Self { fits: vec![calibrated.clone()], rejected: Vec::new() }
+    }
+
+    pub(crate) fn find(&self, candidates: &[Candidate]) -> Option<&Fit> {
+        self.fits.iter().find(|fit| fit.hypothesis.candidates == candidates)
+    }
+
+    /// Whether the search was led by a set that is gone where every sample is `refined`, and has not looked around what is
+    /// left: the sets of those that stay, and the candidates without what none of them holds.
+    pub(crate) fn misled(
+        &self,
+        refined: &Self,
+        candidates: &[Candidate],
+    ) -> Option<(Vec<Fit>, Vec<Candidate>)> {
+        let leader =
+            self.ranked(self.autocorrelation_time()).first().map(|fit| fit.hypothesis.candidates.clone())?;
+        if refined.find(&leader).is_some() {
+            return None;
+        }
+        let stays = |candidate: &Candidate| {
+            refined.fits.iter().any(|fit| fit.hypothesis.candidates.contains(candidate))
+        };
+        let gone = |candidate: &Candidate| leader.contains(candidate) && !stays(candidate);
+        let others: Vec<Candidate> =
+            candidates.iter().copied().filter(|candidate| !gone(candidate)).collect();
+        let known = self.fits.iter().filter(|fit| refined.find(&fit.hypothesis.candidates).is_some());
+        let known: Vec<Fit> = known.filter(|fit| !fit.hypothesis.candidates.is_empty()).cloned().collect();
+        (others.len() < candidates.len() && !known.is_empty()).then_some((known, others))
+    }
+
+    /// Takes a fit that is better than what is known of its set; a set with a vanished member is rejected.
+    pub(crate) fn admit(&mut self, data: &Data, fit: Fit) {
+        if vanished(data, &fit) {
+            self.rejected.push(fit.hypothesis.candidates);
+            return;
+        }
+        match self.fits.iter_mut().find(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
+            Some(known) if fit.squares < known.squares => *known = fit,
+            Some(_) => {}
+            None => self.fits.push(fit),
+        }
+    }
+
+    /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
+    pub(crate) fn autocorrelation_time(&self) -> f64 {
+        let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
+        best.map_or(1.0, Fit::autocorrelation_time)
+    }
+
+    /// Fits by the score that [`crate::score::score`] gives at an autocorrelation time, best first.
+    pub(crate) fn ranked(&self, time: f64) -> Vec<&Fit> {
+        let mut ranked: Vec<&Fit> = self.fits.iter().collect();
+        ranked.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
+        ranked
+    }
+}
+
+/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
+pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
+    let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
+    let mut members = fit.hypothesis.candidates.iter().zip(parts);
+    let starts_once = data.segments.len() <= data.inputs.len();
+    let swing = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
+        Ok(nominal) => MainMode {
+            frequency: (nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(),
+            decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
+            inertia: nominal.inertia(),
+            starts_once,
+        },
+        Err(_) => MainMode {
+            frequency: data.facts.frequency,
+            decay_rate: f64::INFINITY,
+            inertia: data.facts.inertia,
+            starts_once,
+        },
+    };
+    if members.any(|(candidate, part)| !candidate.is_itself(part, &swing)) {
+        return true;
+    }
+    let parameters = fit.hypothesis.parameters(&data.facts);
+    let calibrated = fit.hypothesis.calibrated.len();
+    let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
+    own.into_iter()
+        .any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Pool;
+    use crate::calibrate::baseline;
+    use crate::candidate::Candidate;
+    use crate::fit::Fit;
+    use crate::observations::Observations;
+    use crate::segments::cut;
+    use dynamics::{Nominal, SystemEffect};
+    use record::{Clock, ClockChoice, Quantity, Record};
+
+    const GRAVITY: Candidate = Candidate::System(SystemEffect::Gravity);
+    const SECOND_BODY: Candidate = Candidate::System(SystemEffect::FlexibleCoupling);
+
+    fn calibrated() -> Fit {
+        let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
+        let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let nominal = Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
+        let data = cut(&[Observations::new(&record, &clock)], &[vec![true; 1000]], &nominal).unwrap();
+        baseline(&data, &nominal).unwrap().calibrated
+    }
+
+    #[test]
+    fn a_search_led_by_what_does_not_stay_is_made_again_without_it() {
+        let base = calibrated();
+        let set = |candidates: &[Candidate], part: f64| Fit {
+            hypothesis: base.hypothesis.with(candidates),
+            squares: part * base.squares,
+            ..base.clone()
+        };
+        let (leader, other) = (set(&[GRAVITY, SECOND_BODY], 0.1), set(&[GRAVITY], 0.5));
+        let pool = |fits: &[&Fit]| Pool {
+            fits: fits.iter().map(|fit| (*fit).clone()).collect(),
+            rejected: Vec::new(),
+        };
+        let found = pool(&[&base, &leader, &other]);
+        let all = [GRAVITY, SECOND_BODY, Candidate::System(SystemEffect::QuadraticDrag)];
+        assert_eq!(found.misled(&pool(&[&base, &leader]), &all), None);
+        let (known, others) = found.misled(&pool(&[&base, &other]), &all).unwrap();
+        assert_eq!(known, [other]);
+        assert_eq!(others, [all[0], all[2]]);
+        assert_eq!(found.misled(&pool(&[&base]), &all), None, "there is nothing left to go on from");
+    }
+}
