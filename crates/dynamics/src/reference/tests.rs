@@ -196,6 +196,20 @@ fn a_hidden_body_goes_on_while_the_friction_holds() {
     assert!(motion.events.iter().any(|event| event.happening == Happening::BreakAway));
 }
 
+/// The friction is so small beside the spring that the rounding of the angle, against a rest angle that is not 0, moves
+/// the torque by more than the tolerance's part of the hold.
+#[test]
+fn what_rounding_moves_while_stuck_shortens_no_step() {
+    let nominal = Nominal::new(4e-4, 2.8e-4, 0.7, -0.0376).unwrap();
+    let body: &[f64] = &[7.8e-5, 2.93, 3.1e-4];
+    for friction in [1e-5, 4.4e-6, 1e-6] {
+        let system = with(nominal, &[("flexible_coupling", body), ("coulomb_friction", &[friction])]);
+        let motion = free(&system, Start::release(-0.5255521524700675), &grid(30.0, 260.0));
+        assert!(motion.events.iter().any(|event| event.happening == Happening::Stick), "{friction}");
+        assert!(motion.steps < 3000, "{friction}: {}", motion.steps);
+    }
+}
+
 #[test]
 fn collocation_has_twice_as_many_orders_as_stages() {
     // A swinging pendulum with damping: smooth, nonlinear, not reversible.
