@@ -30,9 +30,8 @@ impl Pool {
         refined: &Self,
         candidates: &[Candidate],
     ) -> Option<(Vec<Fit>, Vec<Candidate>)> {
-        let leader =
-            self.ranked(self.autocorrelation_time()).first().map(|fit| fit.hypothesis.candidates.clone())?;
-        if refined.find(&leader).is_some() {
+        let leader = &self.ranked(self.autocorrelation_time()).first().copied()?.hypothesis.candidates;
+        if refined.find(leader).is_some() {
             return None;
         }
         let stays = |candidate: &Candidate| {
@@ -71,6 +70,11 @@ impl Pool {
         ranked.sort_by(|a, b| score(b, time).total_cmp(&score(a, time)));
         ranked
     }
+
+    /// The best of these scores.
+    pub(crate) fn highest(&self, time: f64) -> f64 {
+        self.fits.iter().map(|fit| score(fit, time)).fold(f64::NEG_INFINITY, f64::max)
+    }
 }
 
 /// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
@@ -105,30 +109,17 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
 #[cfg(test)]
 mod tests {
     use super::Pool;
-    use crate::calibrate::baseline;
     use crate::candidate::Candidate;
     use crate::fit::Fit;
-    use crate::observations::Observations;
-    use crate::segments::cut;
-    use dynamics::{Nominal, SystemEffect};
-    use record::{Clock, ClockChoice, Quantity, Record};
+    use crate::score::calibrated_swing;
+    use dynamics::SystemEffect;
 
     const GRAVITY: Candidate = Candidate::System(SystemEffect::Gravity);
     const SECOND_BODY: Candidate = Candidate::System(SystemEffect::FlexibleCoupling);
 
-    fn calibrated() -> Fit {
-        let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
-        let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
-        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
-        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
-        let nominal = Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
-        let data = cut(&[Observations::new(&record, &clock)], &[vec![true; 1000]], &nominal).unwrap();
-        baseline(&data, &nominal).unwrap().calibrated
-    }
-
     #[test]
     fn a_search_led_by_what_does_not_stay_is_made_again_without_it() {
-        let base = calibrated();
+        let base = calibrated_swing();
         let set = |candidates: &[Candidate], part: f64| Fit {
             hypothesis: base.hypothesis.with(candidates),
             squares: part * base.squares,

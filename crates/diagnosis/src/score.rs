@@ -28,25 +28,27 @@ pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorr
     samples * (-2.0 * (score + price(parameters, worth)) / worth).exp()
 }
 
+/// The calibrated simulator fitted to a decaying swing of 1000 samples.
+#[cfg(test)]
+pub(crate) fn calibrated_swing() -> Fit {
+    use record::{Clock, ClockChoice, Quantity, Record};
+    let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
+    let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
+    let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+    let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+    let nominal = dynamics::Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
+    let observations = crate::Observations::new(&record, &clock);
+    let data = crate::segments::cut(&[observations], &[vec![true; 1000]], &nominal).unwrap();
+    crate::calibrate::baseline(&data, &nominal).unwrap().calibrated
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{score, squares_at};
-    use crate::calibrate::baseline;
-    use crate::observations::Observations;
-    use crate::segments::cut;
-    use dynamics::Nominal;
-    use record::{Clock, ClockChoice, Quantity, Record};
+    use super::{calibrated_swing, score, squares_at};
 
     #[test]
     fn squares_and_score_go_together() {
-        let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
-        let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
-        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
-        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
-        let nominal = Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
-        let observations = Observations::new(&record, &clock);
-        let data = cut(&[observations], &[vec![true; 1000]], &nominal).unwrap();
-        let found = baseline(&data, &nominal).unwrap().calibrated;
+        let found = calibrated_swing();
         for time in [1.0, 7.0] {
             let squares = squares_at(score(&found, time), found.samples(), found.globals(), time);
             assert!((squares / found.squares - 1.0).abs() < 1e-9, "{time}: {squares} {}", found.squares);

@@ -298,7 +298,7 @@ fn settle(data: &Data, pool: &mut Pool, tried: &mut BTreeSet<Vec<usize>>, propos
         proposals.into_iter().filter(|proposal| !tried.contains(&proposal.hypothesis.ranks())).collect();
     tried.extend(fresh.iter().map(|proposal| proposal.hypothesis.ranks()));
     let time = pool.autocorrelation_time();
-    let best = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| score(fit, time));
+    let best = pool.highest(time);
     // What ends farther behind than anything is gone on from need not be fitted to its end.
     let of_use = |proposal: &Proposal| {
         squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
@@ -371,7 +371,7 @@ pub(crate) fn search(
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
     for _ in 0..2 * breadth.most_effects {
         let time = pool.autocorrelation_time();
-        let before = pool.ranked(time).first().map_or(f64::NEG_INFINITY, |fit| score(fit, time));
+        let before = pool.highest(time);
         let bases: Vec<Fit> = pool
             .ranked(time)
             .into_iter()
@@ -408,9 +408,7 @@ pub(crate) fn search(
         }
         settle(data, &mut pool, &mut tried, proposals);
         let time = pool.autocorrelation_time();
-        let scores: Vec<f64> = pool.ranked(time).iter().map(|fit| score(fit, time)).collect();
-        let now = scores.first().copied().unwrap_or(f64::NEG_INFINITY);
-        if now - before < threshold
+        if pool.highest(time) - before < threshold
             && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))
         {
             break;
