@@ -13,6 +13,8 @@ pub(crate) enum Distortion {
     Drift,
     Clock,
     Saturation,
+    /// A reading that stays behind in either direction of motion: of a sensor with steps.
+    ReadingHysteresis,
 }
 
 /// An effect that can be fitted.
@@ -121,6 +123,7 @@ impl Candidate {
         Self::Chain(Distortion::Nonlinearity),
         Self::Chain(Distortion::Drift),
         Self::Chain(Distortion::Clock),
+        Self::Chain(Distortion::ReadingHysteresis),
     ];
 
     /// Its place in [`Self::ALL`].
@@ -137,7 +140,14 @@ impl Candidate {
             Self::Chain(Distortion::Drift) => "sensor_drift",
             Self::Chain(Distortion::Clock) => "clock_drift",
             Self::Chain(Distortion::Saturation) => "sensor_saturation",
+            Self::Chain(Distortion::ReadingHysteresis) => "sensor_quantization",
         }
+    }
+
+    /// Whether it takes one of the places that a set has. How a sensor's steps are counted does not: that the sensor has
+    /// steps shows without any fit.
+    pub(crate) fn counts(self) -> bool {
+        self != Self::Chain(Distortion::ReadingHysteresis)
     }
 
     /// Its part of a gap budget.
@@ -171,6 +181,9 @@ impl Candidate {
             // A lag of one frequency is an amplitude and a phase besides: inside the start state.
             Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
             Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
+            Self::Chain(Distortion::ReadingHysteresis) => {
+                facts.resolution > 0.0 && quantity == Quantity::Position
+            }
             // Sines of the coordinate: a length is not the argument of one.
             Self::System(SystemEffect::Gravity) => is_angle,
             Self::Chain(Distortion::Nonlinearity) => is_angle && quantity == Quantity::Position,
@@ -197,6 +210,7 @@ impl Candidate {
             Self::Chain(Distortion::Clock) => &["stiffness_drift", "cubic_stiffness"],
             Self::Chain(Distortion::Saturation) => &["end_stop"],
             Self::Chain(Distortion::Lag) => &["input_delay"],
+            Self::Chain(Distortion::ReadingHysteresis) => &["coulomb_friction", "hysteresis"],
         };
         // The relation holds in both directions, whichever of the two files states it.
         let stated = ids.iter().filter_map(|id| of(id));
@@ -287,6 +301,9 @@ impl Candidate {
             Self::Chain(Distortion::Saturation) => {
                 vec![between("bound", 1e-3 * facts.reading, facts.reading)]
             }
+            Self::Chain(Distortion::ReadingHysteresis) => {
+                vec![Parameter { upper: 2.0 * facts.resolution, ..positive("hysteresis") }]
+            }
         }
     }
 
@@ -372,7 +389,9 @@ impl Candidate {
             (Self::System(SystemEffect::FlexibleCoupling), &[body, mode, rate]) => {
                 let line = mode * (1.0 + body / swing.inertia).sqrt();
                 let order = (line / swing.frequency).round().max(1.0);
-                let apart = (line - order * swing.frequency).abs() > rate;
+                // Beside the swing itself it has to stand clear of the swing's own line too.
+                let width = if order > 1.0 { rate } else { rate.max(swing.decay_rate) };
+                let apart = (line - order * swing.frequency).abs() > width;
                 let faster = order > 1.0 && rate > FASTER * order * swing.decay_rate;
                 rate <= MOST_DAMPED * mode && (apart || swing.starts_once && faster)
             }
@@ -409,6 +428,7 @@ mod tests {
         interval: 1.0 / 260.0,
         inertia: 1.0,
         stiffness: 484.0,
+        resolution: 1e-3,
         tolerance: Facts::UNKNOWN_NOISE,
     };
 

@@ -51,7 +51,7 @@ pub(crate) fn parameters(work: &Work<'_>, fit: &Fit, candidate: Candidate) -> Ve
         if *own == candidate {
             let fitted = fit.point.globals.get(at..at + parameters.len()).unwrap_or_default();
             let spread = spread(fit, *own, at, fitted);
-            return parameters
+            let mut estimates: Vec<ParameterEstimate> = parameters
                 .iter()
                 .zip(own.values(fitted))
                 .zip(spread)
@@ -62,6 +62,15 @@ pub(crate) fn parameters(work: &Work<'_>, fit: &Fit, candidate: Candidate) -> Ve
                     estimate: around(value, error),
                 })
                 .collect();
+            if candidate == Candidate::Chain(Distortion::ReadingHysteresis) {
+                // Read off the values, without a fit.
+                let unit = unit(candidate, 0, units, work.data.quantity);
+                estimates.insert(
+                    0,
+                    ParameterEstimate { name: "step", unit, estimate: around(facts.resolution, 0.0) },
+                );
+            }
+            return estimates;
         }
         at += parameters.len();
     }
@@ -84,7 +93,7 @@ fn unit(candidate: Candidate, index: usize, units: Units, quantity: Quantity) ->
             match distortion {
                 Distortion::Lag => "s".to_owned(),
                 Distortion::Nonlinearity if index == 1 => "rad".to_owned(),
-                Distortion::Nonlinearity | Distortion::Saturation => position,
+                Distortion::Nonlinearity | Distortion::Saturation | Distortion::ReadingHysteresis => position,
                 Distortion::Drift => format!("{position}/s"),
                 Distortion::Clock => "1/s".to_owned(),
             }

@@ -35,6 +35,13 @@ pub(crate) struct Parts<'a> {
     pub(crate) findings: &'a [Finding],
 }
 
+impl Parts<'_> {
+    /// How many places of a set the named effects take.
+    fn fitted(&self) -> usize {
+        self.named.iter().filter(|candidate| candidate.counts()).count()
+    }
+}
+
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
 pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     let Parts { work, candidates, repaired, shares, weighed, unnamed, calibrated_off, shift, .. } = *parts;
@@ -47,7 +54,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     let plain =
         |id, probability| EffectProbability { id, probability, parameters: Vec::new(), gap_share: None };
     let mut list = vec![
-        plain("unknown", unnamed + (1.0 - unnamed) * stand_in(parts.named.len())),
+        plain("unknown", unnamed + (1.0 - unnamed) * stand_in(parts.fitted())),
         plain("none", bare * (1.0 - of_calibration)),
         plain("calibration", bare * of_calibration * (1.0 - of_shift)),
     ];
@@ -74,7 +81,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         let source = if place.is_some() { Some(repaired) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),
-            probability: of_effect(parts.named.len(), place.is_some(), probability, parts.left_over),
+            probability: of_effect(parts.fitted(), place.is_some(), probability, parts.left_over),
             parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
             gap_share: place.and_then(|place| shares.get(place)).map(|share| share.1),
         });
@@ -137,6 +144,6 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
         Status::None
     };
     let probability = if status == Status::Unknown { parts.unnamed } else { set * (1.0 - parts.unnamed) };
-    let confidence = confidence(status, parts.named.len(), probability, parts.left_over);
+    let confidence = confidence(status, parts.fitted(), probability, parts.left_over);
     Verdict { status, effects, confidence, left_over: parts.left_over, equivalent }
 }

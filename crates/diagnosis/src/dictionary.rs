@@ -153,6 +153,9 @@ fn columns(
             (Distortion::Saturation, &[bound]) => {
                 vec![x.iter().map(|x| x.clamp(-bound, bound) - x).collect()]
             }
+            (Distortion::ReadingHysteresis, _) => {
+                vec![rate.iter().map(|rate| if *rate < 0.0 { 1.0 } else { -1.0 }).collect()]
+            }
             (Distortion::Saturation, _) => Vec::new(),
         },
     }
@@ -243,7 +246,10 @@ impl Dictionary {
                     ) => false,
                     Candidate::System(_) => true,
                     Candidate::Chain(distortion) => {
-                        matches!(distortion, Distortion::Lag | Distortion::Saturation)
+                        matches!(
+                            distortion,
+                            Distortion::Lag | Distortion::Saturation | Distortion::ReadingHysteresis
+                        )
                     }
                 };
                 entries.push(Entry { candidate, shape, columns: from..from + count, positive });
@@ -279,6 +285,11 @@ impl Dictionary {
             further,
             frequencies: frequencies(data),
         }
+    }
+
+    /// The candidate of a gain's first entry.
+    pub(crate) fn candidate(&self, gain: &Gain) -> Option<Candidate> {
+        gain.entries.first().and_then(|&index| self.entries.get(index)).map(|entry| entry.candidate)
     }
 
     /// How many frequencies a gain is the best of: 1 for entries without one.

@@ -44,9 +44,9 @@ impl Effort {
 /// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
 pub(crate) const SHORT: f64 = 1e-2;
 
-/// A gain of so many times the smallest one is little, and so many steps in a row that gained little, however
+/// A gain of so many times the smallest one, less than a tenth of log evidence, is little, and so many steps in a row that gained little, however
 /// short they were, end a fit: in an uneven valley it would go on like that until its steps are spent.
-const LITTLE: f64 = 2.0;
+const LITTLE: f64 = 20.0;
 const CREPT: usize = 5;
 
 /// Relative decrease from which on a step is worth going on in any case.

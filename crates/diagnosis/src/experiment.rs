@@ -104,6 +104,7 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
                 record,
                 first: index == 0 && offset == 0.0,
                 values: vec![0.0; times.len()],
+                still: false,
                 times,
                 parts: segment.parts.clone(),
                 guess: [0.0; 2],

@@ -25,6 +25,8 @@ pub(crate) struct Facts {
     /// Nominal inertia, and the stiffness that gives the frequency with it.
     pub(crate) inertia: f64,
     pub(crate) stiffness: f64,
+    /// Step of the sensor's readings in its own unit; 0 where they lie on none.
+    pub(crate) resolution: f64,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
     pub(crate) tolerance: f64,
 }

@@ -36,6 +36,7 @@ impl Data {
                     last.parts.extend(segment.parts.iter().map(|part| part + last.times.len()));
                     last.times.extend(&segment.times);
                     last.values.extend(&segment.values);
+                    last.still &= segment.still;
                     members += 1;
                 }
                 _ => {

@@ -60,6 +60,7 @@ pub(crate) struct Measurement {
     pub(crate) drift: Option<f64>,
     pub(crate) clock: Option<f64>,
     pub(crate) saturation: Option<f64>,
+    pub(crate) reading: Option<f64>,
 }
 
 /// An observed value with its derivatives.
@@ -232,6 +233,9 @@ impl Hypothesis {
                 (Candidate::Chain(Distortion::Drift), &[rate]) => measurement.drift = Some(rate),
                 (Candidate::Chain(Distortion::Clock), &[change]) => measurement.clock = Some(change),
                 (Candidate::Chain(Distortion::Saturation), &[bound]) => measurement.saturation = Some(bound),
+                (Candidate::Chain(Distortion::ReadingHysteresis), &[width]) => {
+                    measurement.reading = Some(width);
+                }
                 _ => {}
             }
         }
@@ -274,6 +278,7 @@ mod tests {
             drift: Some(0.003),
             clock: Some(1e-3),
             saturation: Some(5.0),
+            reading: None,
         };
         let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
         let at = full.observe(x, rate, curvature, time, 0.0);

@@ -49,6 +49,7 @@ mod pool;
 mod portrait;
 mod projection;
 mod ratio;
+mod reading;
 mod refine;
 mod response;
 mod rounding;

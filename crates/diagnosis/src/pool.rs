@@ -58,6 +58,12 @@ impl Pool {
         }
     }
 
+    /// Takes a set out.
+    pub(crate) fn reject(&mut self, candidates: &[Candidate]) {
+        self.fits.retain(|known| known.hypothesis.candidates != candidates);
+        self.rejected.push(candidates.to_vec());
+    }
+
     /// The smallest autocorrelation time among the sets that fit nearly best: that of the richest adequate model.
     pub(crate) fn autocorrelation_time(&self) -> f64 {
         let best = self.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
@@ -77,8 +83,8 @@ impl Pool {
     }
 }
 
-/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
-pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
+/// Whether a member is not what its name says, beside the swing as it is fitted.
+pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
     let starts_once = data.segments.len() <= data.inputs.len();
@@ -96,14 +102,17 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
             starts_once,
         },
     };
-    if members.any(|(candidate, part)| !candidate.is_itself(part, &swing)) {
-        return true;
-    }
+    members.any(|(candidate, part)| !candidate.is_itself(part, &swing))
+}
+
+/// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
+pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parameters = fit.hypothesis.parameters(&data.facts);
     let calibrated = fit.hypothesis.calibrated.len();
     let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
-    own.into_iter()
-        .any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
+    let mut own = own.into_iter();
+    own.any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
+        || is_another(data, fit)
 }
 
 #[cfg(test)]

@@ -4,6 +4,7 @@ use crate::candidate::{Candidate, Distortion};
 use crate::facts::Facts;
 use crate::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
 use crate::matrices::set;
+use crate::reading::readings;
 use crate::segments::{Data, Segment};
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{DynamicsError, SystemEffect};
@@ -96,13 +97,13 @@ impl<'a> Simulator<'a> {
                 });
             }
         }
-        let lag = measurement.lag.is_some();
+        let curved = measurement.lag.is_some() || measurement.reading.is_some();
         // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
         let longest = data.longest_span() / facts.interval;
         let settings = Settings {
             tolerance: facts.tolerance,
             velocity: true,
-            acceleration: lag || !derivatives || data.quantity != Quantity::Position,
+            acceleration: curved || !derivatives || data.quantity != Quantity::Position,
             most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest as usize,
             degree: DEGREE,
         };
@@ -256,8 +257,45 @@ impl<'a> Simulator<'a> {
                 set(&mut jacobian, row, starts + number, value);
             }
         }
+        // At rest nothing says from which side it came.
+        if !segment.still {
+            self.hold(segment, &mut residual, &mut jacobian);
+        }
         self.combine(&mut jacobian, starts);
         Ok(Prediction { residual, jacobian })
+    }
+
+    /// Readings that stay behind the values, where the sensor has that hysteresis.
+    fn hold(&self, segment: &Segment, residual: &mut DVector<f64>, jacobian: &mut DMatrix<f64>) {
+        let Some(width) = self.measurement.reading else { return };
+        let of = |list: &[f64]| list.first().copied().unwrap_or(0.0);
+        let (rate, curvature) = (of(&self.response.velocity), of(&self.response.acceleration));
+        let values = segment.values.iter().zip(residual.iter()).map(|(observed, left)| observed - left);
+        let readings = readings(values, width, rate, curvature);
+        for (slot, (reading, observed)) in residual.iter_mut().zip(readings.iter().zip(&segment.values)) {
+            *slot = observed - reading.value;
+        }
+        for mut column in jacobian.column_iter_mut() {
+            for (row, reading) in readings.iter().enumerate() {
+                let moved = column.get(reading.since).copied().unwrap_or(0.0);
+                if let Some(slot) = column.get_mut(row) {
+                    *slot = moved;
+                }
+            }
+        }
+        if let Some(own) = self.by_width().filter(|_| self.derivatives) {
+            let column = self.hypothesis.start_length() + own;
+            for (row, reading) in readings.iter().enumerate() {
+                set(jacobian, row, column, reading.by_width);
+            }
+        }
+    }
+
+    /// Number of the reading hysteresis among the global parameters.
+    fn by_width(&self) -> Option<usize> {
+        let own = Candidate::Chain(Distortion::ReadingHysteresis);
+        let index = self.hypothesis.candidates.iter().position(|candidate| *candidate == own)?;
+        self.sources.iter().position(|source| matches!(source, Source::Candidate(at, _) if *at == index))
     }
 
     /// From derivatives by the laws' parameters to those by the fit's.
@@ -328,7 +366,7 @@ fn sensor_parameter(candidate: Option<&Candidate>, parameter: usize) -> Option<u
         Candidate::Chain(Distortion::Drift) => Some(3),
         Candidate::Chain(Distortion::Clock) => Some(4),
         Candidate::Chain(Distortion::Saturation) => Some(5),
-        Candidate::System(_) => None,
+        Candidate::Chain(Distortion::ReadingHysteresis) | Candidate::System(_) => None,
     }
 }
 
@@ -342,4 +380,58 @@ pub(crate) fn bent(deflection: f64, quadrature: f64, displacement: f64) -> f64 {
     let path = (amplitude + direction * deflection).max(0.0);
     let reversal = (amplitude / displacement).tanh();
     direction * (1.0 - (1.0 + reversal) * (-path / displacement).exp())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Simulator;
+    use crate::candidate::{Candidate, Distortion};
+    use crate::hypothesis::{Calibrated, Hypothesis};
+    use crate::observations::Observations;
+    use crate::segments::{Data, cut};
+    use dynamics::Nominal;
+    use record::{Clock, ClockChoice, Quantity, Record};
+
+    const STEP: f64 = 0.01;
+
+    /// A swing of 0.3 rad that decays, 10 s at 100 samples a second, rounded to hundredths.
+    fn data() -> (Data, Nominal) {
+        let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
+        let values =
+            times.iter().map(|t| STEP * (30.0 * (-0.1 * t).exp() * (6.0 * t).cos()).round()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+        let nominal = Nominal::new(1.0, 0.2, 36.0, 0.0).unwrap();
+        let kept = [vec![true; observations.len()]];
+        (cut(std::slice::from_ref(&observations), &kept, &nominal).unwrap(), nominal)
+    }
+
+    /// But for the first reading, whose turn of before the derivatives take for fixed.
+    #[test]
+    fn a_held_readings_derivatives_are_those_of_its_values() {
+        let (data, nominal) = data();
+        let candidates = vec![Candidate::Chain(Distortion::ReadingHysteresis)];
+        let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
+        let hypothesis = Hypothesis { nominal, calibrated, candidates };
+        let globals = [0.2, 36.0, 0.01, 0.4 * STEP];
+        let mut simulator = Simulator::new(&data, &hypothesis, &globals, true).unwrap();
+        for segment in &data.segments {
+            let at = simulator.predict(segment, &segment.guess).unwrap();
+            for column in 0..6 {
+                let mut shifted = |by: f64| {
+                    let (mut start, mut globals) = (segment.guess, globals);
+                    let parameter = start.iter_mut().chain(&mut globals).nth(column).unwrap();
+                    *parameter += by;
+                    simulator.set(&globals).unwrap();
+                    simulator.predict(segment, &start).unwrap().residual
+                };
+                let h = 1e-7;
+                let difference = (shifted(-h) - shifted(h)) / (2.0 * h);
+                let own = at.jacobian.column(column);
+                for (row, (own, difference)) in own.iter().zip(difference.iter()).enumerate().skip(10) {
+                    assert!((own - difference).abs() < 1e-3, "{row} {column}: {own} {difference}");
+                }
+            }
+        }
+    }
 }

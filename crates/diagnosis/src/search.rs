@@ -10,7 +10,7 @@ use crate::dictionary::{Dictionary, Gain, shapes};
 use crate::facts::Facts;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::hypothesis::Hypothesis;
-use crate::pool::Pool;
+use crate::pool::{Pool, is_another};
 use crate::score::{score, squares_at};
 use crate::segments::Data;
 use crate::spectrum::DECAYS;
@@ -219,10 +219,17 @@ fn around(
 ) -> Vec<Proposal> {
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
-    let size = base.hypothesis.candidates.len();
+    let size = base.hypothesis.candidates.iter().filter(|c| c.counts()).count();
     let ranked = singles(&dictionary);
+    let time = base.autocorrelation_time();
+    let counts = |gain: &Gain| dictionary.candidate(gain).is_none_or(Candidate::counts);
+    for gain in ranked.iter().filter(|gain| !counts(gain)) {
+        if best && stands_out(base, time, gain.squares, threshold, 1.0) {
+            proposals.push(proposal(data, base, None, &additions(&data.facts, &dictionary, gain)));
+        }
+    }
+    let ranked: Vec<Gain> = ranked.into_iter().filter(counts).collect();
     if size < breadth.most_effects {
-        let time = base.autocorrelation_time();
         let worth = |gain: f64, looked: f64| promising(base, time, gain, threshold, looked);
         for gain in
             ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
@@ -270,7 +277,7 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
 fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
     let mut proposals = Vec::new();
     let mut dropped = Vec::new();
-    for &member in &base.hypothesis.candidates {
+    for &member in base.hypothesis.candidates.iter().filter(|member| member.counts()) {
         let reduced = proposal(data, base, Some(member), &[]);
         let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH) else {
             continue;
@@ -278,10 +285,7 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
         let Ok(dictionary) = Dictionary::at(data, &bare, candidates) else { continue };
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
-        let is_confused = |gain: &Gain| {
-            let entry = gain.entries.first().and_then(|index| dictionary.entries.get(*index));
-            entry.is_some_and(|entry| confused.contains(&entry.candidate))
-        };
+        let is_confused = |gain: &Gain| dictionary.candidate(gain).is_some_and(|own| confused.contains(&own));
         let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
         let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
         for (_, gain) in chosen {
@@ -369,7 +373,9 @@ pub(crate) fn search(
         begin(data, calibrated, candidates, breadth, threshold, &mut pool, &mut tried);
     }
     let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
+    let mut unmasked = BTreeSet::new();
     for _ in 0..2 * breadth.most_effects {
+        unmask(data, &mut pool, &mut unmasked);
         let time = pool.autocorrelation_time();
         let before = pool.highest(time);
         let bases: Vec<Fit> = pool
@@ -399,9 +405,12 @@ pub(crate) fn search(
                 (own, dropped)
             })
             .collect();
-        let mut proposals = Vec::new();
+        let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
-            proposals.extend(own);
+            // What a better set has proposed already is begun from there.
+            let known: BTreeSet<Vec<usize>> =
+                proposals.iter().map(|other| other.hypothesis.ranks()).collect();
+            proposals.extend(own.into_iter().filter(|own| !known.contains(&own.hypothesis.ranks())));
             for fit in dropped {
                 pool.admit(data, fit);
             }
@@ -416,6 +425,24 @@ pub(crate) fn search(
     }
     polish(data, &mut pool);
     pool
+}
+
+/// Takes leading sets out that are others in disguise once they are fitted to their end. What brings hidden motions into
+/// every segment creeps there for longer than a search waits, and all that is built on it would be for nothing.
+fn unmask(data: &Data, pool: &mut Pool, looked_at: &mut BTreeSet<Vec<usize>>) {
+    loop {
+        let time = pool.autocorrelation_time();
+        let Some(best) = pool.ranked(time).first().map(|fit| (*fit).clone()) else { return };
+        let creeps = best.hypothesis.candidates.iter().any(|candidate| candidate.free_hidden() > 0);
+        if !creeps || !looked_at.insert(best.hypothesis.ranks()) {
+            return;
+        }
+        let end = fit(data, &best.hypothesis, best.point.clone(), Moving::All, Effort::FINAL);
+        if !end.is_ok_and(|end| is_another(data, &end)) {
+            return;
+        }
+        pool.reject(&best.hypothesis.candidates);
+    }
 }
 
 /// Fits whose steps were spent before they converged, and that are among the closest to the data all the same, go on: a

@@ -52,6 +52,8 @@ pub(crate) struct Segment {
     pub(crate) first: bool,
     pub(crate) times: Vec<f64>,
     pub(crate) values: Vec<f64>,
+    /// Whether no reading differs from the one before: it is at rest.
+    pub(crate) still: bool,
     /// Where in it each of the segments begins that it was joined from; `[0]` for one as it was cut.
     pub(crate) parts: Vec<usize>,
     /// A start state to begin a fit from: position and velocity.
@@ -211,7 +213,9 @@ pub(crate) fn cut(
                 continue;
             }
             let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
-            segments.push(Segment { record: number, first: at == 0, times, values, parts: vec![0], guess });
+            let still = values.iter().zip(values.iter().skip(1)).all(|(before, after)| before == after);
+            let first = at == 0;
+            segments.push(Segment { record: number, first, times, values, still, parts: vec![0], guess });
         }
     }
     if segments.is_empty() {
@@ -405,6 +409,7 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         interval,
         inertia,
         stiffness,
+        resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
         tolerance: Facts::UNKNOWN_NOISE,
     }
 }

@@ -34,13 +34,14 @@ impl Active {
         Self::of(Effect::find(id)?, values)
     }
 
-    /// An effect with values in the order of its description.
+    /// An effect with values in the order of its description; the last ones may be left out where they have a default.
     ///
     /// # Errors
     /// [`DynamicsError::WrongNumberOfValues`] or [`DynamicsError::OutOfRange`].
     pub fn of(effect: Effect, values: &[f64]) -> Result<Self, DynamicsError> {
         let description = effect.description();
-        if values.len() != description.parameters.len() {
+        let needed = description.parameters.iter().filter(|parameter| parameter.default.is_none()).count();
+        if !(needed..=description.parameters.len()).contains(&values.len()) {
             return Err(DynamicsError::WrongNumberOfValues {
                 effect: description.id,
                 expected: description.parameters.len(),
@@ -48,7 +49,10 @@ impl Active {
             });
         }
         let mut own = [0.0; MOST_PARAMETERS];
-        for ((own, &value), parameter) in own.iter_mut().zip(values).zip(description.parameters) {
+        let defaults =
+            description.parameters.iter().skip(values.len()).filter_map(|parameter| parameter.default);
+        let values = values.iter().copied().chain(defaults);
+        for ((own, value), parameter) in own.iter_mut().zip(values).zip(description.parameters) {
             if !parameter.range.contains(value) {
                 return Err(DynamicsError::OutOfRange {
                     effect: description.id,
@@ -83,14 +87,14 @@ impl Active {
             .parameters
             .iter()
             .map(|parameter| {
-                parameters.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value).ok_or(
-                    DynamicsError::MissingParameter {
-                        effect: description.id,
-                        parameter: parameter.name,
-                        meaning: parameter.meaning,
-                        range: parameter.range,
-                    },
-                )
+                let given =
+                    parameters.iter().find(|(name, _)| *name == parameter.name).map(|(_, value)| *value);
+                given.or(parameter.default).ok_or(DynamicsError::MissingParameter {
+                    effect: description.id,
+                    parameter: parameter.name,
+                    meaning: parameter.meaning,
+                    range: parameter.range,
+                })
             })
             .collect::<Result<Vec<_>, _>>()?;
         Self::of(effect, &values)

@@ -87,6 +87,8 @@ pub struct Parameter {
     pub range: Range,
     /// What it means, a phrase.
     pub meaning: &'static str,
+    /// Its value where none is given; `None` where one has to be. Only the last parameters of an effect have one.
+    pub default: Option<f64>,
 }
 
 /// What is known about an effect. The same for everybody: simulator, diagnosis, documents, listings.

@@ -195,7 +195,7 @@ pub(crate) fn parameter_keys(description: &Description, units: ConfiguredUnits) 
     let key = |parameter: &dynamics::Parameter| NumberKey {
         key: parameter.name,
         range: parameter.range,
-        default: Default::Required,
+        default: parameter.default.map_or(Default::Required, Default::Float),
         unit: units.of(parameter.quantity),
         meaning: parameter.meaning,
     };

@@ -91,7 +91,9 @@ fn entry(effect: &Description) -> String {
         let (name, symbol, unit) = (parameter.name, parameter.symbol, parameter.quantity.unit(SI));
         let unit = if unit.is_empty() { String::new() } else { format!(" ({unit})") };
         let (range, meaning) = (parameter.range, parameter.meaning);
-        lines.push(format!("  {name:<14} {symbol}{unit}, {range}: {meaning}"));
+        let default =
+            parameter.default.map_or_else(String::new, |value| format!("; {value} where not given"));
+        lines.push(format!("  {name:<14} {symbol}{unit}, {range}: {meaning}{default}"));
     }
     lines.push(format!("  tell-tale      {}", effect.tell_tale));
     if !effect.confused_with.is_empty() {
@@ -135,6 +137,7 @@ fn effect_json(effect: &Description) -> serde_json::Value {
                 "unit": parameter.quantity.unit(SI),
                 "range": parameter.range.to_string(),
                 "meaning": parameter.meaning,
+                "default": parameter.default,
             })
         })
         .collect();

@@ -23,6 +23,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Ratio,
             range: Range { minimum: -0.5, maximum: FASTEST, closed: true },
             meaning: "how much faster than true time the clock runs at the start",
+            default: None,
         },
         Parameter {
             name: "change",
@@ -30,6 +31,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Rate,
             range: Range::ANY,
             meaning: "change of that rate per second",
+            default: None,
         },
     ],
     tell_tale: "A phase error that grows with time at every frequency in proportion.",

@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Ratio,
             range: Range { minimum: 0.0, maximum: 0.9, closed: true },
             meaning: "expected share of the samples that are lost",
+            default: None,
         },
         Parameter {
             name: "length",
@@ -27,6 +28,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Samples,
             range: Range { minimum: 1.0, maximum: f64::INFINITY, closed: true },
             meaning: "mean number of samples lost in a row",
+            default: None,
         },
     ],
     tell_tale: "Gaps in the stamps; where stamps were made up from the index, jumps of the phase.",

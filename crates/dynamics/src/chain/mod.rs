@@ -152,10 +152,11 @@ impl Chain {
             }
         }
         let quantization = recording.iter().find(|(effect, _)| *effect == ChainEffect::SensorQuantization);
+        let lattice = quantization.and_then(|(_, active)| active.value("step"));
         for step in recording {
             apply(step, &mut samples);
-            if let (ChainEffect::Outliers, Some(quantization)) = (step.0, quantization) {
-                apply(quantization, &mut samples);
+            if let (ChainEffect::Outliers, Some(lattice)) = (step.0, lattice) {
+                sensor_quantization::round(lattice, &mut samples.values);
             }
         }
         Ok(samples)

@@ -21,6 +21,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Ratio,
             range: Range { minimum: 0.0, maximum: 1.0, closed: true },
             meaning: "chance of a sample to be wrong, each on its own",
+            default: None,
         },
         Parameter {
             name: "size",
@@ -28,6 +29,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Observed,
             range: Range::POSITIVE,
             meaning: "standard deviation of a wrong sample's error",
+            default: None,
         },
     ],
     tell_tale: "Heavy tails: isolated samples far off, their neighbors right.",

@@ -18,6 +18,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::ObservedPerTime,
         range: Range::ANY,
         meaning: "change of the sensor's zero per second",
+        default: None,
     }],
     tell_tale: "The mean moves with time, not with amplitude, and goes on moving when the motion has ended.",
     confused_with: &["constant_torque"],

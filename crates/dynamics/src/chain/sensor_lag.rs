@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Time,
         range: Range::POSITIVE,
         meaning: "time constant of the first-order low-pass",
+        default: None,
     }],
     tell_tale: "Amplitude and phase errors grow with frequency; in a decay of one frequency they show only at the start or with harmonics.",
     confused_with: &["input_delay"],

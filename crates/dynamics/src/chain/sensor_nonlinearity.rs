@@ -21,6 +21,7 @@ const DESCRIPTION: Description = Description {
             // Beyond 1 rad the reading would no longer rise with the angle everywhere.
             range: Range { minimum: 0.0, maximum: 1.0, closed: true },
             meaning: "largest error: the eccentricity over the radius of the encoder's track",
+            default: None,
         },
         Parameter {
             name: "phase",
@@ -28,6 +29,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Angle,
             range: Range::TURN,
             meaning: "direction of the eccentricity at x = 0",
+            default: None,
         },
     ],
     tell_tale: "Harmonics and a mean that moves with A², as from a nonlinear spring, but depending on position alone: no speed, no acceleration changes them.",

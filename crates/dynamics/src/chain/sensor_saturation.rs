@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Observed,
         range: Range::POSITIVE,
         meaning: "largest reading to either side",
+        default: None,
     }],
     tell_tale: "Flat tops at exactly one value, only while the amplitude is large.",
     confused_with: &["end_stop"],

@@ -22,6 +22,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Time,
             range: Range::POSITIVE,
             meaning: "mean time between bursts",
+            default: None,
         },
         Parameter {
             name: "scatter",
@@ -29,6 +30,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Time,
             range: Range::NON_NEGATIVE,
             meaning: "standard deviation of the time between two bursts",
+            default: None,
         },
     ],
     tell_tale: "Repeated stamps, and a staircase in place of the motion.",

@@ -21,6 +21,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Time,
         range: Range::NON_NEGATIVE,
         meaning: "standard deviation of a stamp's error",
+        default: None,
     }],
     tell_tale: "A residual in proportion to the velocity, and white.",
     confused_with: &["timestamp_batching"],

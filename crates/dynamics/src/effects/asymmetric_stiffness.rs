@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::QuadraticStiffness,
         range: Range::ANY,
         meaning: "torque per deflection squared",
+        default: None,
     }],
     tell_tale: "The mean position moves as A², with even harmonics.",
     confused_with: &["gravity", "sensor_nonlinearity"],

@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Position,
         range: Range::POSITIVE,
         meaning: "half the width of the dead zone",
+        default: None,
     }],
     tell_tale: "The frequency falls as A nears b.",
     confused_with: &["cubic_stiffness"],

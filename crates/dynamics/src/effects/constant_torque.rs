@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Torque,
         range: Range::ANY,
         meaning: "the preload",
+        default: None,
     }],
     tell_tale: "A shifted mean and nothing else.",
     confused_with: &["sensor_drift", "asymmetric_stiffness"],

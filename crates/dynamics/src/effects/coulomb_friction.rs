@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Torque,
         range: Range::NON_NEGATIVE,
         meaning: "size of the friction torque",
+        default: None,
     }],
     tell_tale: "The amplitude falls by the same 4τ_c/k every cycle, so ln A bends down at the end; the motion stops anywhere within ±τ_c/k.",
     confused_with: &["hysteresis", "stribeck_friction", "sensor_quantization"],

@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::CubicStiffness,
         range: Range::ANY,
         meaning: "torque per deflection cubed; above 0 hardens",
+        default: None,
     }],
     tell_tale: "The frequency changes as A², with odd harmonics.",
     confused_with: &["gravity", "backlash", "stiffness_drift"],

@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Rate,
         range: Range::ANY,
         meaning: "relative change of the damping per second",
+        default: None,
     }],
     tell_tale: "The decay rate drifts with time, not with amplitude.",
     confused_with: &["coulomb_friction", "quadratic_drag"],

@@ -22,6 +22,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Position,
             range: Range::ANY,
             meaning: "where contact begins; the stop lies on the far side from the rest angle",
+            default: None,
         },
         Parameter {
             name: "stiffness",
@@ -29,6 +30,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Stiffness,
             range: Range::POSITIVE,
             meaning: "stiffness of the contact",
+            default: None,
         },
         Parameter {
             name: "dissipation",
@@ -36,6 +38,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::InverseVelocity,
             range: Range::NON_NEGATIVE,
             meaning: "loss of the contact per approach speed",
+            default: None,
         },
     ],
     tell_tale: "Clipped-looking, asymmetric, and only while A is large.",

@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Inertia,
             range: Range::POSITIVE,
             meaning: "inertia of the hidden body",
+            default: None,
         },
         Parameter {
             name: "stiffness",
@@ -27,6 +28,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Stiffness,
             range: Range::POSITIVE,
             meaning: "stiffness of the coupling",
+            default: None,
         },
         Parameter {
             name: "damping",
@@ -34,6 +36,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Damping,
             range: Range::NON_NEGATIVE,
             meaning: "viscous damping of the coupling",
+            default: None,
         },
     ],
     tell_tale: "A second line that decays, and beating.",

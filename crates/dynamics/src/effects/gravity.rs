@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Torque,
             range: Range::NON_NEGATIVE,
             meaning: "weight times its lever arm",
+            default: None,
         },
         Parameter {
             name: "angle",
@@ -27,6 +28,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Angle,
             range: Range::TURN,
             meaning: "angle of the arm from hanging straight down at θ = 0",
+            default: None,
         },
     ],
     tell_tale: "Frequency and mean position fall with A² in the fixed ratio of a sine.",

@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Torque,
             range: Range::NON_NEGATIVE,
             meaning: "friction torque once sliding",
+            default: None,
         },
         Parameter {
             name: "displacement",
@@ -27,6 +28,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Position,
             range: Range::POSITIVE,
             meaning: "pre-sliding displacement over which it builds up",
+            default: None,
         },
     ],
     tell_tale: "A loss as from dry friction, but stiffer at very small amplitude: the contact bends before it slides.",

@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Time,
         range: Range::NON_NEGATIVE,
         meaning: "time from command to torque",
+        default: None,
     }],
     tell_tale: "A phase error that grows with frequency.",
     confused_with: &["sensor_lag"],

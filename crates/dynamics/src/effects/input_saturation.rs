@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Torque,
         range: Range::POSITIVE,
         meaning: "largest torque of the drive",
+        default: None,
     }],
     tell_tale: "A gap only where the command is large.",
     confused_with: &[],

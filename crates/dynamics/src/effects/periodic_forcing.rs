@@ -20,6 +20,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Torque,
             range: Range::NON_NEGATIVE,
             meaning: "amplitude of the forcing",
+            default: None,
         },
         Parameter {
             name: "frequency",
@@ -27,6 +28,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::AngularFrequency,
             range: Range::POSITIVE,
             meaning: "angular frequency of the forcing",
+            default: None,
         },
         Parameter {
             name: "phase",
@@ -34,6 +36,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Angle,
             range: Range::TURN,
             meaning: "phase of the forcing at time 0",
+            default: None,
         },
     ],
     tell_tale: "A line in the spectrum of the residual that does not decay.",

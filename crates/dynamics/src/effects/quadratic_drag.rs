@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::QuadraticDamping,
         range: Range::NON_NEGATIVE,
         meaning: "drag torque per velocity squared",
+        default: None,
     }],
     tell_tale: "1/A grows linearly in time, so ln A bends up early, while the amplitude is large.",
     confused_with: &["damping_drift", "coulomb_friction"],

@@ -19,6 +19,7 @@ const DESCRIPTION: Description = Description {
         quantity: Quantity::Rate,
         range: Range::ANY,
         meaning: "relative change of the stiffness per second",
+        default: None,
     }],
     tell_tale: "The frequency drifts with time, not with amplitude.",
     confused_with: &["cubic_stiffness", "clock_drift"],

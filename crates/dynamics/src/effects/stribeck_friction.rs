@@ -22,6 +22,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Torque,
             range: Range::NON_NEGATIVE,
             meaning: "friction torque at high speed",
+            default: None,
         },
         Parameter {
             name: "static_torque",
@@ -29,6 +30,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Torque,
             range: Range::NON_NEGATIVE,
             meaning: "friction torque at rest, at least τ_c",
+            default: None,
         },
         Parameter {
             name: "velocity",
@@ -36,6 +38,7 @@ const DESCRIPTION: Description = Description {
             quantity: Quantity::Velocity,
             range: Range::POSITIVE,
             meaning: "speed at which the excess has fallen to 1/e",
+            default: None,
         },
     ],
     tell_tale: "As Coulomb friction, with a faster decay once the peak speed nears v_s.",

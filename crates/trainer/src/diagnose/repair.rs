@@ -43,6 +43,9 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
             System::new(found.repaired_nominal, Vec::new())?
         }
     };
+    // Rounding is a part of the floor, and the repaired chain may do it by itself.
+    let rounding = chain.iter().filter_map(|own: &Active| own.value("step")).map(|step| step * step / 12.0);
+    let noise = (found.gap.noise_floor.value.powi(2) - rounding.sum::<f64>()).max(0.0).sqrt();
     let first = given.first();
     let at_start = |values: &[f64]| values.first().copied().unwrap_or_default();
     Ok(Repaired {
@@ -56,7 +59,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
             velocity: at_start(&found.series.velocity),
         },
         observed: observed(first.map(|given| given.quantity).unwrap_or_default()),
-        noise: found.gap.noise_floor.value,
+        noise,
         rate_hz: first.map_or(1.0, |given| given.rate_hz),
         seconds: first.map_or(1.0, |given| given.row.duration_s),
     })
