@@ -21,7 +21,7 @@ use crate::tangent::Path;
 use crate::unexplained::unexplained;
 use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
-use crate::{chain_statistics, experiment, latent, maps, noise, null};
+use crate::{chain_statistics, experiment, latent, maps, noise, null, release};
 use dynamics::Nominal;
 use record::ClockKind;
 use seed::Seed;
@@ -84,8 +84,9 @@ pub fn diagnose(
         last = now;
     };
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
-    let all = cut(records, &kept, nominal)?;
-    let unseen = chain_statistics::without_motion(&kept, all.samples());
+    let (free, unreleased) = free(records, &kept);
+    let all = cut(records, &free, nominal)?;
+    let unseen = chain_statistics::without_motion(&free, all.samples());
     let sparser = all.sparser(MOST_SEARCHED);
     let data = sparser.thinned(MOST_SEARCHED);
     let is_whole = data.samples() == sparser.samples();
@@ -210,7 +211,7 @@ pub fn diagnose(
     lap("maps");
 
     let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
-    measuring_chain.findings.extend(unseen);
+    measuring_chain.findings.extend(unreleased.into_iter().chain(unseen));
     for finding in &mut measuring_chain.findings {
         finding.effect = finding.effect.filter(|id| settings.considers(id));
     }
@@ -308,6 +309,17 @@ fn followed(data: &Data, segments: &Unjoined<'_>, horizon: &Horizon) -> Result<B
     let point = horizon.calibrated.point.clone();
     let calibrated = fit(data, hypothesis, point, Moving::All, Effort::FINAL)?;
     Ok(Baseline { nominal, calibrated })
+}
+
+/// The samples that are kept of each record, less those before its release; and what is said of these.
+fn free(records: &[Observations], kept: &[Vec<bool>]) -> (Vec<Vec<bool>>, Vec<Finding>) {
+    let mut findings = Vec::new();
+    let free = records.iter().zip(kept).map(|(record, kept)| {
+        let Some(until) = release::held_until(record) else { return kept.clone() };
+        findings.push(release::finding(until));
+        record.times_s.iter().zip(kept).map(|(time, kept)| *kept && *time >= until).collect()
+    });
+    (free.collect(), findings)
 }
 
 fn refit(data: &Data, found: &Fit) -> Result<Fit, DiagnosisError> {

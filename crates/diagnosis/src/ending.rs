@@ -13,6 +13,8 @@ pub(crate) struct Effort {
     /// Log evidence that a step has to bring, where it is more than [`Self::small`]: half the relative decrease of the
     /// squares, times the samples, over the residual's autocorrelation time.
     pub(crate) worth: f64,
+    /// How many times the smallest gain is little.
+    pub(crate) little: f64,
     /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
     /// has still to grow says nothing about them.
     pub(crate) sizes_first: usize,
@@ -26,14 +28,28 @@ pub(crate) struct Effort {
 
 impl Effort {
     /// To rank proposals.
-    pub(crate) const SEARCH: Self =
-        Self { steps: 40, small: 1e-4, worth: 0.1, sizes_first: 2, wary: true, below: f64::INFINITY };
+    pub(crate) const SEARCH: Self = Self {
+        steps: 40,
+        small: 1e-4,
+        worth: 0.1,
+        little: 2.0,
+        sizes_first: 2,
+        wary: true,
+        below: f64::INFINITY,
+    };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, ..Self::FINAL };
     /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained
     /// so little is the last of a quadratic convergence.
-    pub(crate) const FINAL: Self =
-        Self { steps: 60, small: 1e-6, worth: 3e-3, sizes_first: 0, wary: false, below: f64::INFINITY };
+    pub(crate) const FINAL: Self = Self {
+        steps: 60,
+        small: 1e-6,
+        worth: 3e-3,
+        little: 20.0,
+        sizes_first: 0,
+        wary: false,
+        below: f64::INFINITY,
+    };
 
     /// The same for a fit that is of use only where its squares come below a bound.
     pub(crate) fn below(self, squares: f64) -> Self {
@@ -44,9 +60,8 @@ impl Effort {
 /// Damping beyond which a step is so much shorter than an undamped one that a small gain says nothing.
 pub(crate) const SHORT: f64 = 1e-2;
 
-/// A gain of so many times the smallest one, less than a tenth of log evidence, is little, and so many steps in a row that gained little, however
-/// short they were, end a fit: in an uneven valley it would go on like that until its steps are spent.
-const LITTLE: f64 = 20.0;
+/// So many steps in a row that gained little, however short they were, end a fit: in an uneven valley it would go on
+/// like that until its steps are spent.
 const CREPT: usize = 5;
 
 /// Relative decrease from which on a step is worth going on in any case.
@@ -94,7 +109,7 @@ impl Ending {
         }
         self.gains.push(part);
         self.small = damping <= SHORT && part <= self.least;
-        self.crept = if part <= LITTLE * self.least { self.crept + 1 } else { 0 };
+        self.crept = if part <= self.effort.little * self.least { self.crept + 1 } else { 0 };
     }
 
     /// A step under some damping has failed; it had promised a part of the squares.

@@ -51,6 +51,7 @@ mod projection;
 mod ratio;
 mod reading;
 mod refine;
+mod release;
 mod response;
 mod rounding;
 mod score;

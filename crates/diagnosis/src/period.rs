@@ -9,6 +9,8 @@ pub(crate) struct Swing {
     pub(crate) period_s: f64,
     /// Number of full cycles seen.
     pub(crate) cycles: f64,
+    /// When it first crosses the middle, in seconds.
+    pub(crate) first_s: f64,
 }
 
 /// Part of the largest deflection below which a crossing may be noise.
@@ -40,8 +42,11 @@ pub(crate) fn swing(times: &[f64], values: &[f64]) -> Option<Swing> {
     }
     let halves: Vec<f64> =
         crossings.iter().zip(crossings.iter().skip(1)).map(|(one, next)| next - one).collect();
-    (!halves.is_empty())
-        .then(|| Swing { period_s: 2.0 * median(&halves), cycles: 0.5 * (halves.len() + 1) as f64 })
+    crossings.first().filter(|_| !halves.is_empty()).map(|&first_s| Swing {
+        period_s: 2.0 * median(&halves),
+        cycles: 0.5 * (halves.len() + 1) as f64,
+        first_s,
+    })
 }
 
 #[cfg(test)]

@@ -214,7 +214,7 @@ pub(crate) fn cut(
             }
             let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
             let still = values.iter().zip(values.iter().skip(1)).all(|(before, after)| before == after);
-            let first = at == 0;
+            let first = at == 0 && kept.first() == Some(&true);
             segments.push(Segment { record: number, first, times, values, still, parts: vec![0], guess });
         }
     }
