@@ -67,6 +67,8 @@ pub(crate) fn stand_in(fitted: usize) -> f64 {
 impl Line {
     /// The probability that goes with that of a set, and with log odds for what is left beside it.
     fn at(&self, probability: f64, left_over: f64) -> f64 {
+        // A sum of probabilities may round to more than 1.
+        let probability = probability.clamp(0.0, 1.0);
         let odds = (probability / (1.0 - probability)).ln().clamp(-MOST_ODDS, MOST_ODDS);
         1.0 / (1.0 + (-(self.at_even + self.by_odds * odds + left_over)).exp())
     }
@@ -109,6 +111,8 @@ mod tests {
         }
         let by_size = [1, 2, 3, 5].map(|fitted| confidence(Status::Effect, fitted, 0.9, 0.0));
         assert!(by_size.is_sorted_by(|a, b| a >= b), "{by_size:?}");
+        let rounded = 1.0 + f64::EPSILON;
+        assert_eq!(confidence(Status::Effect, 1, rounded, 0.0), confidence(Status::Effect, 1, 1.0, 0.0));
         let most = 1.0 / (1.0 + (-MOST_ODDS).exp());
         assert_eq!(confidence(Status::Effect, 2, most, 0.0), confidence(Status::Effect, 2, 1.0, 0.0));
         assert!(confidence(Status::Effect, 1, 0.9, 1.0) < confidence(Status::Effect, 1, 0.9, 0.0));
