@@ -21,7 +21,7 @@ use crate::tangent::Path;
 use crate::unexplained::unexplained;
 use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
-use crate::{chain_statistics, experiment, latent, maps, noise, null, release};
+use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release};
 use dynamics::Nominal;
 use record::ClockKind;
 use seed::Seed;
@@ -211,7 +211,8 @@ pub fn diagnose(
     lap("maps");
 
     let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
-    measuring_chain.findings.extend(unreleased.into_iter().chain(unseen));
+    let behind = reading::finding(data, repaired);
+    measuring_chain.findings.extend(unreleased.into_iter().chain(unseen).chain(behind));
     for finding in &mut measuring_chain.findings {
         finding.effect = finding.effect.filter(|id| settings.considers(id));
     }

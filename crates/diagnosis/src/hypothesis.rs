@@ -60,6 +60,7 @@ pub(crate) struct Measurement {
     pub(crate) drift: Option<f64>,
     pub(crate) clock: Option<f64>,
     pub(crate) saturation: Option<f64>,
+    /// How far readings stay behind, in either direction: [`crate::reading`]. Not a map of one value.
     pub(crate) reading: Option<f64>,
 }
 

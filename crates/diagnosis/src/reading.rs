@@ -8,6 +8,20 @@
 //! # Reference
 //! Brokate and Sprekels, Hysteresis and Phase Transitions, Springer 1996, section 2.1 (the play operator).
 
+use crate::answer::Finding;
+use crate::fit::Fit;
+use crate::segments::Data;
+
+/// What is said where a fit has it.
+pub(crate) fn finding(data: &Data, fit: &Fit) -> Option<Finding> {
+    let width = fit.hypothesis.measurement(&data.facts, &fit.point.globals).reading?;
+    let steps = width / data.facts.resolution;
+    Some(Finding {
+        effect: None,
+        text: format!("readings stay behind the motion by {steps:.2} of a step, whichever way it goes"),
+    })
+}
+
 /// A reading.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Reading {
