@@ -129,7 +129,7 @@ fn range(text: &str) -> Result<Option<(i64, i64)>, &'static str> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Axis, combinations};
+    use super::{Axis, MOST_RUNS, combinations};
 
     fn values(argument: &str) -> Vec<String> {
         Axis::parse(argument).unwrap().values
@@ -157,7 +157,7 @@ mod tests {
         assert_eq!(values("seed=0..3"), ["0", "1", "2", "3"]);
         assert_eq!(values("seed=-1..1,7,9..9"), ["-1", "0", "1", "7", "9"]);
         // Two dots in a path are no range.
-        assert_eq!(values("data.path=../log.csv,a..b"), ["../log.csv", "a..b"]);
+        assert_eq!(values("data.path=../log.csv,a..b,1.5..b"), ["../log.csv", "a..b", "1.5..b"]);
     }
 
     #[test]
@@ -191,6 +191,9 @@ mod tests {
     fn a_sweep_has_an_end() {
         let axes = ["a=0..999", "b=0..999"].map(|axis| Axis::parse(axis).unwrap());
         assert!(combinations(&axes).unwrap_err().to_string().contains("1000000 runs"));
+        let most = Axis::parse(&format!("a=1..{MOST_RUNS}")).unwrap();
+        assert_eq!(combinations(&[most]).unwrap().len(), MOST_RUNS);
+        assert!(refused(&format!("a=0..{MOST_RUNS}")).contains("runs"));
         let axes = ["a=1", "a=2"].map(|axis| Axis::parse(axis).unwrap());
         assert!(combinations(&axes).unwrap_err().to_string().contains("`a` is given twice"));
     }

@@ -81,4 +81,7 @@ fn the_short_form_leaves_out_what_belongs_to_another_estimator() {
     let message = refused(text, &both);
     assert!(message.contains("unknown key `estimator.hidden`"), "{message}");
     assert!(refused(text, &["estimator.name=ols"]).contains("estimator=ols instead of estimator.name=ols"));
+    // A key that belongs to no estimator is told as what it is.
+    let other = refused("[fit]\nsteps = 3\n", &["estimator.name=ols"]);
+    assert!(other.contains("unknown key `fit.steps`") && !other.contains("instead of"), "{other}");
 }
