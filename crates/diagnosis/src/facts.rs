@@ -25,7 +25,7 @@ pub(crate) struct Facts {
     /// Nominal inertia, and the stiffness that gives the frequency with it.
     pub(crate) inertia: f64,
     pub(crate) stiffness: f64,
-    /// Step of the sensor's readings in its own unit; 0 where they lie on none.
+    /// Step of the sensor's readings in its own unit; 0 where they lie on none, or on one that is lost in the noise.
     pub(crate) resolution: f64,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
     pub(crate) tolerance: f64,
@@ -60,9 +60,11 @@ impl Facts {
         [lowest, self.highest_frequency(self.interval).max(2.0 * lowest)]
     }
 
-    /// The same with the tolerance that a noise of this size asks for.
+    /// The same with the tolerance that a noise of this size asks for, and without steps that it hides: those of the digits
+    /// in a file, say.
     pub(crate) fn with_noise(self, noise: f64, span: f64) -> Self {
-        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), ..self }
+        let resolution = if self.resolution < noise { 0.0 } else { self.resolution };
+        Self { tolerance: (OF_NOISE * noise / span).clamp(FINEST, COARSEST), resolution, ..self }
     }
 
     /// Tolerance while the noise is not known yet.
