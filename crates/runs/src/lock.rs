@@ -10,9 +10,15 @@ use serde::{Deserialize, Serialize};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
+use std::time::Duration;
 
 /// Name of the file, hidden since nobody needs to read it.
 pub(crate) const LOCK: &str = ".lock";
+
+/// How often a lock is tried for, and the pause between. A program that is killed while it starts another leaves that one
+/// a copy of its open file, and so the lock, for the moments that this takes.
+const TRIES: u32 = 25;
+const PAUSE: Duration = Duration::from_millis(10);
 
 /// Who has the folder.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -44,7 +50,15 @@ impl Lock {
     pub(crate) fn take(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
         let mut file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
-        lock(&mut file, folder)?;
+        let mut taken = lock(&mut file, folder);
+        for _ in 1..TRIES {
+            if !matches!(taken, Err(RunError::Locked { .. })) {
+                break;
+            }
+            std::thread::sleep(PAUSE);
+            taken = lock(&mut file, folder);
+        }
+        taken?;
         let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
         let text = serde_json::to_string(&holder)
             .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
@@ -133,6 +147,18 @@ mod tests {
         drop(first);
         Lock::check(folder.path()).unwrap();
         Lock::take(&Disk::default(), folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_lock_that_is_let_go_in_a_moment_is_waited_for() {
+        let folder = tempfile::tempdir().unwrap();
+        let first = Lock::take(&Disk::default(), folder.path()).unwrap();
+        let soon = std::thread::spawn(move || {
+            std::thread::sleep(3 * super::PAUSE);
+            drop(first);
+        });
+        assert!(Lock::take(&Disk::default(), folder.path()).is_ok());
+        soon.join().unwrap();
     }
 
     #[test]
