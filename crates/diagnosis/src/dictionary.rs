@@ -153,10 +153,10 @@ fn columns(
             (Distortion::Saturation, &[bound]) => {
                 vec![x.iter().map(|x| x.clamp(-bound, bound) - x).collect()]
             }
+            (Distortion::Saturation, _) => Vec::new(),
             (Distortion::ReadingHysteresis, _) => {
                 vec![rate.iter().map(|rate| if *rate < 0.0 { 1.0 } else { -1.0 }).collect()]
             }
-            (Distortion::Saturation, _) => Vec::new(),
         },
     }
 }

@@ -109,8 +109,7 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parameters = fit.hypothesis.parameters(&data.facts);
     let calibrated = fit.hypothesis.calibrated.len();
-    let own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
-    let mut own = own.into_iter();
+    let mut own = parameters.iter().zip(&fit.point.globals).skip(calibrated);
     own.any(|(parameter, value)| (parameter.strength || parameter.simpler) && *value <= parameter.lower)
         || is_another(data, fit)
 }
