@@ -62,9 +62,11 @@ pub struct EffectProbability {
     /// Its probability, as often as such effects were there in withheld-effect trials. Several can act at
     /// once: they need not add up to 1.
     pub probability: f64,
-    /// Parameters in the best set that has it; empty for what has none.
+    /// Parameters in the best set that has it; empty for what has none. Those of `unknown` are of a torque along the position,
+    /// where one acts.
     pub parameters: Vec<ParameterEstimate>,
-    /// Its Shapley share of the gap that the named effects close, for effects of the verdict.
+    /// Its Shapley share of the gap that the repaired simulator closes, for effects of the verdict. A torque without a name
+    /// comes after them: its share is what it adds.
     pub gap_share: Option<Interval>,
 }
 
@@ -77,7 +79,7 @@ pub struct Gap {
     pub nominal: f64,
     /// Recalibrated.
     pub recalibrated: f64,
-    /// With the named effects.
+    /// With the named effects, and with the torque along the position that acts beside them without a name.
     pub repaired: f64,
     /// With a free latent torque on top, where that predicts better than none.
     pub ceiling: f64,

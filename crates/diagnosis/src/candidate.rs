@@ -126,6 +126,9 @@ impl Candidate {
         Self::Chain(Distortion::ReadingHysteresis),
     ];
 
+    /// A torque along the position, whatever its cause. It is none of the candidates for a name.
+    pub(crate) const UNNAMED: Self = Self::System(SystemEffect::PositionTorque);
+
     /// Its place in [`Self::ALL`].
     pub(crate) fn rank(self) -> usize {
         Self::ALL.iter().position(|other| *other == self).unwrap_or(Self::ALL.len())
@@ -257,6 +260,11 @@ impl Candidate {
                     between("frequency", 4.0 * PI / facts.duration, PI / facts.interval),
                     any("phase"),
                 ],
+                SystemEffect::PositionTorque => {
+                    let [lowest, highest] = facts.waves();
+                    let wavenumber = between("wavenumber", lowest, highest);
+                    vec![any("torque"), Parameter { simpler: true, ..wavenumber }, any("phase")]
+                }
                 SystemEffect::FlexibleCoupling => {
                     let [slowest, fastest] = facts.modes();
                     let decay = between("damping", LEAST_DECAY / facts.duration, MOST_DAMPED * fastest);
@@ -312,7 +320,9 @@ impl Candidate {
             Self::System(SystemEffect::Gravity) | Self::Chain(Distortion::Nonlinearity) => {
                 Some(Polar { size: 0, angle: 1 })
             }
-            Self::System(SystemEffect::PeriodicForcing) => Some(Polar { size: 0, angle: 2 }),
+            Self::System(SystemEffect::PeriodicForcing | SystemEffect::PositionTorque) => {
+                Some(Polar { size: 0, angle: 2 })
+            }
             _ => None,
         }
     }
@@ -448,7 +458,7 @@ mod tests {
 
     #[test]
     fn parameters_are_the_laws_own() {
-        for candidate in Candidate::ALL {
+        for candidate in Candidate::ALL.iter().chain(&[Candidate::UNNAMED]) {
             let parameters = candidate.parameters(&FACTS);
             for parameter in &parameters {
                 assert!(parameter.lower < parameter.upper, "{} {}", candidate.id(), parameter.name);

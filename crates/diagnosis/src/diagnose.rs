@@ -17,11 +17,13 @@ use crate::pool::Pool;
 use crate::refine::refine;
 use crate::search::{Breadth, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
+use crate::stand_ins::Question;
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
+use crate::unnamed::unnamed;
 use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
 use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
-use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release};
+use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release, stand_ins};
 use dynamics::Nominal;
 use record::ClockKind;
 use seed::Seed;
@@ -126,8 +128,17 @@ pub fn diagnose(
         pool = refine(data, &pool, &found, &others, finer);
     }
     let time = pool.autocorrelation_time();
-    let weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, candidates.len()));
+    let vocabulary = candidates.len();
+    let mut weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, vocabulary));
     lap("fits");
+    let question = Question { data, coarse, found: &found, threshold, vocabulary };
+    let leader = weighed.first().map_or(base.calibrated.clone(), |w| w.fit.clone());
+    if let Some(part) = question.better_part(&leader)? {
+        pool.admit(data, part.clone());
+        weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, vocabulary));
+        weighed = stand_ins::remaining(weighed, &leader.hypothesis.candidates, &part);
+    }
+    lap("stand-ins");
 
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
     let work = Work { data, base, segments, pool: &pool, thin, time, settings };
@@ -136,7 +147,12 @@ pub fn diagnose(
     let weighed = without_passed_over(weighed, repaired);
     let shift = if settings.considers("constant_torque") { work.shift(repaired) } else { None };
     lap("held out");
-    let fitted = &held.fitted;
+    let unnamed = unnamed(&work, &held)?;
+    let (complete, fitted, after, later) = match &unnamed {
+        Some(torque) => (&torque.followed, &torque.fitted, &torque.after, torque.last_third),
+        None => (repaired, &held.fitted, &held.after, held.last_third[1]),
+    };
+    lap("unnamed torque");
     let floors = noise::squares(segments.data, &fitted.residuals);
     let floor = noise::of_squares(&floors);
     let paths = Path::of(segments.data, fitted)?;
@@ -147,11 +163,11 @@ pub fn diagnose(
         &Stages {
             nominal: &held.nominal,
             recalibrated: &held.recalibrated,
-            repaired: &held.after,
+            repaired: after,
             ceiling: &ceiling,
         },
         (floor, &floors),
-        held.last_third,
+        [held.last_third[0], later],
         unit,
     );
     lap("gap");
@@ -162,13 +178,18 @@ pub fn diagnose(
     let gained = (base.calibrated.squares - repaired.squares).max(0.0);
     let mut nameless = left.squares / (left.squares + gained).max(f64::MIN_POSITIVE);
     let mut evidence = left.evidence;
-    if figures.repaired > FAR_ABOVE * floor.value {
+    if let Some(torque) = &unnamed {
+        nameless = nameless.max(torque.share.value);
+        evidence = evidence.max(torque.evidence);
+    }
+    let with_names = held.after.mean_square();
+    if with_names > (FAR_ABOVE * floor.value).powi(2) {
         // No noise is so smooth: whatever its spectrum is, it is a part of the gap.
-        nameless = nameless.max((figures.repaired.powi(2) - noise_square) / excess.max(f64::MIN_POSITIVE));
+        nameless = nameless.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
         evidence = f64::INFINITY;
     }
     let left_over = acts(evidence);
-    let unnamed = unknown(left_over, nameless.min(1.0));
+    let nameless = unknown(left_over, nameless.min(1.0));
     lap("unexplained");
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
@@ -189,29 +210,24 @@ pub fn diagnose(
         .and_then(|rival| experiment::next(coarse, repaired, rival, noise_coarse / finer.sqrt()));
     lap("identifiability");
 
-    let beyond = (held.after.mean_square() - noise_square).max(0.0) * data.samples() as f64;
-    let at_repaired = Dictionary::at(coarse, &refit(coarse, repaired)?, &candidates).ok();
+    let beyond = (after.mean_square() - noise_square).max(0.0) * data.samples() as f64;
+    let at_repaired = Dictionary::at(coarse, &refit(coarse, complete)?, &candidates).ok();
     let total = named.iter().copied().map(Candidate::class).zip(shares.iter().map(|share| share.0));
+    let total = total.chain(unnamed.iter().map(|torque| (Candidate::UNNAMED.class(), torque.squares)));
     let worthwhile =
-        excess > 0.0 && paired(&held.recalibrated.residuals, &held.after.residuals) > 0.0 || unnamed > 0.5;
+        excess > 0.0 && paired(&held.recalibrated.residuals, &after.residuals) > 0.0 || nameless > 0.5;
     let budget = if worthwhile {
         budget(&total.collect::<Vec<_>>(), beyond, at_repaired.as_ref())
     } else {
         Budget::default()
     };
-    let rest = data.facts.rest(&repaired.point.globals, &repaired.hypothesis);
-    let [over_time, amplitude, phase, frequency]: [Vec<Cell>; 4] = maps::maps(
-        segments.data,
-        &paths,
-        rest,
-        &held.recalibrated.residuals,
-        &held.after.residuals,
-        floor.value,
-    );
+    let rest = data.facts.rest(&complete.point.globals, &complete.hypothesis);
+    let [over_time, amplitude, phase, frequency]: [Vec<Cell>; 4] =
+        maps::maps(segments.data, &paths, rest, &held.recalibrated.residuals, &after.residuals, floor.value);
     lap("maps");
 
     let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
-    let behind = reading::finding(data, repaired);
+    let behind = reading::finding(data, complete);
     measuring_chain.findings.extend(unreleased.into_iter().chain(unseen).chain(behind));
     for finding in &mut measuring_chain.findings {
         finding.effect = finding.effect.filter(|id| settings.considers(id));
@@ -220,10 +236,11 @@ pub fn diagnose(
         work: &work,
         candidates: &candidates,
         repaired,
+        unnamed: unnamed.as_ref(),
         named: &named,
         shares: &shares,
         weighed: &weighed,
-        unnamed,
+        nameless,
         left_over,
         calibrated_off,
         shift,
@@ -231,8 +248,8 @@ pub fn diagnose(
         findings: &measuring_chain.findings,
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
-    let calibration = calibration(&work, repaired)?;
-    let series = series(segments.data, [&held.nominal, &held.recalibrated, &held.after], &paths);
+    let calibration = calibration(&work, complete)?;
+    let series = series(segments.data, [&held.nominal, &held.recalibrated, after], &paths);
     let sets = weighed
         .iter()
         .map(|w| SetScore {
@@ -252,7 +269,7 @@ pub fn diagnose(
         place: Where { budget, time: over_time, amplitude, phase, frequency },
         measuring_chain,
         calibration,
-        repaired_nominal: repaired.hypothesis.calibrated_nominal(&repaired.point.globals)?,
+        repaired_nominal: complete.hypothesis.calibrated_nominal(&complete.point.globals)?,
         rivals,
         detectability,
         next_experiment,

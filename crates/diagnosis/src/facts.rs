@@ -1,5 +1,7 @@
 //! Scales of a record that bounds and grids of parameters are stated in.
 
+use std::f64::consts::{PI, TAU};
+
 /// Scales of the motion, from the records and the nominal simulator.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Facts {
@@ -42,6 +44,9 @@ const OF_NOISE: f64 = 1e-3;
 const SLOWEST_MODE: f64 = 0.3;
 const FASTEST: f64 = 12.0;
 
+/// Radians of a wave along the position over the amplitude, at most.
+const MOST_WAVES: f64 = 64.0;
+
 /// The highest angular frequency at which samples so far apart tell frequencies from their images, with room
 /// for a line's width: 0.8 of half their rate.
 pub(crate) fn below_images(interval: f64) -> f64 {
@@ -58,6 +63,14 @@ impl Facts {
     pub(crate) fn modes(&self) -> [f64; 2] {
         let lowest = SLOWEST_MODE * self.frequency;
         [lowest, self.highest_frequency(self.interval).max(2.0 * lowest)]
+    }
+
+    /// Wavenumbers that a torque along the position may have, lowest and highest: it repeats at least twice within the
+    /// swing, and at full speed samples still tell it from its images.
+    pub(crate) fn waves(&self) -> [f64; 2] {
+        let lowest = TAU / self.amplitude;
+        let step = self.speed * self.interval;
+        [lowest, (PI / step).min(MOST_WAVES / self.amplitude)]
     }
 
     /// The same with the tolerance that a noise of this size asks for, and without steps that it hides: those of the digits

@@ -61,12 +61,14 @@ mod segments;
 mod settle;
 mod single_effect;
 mod spectrum;
+mod stand_ins;
 mod statistics;
 mod tangent;
 #[cfg(test)]
 #[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod trials;
 mod unexplained;
+mod unnamed;
 mod verdict;
 mod work;
 

@@ -63,11 +63,8 @@ pub(crate) fn weigh<'a>(
             let size = fit.hypothesis.candidates.len();
             let extra = fit.point.starts.iter().map(|start| start.len().saturating_sub(2)).sum::<usize>();
             let parameters = fit.globals().saturating_sub(calibrated.globals()) + extra;
-            let price = (0.5 * parameters as f64 * worth.max(2.0).ln()).max(0.5 * size as f64 * threshold);
-            // The odds of a size are shared by all sets of it, beyond what the threshold has paid for the choice.
-            let odds = PRIOR_ODDS.get(size).copied().unwrap_or(0.1);
-            let sets = if size > 1 { (vocabulary as f64).ln() } else { 0.0 };
-            let evidence = ratio(fit, calibrated, time) - price + odds.ln() - 0.5 * sets;
+            let price = 0.5 * parameters as f64 * worth.max(2.0).ln();
+            let evidence = ratio(fit, calibrated, time) - price - beyond(size, price, threshold, vocabulary);
             Weighed { fit, evidence, probability: 0.0 }
         })
         .collect();
@@ -78,6 +75,14 @@ pub(crate) fn weigh<'a>(
         w.probability = ((w.evidence - best) / TEMPERATURE).exp() / total;
     }
     weighed
+}
+
+/// What a set of so many effects pays beyond the `price` of its parameters: for having been chosen from a vocabulary.
+pub(crate) fn beyond(size: usize, price: f64, threshold: f64, vocabulary: usize) -> f64 {
+    // The odds of a size are shared by all sets of it, beyond what the threshold has paid for the choice.
+    let odds = PRIOR_ODDS.get(size).copied().unwrap_or(0.1);
+    let sets = if size > 1 { (vocabulary as f64).ln() } else { 0.0 };
+    (0.5 * size as f64 * threshold - price).max(0.0) - odds.ln() + 0.5 * sets
 }
 
 /// Part of the best set's probability down to which another can come before it for its members' sake.

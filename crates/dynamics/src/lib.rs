@@ -49,6 +49,6 @@ pub use field::SYSTEM_HIDDEN;
 pub use input::{Hold, Input};
 pub use law::{Hidden, Law, MOST_HIDDEN, MOST_PARAMETERS, Margins, Moment, Values};
 pub use nominal::{Coefficients, Nominal};
-pub use registry::{ChainEffect, Effect, REGISTRY, SystemEffect};
+pub use registry::{ChainEffect, Effect, REGISTRY, SystemEffect, UNNAMED};
 pub use system::{Start, System};
 pub use units::{Coordinate, Quantity, Units};

@@ -2,7 +2,8 @@
 //!
 //! Everybody who needs to know what effects exist reads [`REGISTRY`]: simulator, diagnosis, documents. An
 //! effect in the system is a file under `effects/`, one in the measuring chain a file under `chain/`; either
-//! takes a line in `registry!`.
+//! takes a line in `registry!`. What can be simulated and fitted but has no name in the vocabulary stands in
+//! [`UNNAMED`].
 
 use crate::chain::{self, Extent, Observed, Sampled, SampledMotion, Samples, Step};
 use crate::description::Description;
@@ -162,8 +163,8 @@ macro_rules! chain_effects {
 }
 
 macro_rules! registry {
-    (system { $($system:ident,)+ } measuring_chain { $($chain:ident,)+ }) => {
-        system_effects! { $($system,)+ }
+    (system { $($system:ident,)+ } unnamed { $($unnamed:ident,)+ } measuring_chain { $($chain:ident,)+ }) => {
+        system_effects! { $($system,)+ $($unnamed,)+ }
         chain_effects! { $($chain,)+ }
 
         /// Every effect of the vocabulary: those in the system in the order of the documents, then those in the
@@ -172,6 +173,9 @@ macro_rules! registry {
             $(Effect::System(SystemEffect::$system),)+
             $(Effect::MeasuringChain(ChainEffect::$chain),)+
         ];
+
+        /// What can act besides and is no effect of the vocabulary: a shape of torque whose cause is left open.
+        pub static UNNAMED: &[Effect] = &[$(Effect::System(SystemEffect::$unnamed),)+];
     };
 }
 
@@ -193,6 +197,9 @@ registry! {
     FlexibleCoupling,
     InputDelay,
     InputSaturation,
+    }
+    unnamed {
+    PositionTorque,
     }
     measuring_chain {
     SensorLag,
@@ -233,12 +240,12 @@ impl Effect {
         self.description().id
     }
 
-    /// The effect with a public id.
+    /// The effect with a public id, without a name in the vocabulary or with one.
     ///
     /// # Errors
     /// [`DynamicsError::UnknownEffect`] where there is none.
     pub fn find(id: &str) -> Result<Self, DynamicsError> {
-        REGISTRY.iter().copied().find(|effect| effect.id() == id).ok_or_else(|| {
+        REGISTRY.iter().chain(UNNAMED).copied().find(|effect| effect.id() == id).ok_or_else(|| {
             DynamicsError::UnknownEffect {
                 id: id.to_owned(),
                 known: REGISTRY.iter().map(|effect| effect.id()).collect(),

@@ -169,7 +169,7 @@ fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
         AsymmetricStiffness, Backlash, ConstantTorque, CoulombFriction, CubicStiffness, DampingDrift,
         EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation, PeriodicForcing,
-        QuadraticDrag, StiffnessDrift, StribeckFriction,
+        PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction,
     };
     let at = moment(0.5, 0.8, 0, 0.0, NONE);
     // Depth beyond the stop at 0.3.
@@ -192,6 +192,7 @@ fn the_signs_are_those_of_the_equations() {
         (EndStop, 3, 0.0),
         (StiffnessDrift, 0, -5.0 * 0.7 * 2.3 * 0.4),
         (DampingDrift, 0, -0.6 * 0.7 * 2.3 * 0.8),
+        (PositionTorque, 0, -0.7 * (0.9 * 0.5 + 1.3_f64).sin()),
         (PeriodicForcing, 0, 0.7 * (0.9 * 2.3 + 1.3_f64).sin()),
         (FlexibleCoupling, 0, 0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)),
         (InputDelay, 0, 0.0),

@@ -46,6 +46,8 @@ pub enum Quantity {
     QuadraticDamping,
     /// Reciprocal of a velocity.
     InverseVelocity,
+    /// Radians of a wave to a radian or meter of the position; of an angle, waves in a turn.
+    Wavenumber,
     /// A duration.
     Time,
     /// Relative change per time.
@@ -85,6 +87,8 @@ impl Quantity {
             (Self::Velocity, _) => "m/s",
             (Self::InverseVelocity, Units::Si(Angle) | Units::PerInertia(Angle)) => "s/rad",
             (Self::InverseVelocity, _) => "s/m",
+            (Self::Wavenumber, Units::Si(Angle) | Units::PerInertia(Angle)) => "1",
+            (Self::Wavenumber, _) => "rad/m",
             (Self::Inertia, Units::Si(Angle)) => "kg m^2",
             (Self::Inertia, Units::Si(Displacement)) => "kg",
             (Self::Inertia, _) => "1",

@@ -14,7 +14,7 @@
 
 use dynamics::chain::Observed;
 use dynamics::reference::{Tolerance, simulate};
-use dynamics::{Active, Effect, Hold, Input, Nominal, REGISTRY, Start, System};
+use dynamics::{Active, Effect, Hold, Input, Nominal, REGISTRY, Start, System, UNNAMED};
 use export::{Repaired, mjcf, modelica, python, urdf};
 use std::process::Command;
 
@@ -39,6 +39,7 @@ const CASES: &[(&str, &[f64])] = &[
     ("flexible_coupling", &[5e-5, 0.05, 2e-5]),
     ("input_delay", &[0.05]),
     ("input_saturation", &[8e-3]),
+    ("unknown", &[4e-3, 18.0, 0.7]),
 ];
 
 fn is_driven(id: &str) -> bool {
@@ -147,7 +148,7 @@ for path in sorted(pathlib.Path(sys.argv[1]).glob("*.xml")):
 
 #[test]
 fn the_python_function_moves_as_our_own_simulation_does() {
-    let known = REGISTRY.iter().filter(|effect| matches!(effect, Effect::System(_))).count();
+    let known = REGISTRY.iter().chain(UNNAMED).filter(|effect| matches!(effect, Effect::System(_))).count();
     assert_eq!(CASES.len(), known, "an effect without a case");
     let folder = scratch("scipy");
     let mut cases: Vec<Vec<(&str, &[f64])>> = CASES.iter().map(|case| vec![*case]).collect();

@@ -6,7 +6,7 @@ use crate::plan::{
     start_keys,
 };
 use crate::schema::{PLAIN, PRIOR, SECTIONS};
-use dynamics::{REGISTRY, Range};
+use dynamics::{REGISTRY, Range, UNNAMED};
 use serde_json::{Map, Value, json};
 use settings::{Default, Field, Kind, json_schema};
 
@@ -56,13 +56,14 @@ pub fn simulate_schema() -> Value {
 
 /// A table of `[[effects]]`, its parameters by its id.
 fn effect(units: ConfiguredUnits) -> Value {
-    let ids: Vec<&str> = REGISTRY.iter().map(|effect| effect.id()).collect();
+    let ids: Vec<&str> = REGISTRY.iter().chain(UNNAMED).map(|effect| effect.id()).collect();
     let mut table = json_schema::table(&[PROBABILITY]);
     let id = json!({ "enum": ids, "description": json_schema::description(&EFFECT_ID) });
     json_schema::insert(&mut table, "", "id", id);
     json_schema::insert(&mut table, "", "parameters", json!({ "type": "object" }));
     let cases: Vec<Value> = REGISTRY
         .iter()
+        .chain(UNNAMED)
         .map(|effect| {
             let keys = parameter_keys(effect.description(), units);
             let mut parameters = json_schema::closed(Map::new());

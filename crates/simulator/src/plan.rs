@@ -340,7 +340,7 @@ fn named_effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsE
             });
         };
         let id = leaf.value.as_str().unwrap_or_default();
-        let Some(effect) = REGISTRY.iter().copied().find(|effect| effect.id() == id) else {
+        let Ok(effect) = Effect::find(id) else {
             return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", id, ids()));
         };
         if found.iter().any(|(_, other)| *other == effect) {

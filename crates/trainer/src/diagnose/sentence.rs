@@ -36,20 +36,38 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
             if is_off(found) { "recalibrated, the simulator" } else { "the simulator as given" }
         ),
         Status::Effect => format!(
-            "{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
+            "{}{}; recalibrated and repaired, the simulator closes {} of the gap and leaves {floor} on parts \
              that were not fitted{rest}.",
             lacking(found),
+            repeating(found).map_or_else(String::new, |torque| format!("; {torque} acts besides")),
             if gap.closure.value >= 1.0 { "all".to_owned() } else { closed(gap.closure.value) }
         ),
         Status::Unknown => format!(
-            "Something is missing that no known effect explains: the best named model leaves {floor}, and what it \
-             leaves is no noise, so it is left unnamed{}.",
+            "Something is missing that no known effect explains{}, so it is left unnamed{}.",
+            match repeating(found) {
+                Some(torque) => format!(": {torque} acts; with it the simulator leaves {floor}{rest}"),
+                None => format!(": the best named model leaves {floor}, and what it leaves is no noise"),
+            },
             match found.verdict.effects.is_empty() {
                 true => String::new(),
                 false => format!("; {}", in_a_sentence(&lacking(found))),
             }
         ),
     }
+}
+
+/// The torque without a name in words, where there is one.
+fn repeating(found: &Diagnosis) -> Option<String> {
+    let row = found.effects.iter().find(|row| row.id == "unknown" && row.gap_share.is_some())?;
+    let wavenumber = row.parameters.iter().find(|own| own.name == "wavenumber")?;
+    let value = wavenumber.estimate.value;
+    // Of a length it is stated how far apart the waves are.
+    let often = if wavenumber.unit == "1" {
+        format!("{} times a turn", format::significant(value, 3))
+    } else {
+        format!("every {} m", format::significant(std::f64::consts::TAU / value, 3))
+    };
+    Some(format!("a torque without a name that repeats {often}"))
 }
 
 /// Whether the simulator's coefficients are more probably off than right.
