@@ -44,7 +44,7 @@ pub(crate) struct Dictionary {
 
 /// Part of a column's length that has to be left after the projection: what calibration and start states imitate to so
 /// many digits cannot be seen in these records, and what is left of it is the linearization's error.
-const INVISIBLE: f64 = 1e-4;
+pub(crate) const INVISIBLE: f64 = 1e-4;
 
 /// What a set of entries would take away.
 #[derive(Debug, Clone, PartialEq)]

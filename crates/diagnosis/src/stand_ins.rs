@@ -9,8 +9,8 @@ use crate::pool::Pool;
 use crate::refine::without;
 use crate::score::score;
 use crate::segments::Data;
-use crate::unnamed::{EVEN, beside, evidence};
-use crate::verdict::{Weighed, beyond};
+use crate::unnamed::{beside, evidence};
+use crate::verdict::{EVEN, Weighed, beyond};
 use dynamics::DynamicsError;
 
 /// Log evidence by which a part of a set may fall behind the whole on the samples of the search and still be asked on all

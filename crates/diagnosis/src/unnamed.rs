@@ -8,7 +8,7 @@
 
 use crate::answer::Interval;
 use crate::candidate::Candidate;
-use crate::dictionary::{Acting, Moment, Smooth, columns_of};
+use crate::dictionary::{Acting, INVISIBLE, Moment, Smooth, columns_of};
 use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit, Moving, Point, fit};
 use crate::held_out::{Both, HeldOut};
@@ -19,7 +19,7 @@ use crate::projection::Projection;
 use crate::segments::Data;
 use crate::statistics::quantile;
 use crate::tangent::{Path, matrix};
-use crate::verdict::ratio;
+use crate::verdict::{EVEN, ratio};
 use crate::work::{Held, Work};
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
@@ -88,8 +88,7 @@ pub(crate) fn unnamed(work: &Work<'_>, held: &Held<'_>) -> Result<Option<Unnamed
 /// # Errors
 /// What the dynamics refuse.
 pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<Option<Fit>, DynamicsError> {
-    let range = data.facts.waves();
-    let Some(wave) = strongest(data, named, range, waves(data, range))? else { return Ok(None) };
+    let Some(wave) = strongest(data, named)? else { return Ok(None) };
     let promised = Fit { squares: (named.squares - wave.gain).max(f64::MIN_POSITIVE), ..named.clone() };
     if evidence(data, &promised, named, time) < bound {
         return Ok(None);
@@ -98,30 +97,26 @@ pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<
     Ok(followed.filter(|followed| !vanished(data, followed)))
 }
 
-/// Log evidence from which on it is more probable than not: as [`crate::verdict::acts`] has it.
-pub(crate) const EVEN: f64 = 4.605_170_185_988_092;
-
 /// Log evidence of a set with such a torque over the set without it, at an autocorrelation time: it pays for its numbers,
 /// and for being the best of many wavenumbers.
 pub(crate) fn evidence(data: &Data, with: &Fit, without: &Fit, time: f64) -> f64 {
     let worth = (without.samples() as f64 / time).max(2.0);
-    let count = waves(data, data.facts.waves()).max(1) as f64;
-    ratio(with, without, time) - 0.5 * PARAMETERS * worth.ln() - count.ln()
+    let looked = wavenumbers(data).len().max(1) as f64;
+    ratio(with, without, time) - 0.5 * PARAMETERS * worth.ln() - looked.ln()
 }
 
-/// How many wavenumbers are looked at; none where the range is empty.
-fn waves(data: &Data, [lowest, highest]: [f64; 2]) -> usize {
-    let steps = (highest - lowest) * data.facts.amplitude / STEP;
-    if steps >= 0.0 { steps as usize + 1 } else { 0 }
+/// The wavenumbers that are looked at; none where samples are too far apart for any.
+fn wavenumbers(data: &Data) -> Vec<f64> {
+    let [lowest, highest] = data.facts.waves();
+    let step = STEP / data.facts.amplitude;
+    let steps = (highest - lowest) / step;
+    let count = if steps >= 0.0 { steps as usize + 1 } else { 0 };
+    (0..count).map(|index| lowest + index as f64 * step).collect()
 }
 
-fn strongest(
-    data: &Data,
-    named: &Fit,
-    [lowest, _]: [f64; 2],
-    count: usize,
-) -> Result<Option<Wave>, DynamicsError> {
-    if count == 0 {
+fn strongest(data: &Data, named: &Fit) -> Result<Option<Wave>, DynamicsError> {
+    let wavenumbers = wavenumbers(data);
+    if wavenumbers.is_empty() {
         return Ok(None);
     }
     let projection = Projection::at(data, named)?;
@@ -129,14 +124,13 @@ fn strongest(
     let residual = named.residuals.iter().flat_map(|residual| residual.iter().copied());
     let mut residual = DMatrix::from_iterator(projection.rows(), 1, residual);
     projection.apply(&mut residual);
-    let waves = (0..count).filter_map(|index| {
-        let wavenumber = lowest + index as f64 * STEP / data.facts.amplitude;
-        wave(data, &paths, &projection, &residual, wavenumber)
-    });
+    let waves = wavenumbers
+        .into_iter()
+        .filter_map(|wavenumber| wave(data, &paths, &projection, &residual, wavenumber));
     Ok(waves.max_by(|a, b| a.gain.total_cmp(&b.gain)))
 }
 
-/// The torques at one wavenumber that take most away.
+/// The torques at one wavenumber that take most away; none where calibration and start states imitate them.
 fn wave(
     data: &Data,
     paths: &[Path],
@@ -150,7 +144,11 @@ fn wave(
     ];
     let columns = columns_of(paths, data.quantity, &functions, Acting::Torque);
     let mut columns = matrix(projection.rows(), &columns);
+    let raw = columns.norm();
     projection.apply(&mut columns);
+    if columns.norm() <= INVISIBLE * raw {
+        return None;
+    }
     let scores: DVector<f64> = columns.tr_mul(residual).column(0).clone_owned();
     let solution = columns.tr_mul(&columns).lu().solve(&scores)?;
     let gain = solution.dot(&scores);

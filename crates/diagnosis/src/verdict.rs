@@ -28,6 +28,9 @@ const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
 /// exceeds once in a thousand records makes them even.
 const UNKNOWN_ODDS: f64 = 0.01;
 
+/// Log evidence that makes them even.
+pub(crate) const EVEN: f64 = 4.605_170_185_988_091;
+
 /// A set with its evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighed<'a> {
@@ -157,7 +160,7 @@ pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usiz
 
 #[cfg(test)]
 mod tests {
-    use super::{acts, unknown};
+    use super::{EVEN, acts, unknown};
 
     #[test]
     fn unknown_follows_its_rule() {
@@ -167,5 +170,6 @@ mod tests {
         assert!((unknown(acts(0.0), 0.03) - 0.5 * 0.01 / 1.01).abs() < 1e-12);
         // One record in a thousand exceeds ln 100 by chance.
         assert!((acts(100.0_f64.ln()) - 0.5).abs() < 1e-12);
+        assert!((acts(EVEN) - 0.5).abs() < 1e-12);
     }
 }
