@@ -37,4 +37,5 @@ mod simulation;
 mod support;
 mod sweep;
 mod trials;
+mod unnamed;
 mod verifying;

@@ -65,7 +65,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
                 ("Every number, unrounded (diagnosis.json)", texts.result),
             ],
         },
-        gap: tables::gap(&result.gap),
+        gap: tables::gap(result),
         gap_notes: tables::gap_notes(result),
         shares: budget::shares(&result.place.budget),
         effects: tables::effects(result),

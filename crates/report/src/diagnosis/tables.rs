@@ -1,6 +1,6 @@
 //! The tables of a diagnosis: which number stands where, and to how many digits.
 
-use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, GapSummary, RecordRow, WithInterval};
+use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, WithInterval};
 
 use super::title;
 use crate::format::{self, fixed, interval, quantity, share_with_interval, significant, unit};
@@ -16,11 +16,15 @@ pub(super) struct GapView {
     pub(super) bar: String,
 }
 
-pub(super) fn gap(gap: &GapSummary) -> Vec<GapView> {
+pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
+    let gap = &result.gap;
+    let unnamed = result.effects.iter().any(|row| row.id == "unknown" && row.gap_share.is_some());
+    let with =
+        if unnamed { "with the named effects, and what has no name" } else { "with the named effects" };
     let rows = [
         ("simulator as given", "only its start states fitted", gap.nominal),
         ("recalibrated", "its coefficients fitted, no effect added", gap.recalibrated),
-        ("repaired", "with the named effects", gap.repaired),
+        ("repaired", with, gap.repaired),
         ("ceiling", "a free torque on top: what any further effect could reach", gap.ceiling),
         ("noise floor", "measured from what is left over", gap.noise_floor),
     ];

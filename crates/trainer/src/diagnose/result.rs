@@ -153,7 +153,10 @@ fn with_interval(interval: Interval) -> WithInterval {
 fn effects(found: &Diagnosis) -> Vec<EffectRow> {
     let row = |effect: &diagnosis::EffectProbability| EffectRow {
         id: effect.id.to_owned(),
-        title: title(effect.id),
+        title: match (effect.id, effect.gap_share) {
+            ("unknown", Some(_)) => "something without a name: a torque along the position".to_owned(),
+            _ => title(effect.id),
+        },
         probability: effect.probability,
         parameters: effect
             .parameters

@@ -1,0 +1,60 @@
+//! A torque along the position: what users read of it, and that the repaired simulator has it.
+
+use crate::support::{number, result, trainer};
+use serde_json::Value;
+
+/// A decay with nothing missing but a torque that repeats 20 times in a turn, or every 2π/20 m.
+fn config(coordinate: &str) -> String {
+    format!(
+        r#"
+name = "waves"
+inertia = 1.0
+damping = 0.3
+stiffness = 484.0
+rest_angle = 0.0
+coordinate = "{coordinate}"
+[record]
+rate_hz = 130.0
+seconds = 12.0
+[start]
+position = 0.7
+[sensor]
+noise = 5e-4
+[[effects]]
+id = "unknown"
+parameters.torque = 0.8
+parameters.wavenumber = 20.0
+parameters.phase = 0.4
+"#
+    )
+}
+
+#[test]
+fn it_is_unknown_described_in_words_and_part_of_the_repaired_simulator() {
+    for (coordinate, unit, often) in
+        [("angle", "1", "repeats 20.0 times a turn"), ("displacement", "rad/m", "repeats every 0.31")]
+    {
+        let scratch = tempfile::tempdir().unwrap();
+        let at = |name: &str| scratch.path().join(name).to_str().unwrap().to_owned();
+        std::fs::write(at("waves.toml"), config(coordinate)).unwrap();
+        let made = trainer(&["simulate", &at("waves.toml"), "--quiet", "--out", &at("made")]);
+        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+        let nominal = at("made/records/nominal.toml");
+        let (code, found, folder) =
+            result(&["diagnose", &at("made/records/record-000.csv"), "--nominal", &nominal]);
+        assert_eq!(code, 0, "{found}");
+        assert_eq!(found["verdict"]["status"], "unknown", "{found}");
+        assert_eq!(found["verdict"]["effects"], Value::Array(Vec::new()));
+        let summary = found["verdict"]["summary"].as_str().unwrap();
+        assert!(summary.contains(often), "{summary}");
+        let row = found["effects"].as_array().unwrap().iter().find(|row| row["id"] == "unknown").unwrap();
+        assert_eq!(row["parameters"]["wavenumber"]["unit"], unit);
+        assert!((number(row, "/parameters/torque/value") / 0.8 - 1.0).abs() < 0.05, "{row}");
+        assert!(number(&found, "/gap/ratio_to_floor") < 1.05);
+        let report = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+        assert!(report.contains("a torque along the position") && report.contains("and what has no name"));
+        let repaired = folder.path().join("repaired.toml");
+        let again = trainer(&["simulate", repaired.to_str().unwrap(), "--quiet", "--out", &at("again")]);
+        assert!(again.status.success(), "{}", String::from_utf8_lossy(&again.stderr));
+    }
+}
