@@ -439,6 +439,7 @@ mod tests {
         inertia: 1.0,
         stiffness: 484.0,
         resolution: 1e-3,
+        rate_error: 0.0,
         tolerance: Facts::UNKNOWN_NOISE,
     };
 

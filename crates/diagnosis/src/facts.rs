@@ -29,6 +29,8 @@ pub(crate) struct Facts {
     pub(crate) stiffness: f64,
     /// Step of the sensor's readings in its own unit; 0 where they lie on none, or on one that is lost in the noise.
     pub(crate) resolution: f64,
+    /// Largest relative standard error of a clock's rate; 0 where the stamps are believed.
+    pub(crate) rate_error: f64,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
     pub(crate) tolerance: f64,
 }

@@ -15,6 +15,8 @@ pub struct Observations {
     pub(crate) stamps_s: Vec<f64>,
     pub(crate) clock: ClockKind,
     pub(crate) sample_rate_hz: f64,
+    /// Standard error of the rate that the clock was given, relative to it; 0 where the stamps are believed.
+    pub(crate) rate_error: f64,
     pub(crate) stamps: StampStatistics,
     /// The sensor's step, where the values lie on a lattice.
     pub(crate) resolution: Option<f64>,
@@ -35,6 +37,10 @@ impl Observations {
             stamps_s: record.stamps_s().iter().map(|time| time - stamp).collect(),
             clock: clock.kind,
             sample_rate_hz: clock.sample_rate_hz,
+            rate_error: match clock.kind {
+                ClockKind::Host => 0.0,
+                _ => clock.sample_rate_std_error_hz / clock.sample_rate_hz,
+            },
             stamps: clock.statistics.clone(),
             resolution: record.lattice().map(|lattice| lattice.step),
         }

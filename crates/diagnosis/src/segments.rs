@@ -410,6 +410,7 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         inertia,
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
+        rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
         tolerance: Facts::UNKNOWN_NOISE,
     }
 }

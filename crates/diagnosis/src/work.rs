@@ -22,6 +22,9 @@ use crate::verdict::{Weighed, ratio, significant};
 pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
 const SHIFTED_BY_CHANCE: f64 = 0.001;
 
+/// Standard errors of a clock's rate, squared in the stiffness, within which a stiffness may be the clock's doing.
+const STANDARD_ERRORS: f64 = 3.0;
+
 /// What the later stages share.
 pub(crate) struct Work<'a> {
     /// On the longest horizon that the best sets follow.
@@ -102,12 +105,28 @@ impl<'a> Work<'a> {
             let point = Point { globals, starts: from.point.starts.clone() };
             fit(self.data, &hypothesis, point, Moving::All, Effort::FINAL).ok()
         };
-        let shifted = with(vec![Coefficient::RestAngle])?;
         let time = repaired.autocorrelation_time();
-        if significant(repaired, &shifted, time, own.calibrated.len() - 1, OFF_BY_CHANCE) {
-            return None;
+        let is_all = |part: &Fit| {
+            let others = own.calibrated.len() - part.hypothesis.calibrated.len();
+            !significant(repaired, part, time, others, OFF_BY_CHANCE)
+        };
+        let mut shifted = with(vec![Coefficient::RestAngle])?;
+        if !is_all(&shifted) {
+            // A clock whose rate is not known exactly is a spring that is not.
+            let allowed = STANDARD_ERRORS * 2.0 * self.data.facts.rate_error;
+            let both = [Coefficient::RestAngle, Coefficient::Stiffness];
+            let has_both = both.iter().all(|which| own.calibrated.contains(which));
+            let freed = if has_both && allowed > 0.0 { with(both.to_vec()) } else { None };
+            let is_the_clock = |freed: &Fit| {
+                let stiffness = freed.point.globals.get(1).copied().unwrap_or_default();
+                (stiffness / own.nominal.stiffness() - 1.0).abs() < allowed
+            };
+            shifted = freed.filter(|freed| is_the_clock(freed) && is_all(freed))?;
         }
-        let bare = if effects.is_empty() { self.base.nominal.clone() } else { with(Vec::new())? };
+        // The same without the shift.
+        let others = shifted.hypothesis.calibrated.iter().skip(1).copied().collect::<Vec<_>>();
+        let bare =
+            if effects.is_empty() && others.is_empty() { self.base.nominal.clone() } else { with(others)? };
         if !significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE) {
             return None;
         }
@@ -286,5 +305,48 @@ impl<'a> Work<'a> {
                 Some(Detectability { effect: candidate.id(), d })
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Diagnosis, Observations, Settings, diagnose};
+    use dynamics::chain::{Chain, Observed, SampledMotion};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Coordinate, Nominal, Start, System};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    /// What is said of 25 s of a swing under a constant torque, 260 samples a second in bursts whose receive times
+    /// scatter by 2.5 ms: the swing shows more finely than these whether the rate is right.
+    fn diagnosed(torque: f64, seed: u64) -> Diagnosis {
+        let nominal = Nominal::new(1.0, 0.19, 55.0, 0.0).unwrap();
+        let preload = Active::new("constant_torque", &[torque]).unwrap();
+        let system = System::new(nominal, vec![preload]).unwrap();
+        let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
+        let motion = simulate(&system, Start::release(0.55), None, &times, &Tolerance::default()).unwrap();
+        let sampled = SampledMotion {
+            times_s: &times,
+            position: &motion.position,
+            velocity: &motion.velocity,
+            acceleration: &motion.acceleration,
+        };
+        let bursts = Active::new("timestamp_batching", &[0.042, 0.0025]).unwrap();
+        let chain = Chain::new(Observed::Position, 2e-4, vec![bursts]).unwrap();
+        let seed = Seed::new(seed);
+        let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
+        let record = Record::new(samples.stamps_s, samples.values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
+    }
+
+    #[test]
+    fn a_clock_that_is_a_little_off_hides_no_preload_and_makes_none() {
+        for seed in 1..=6 {
+            let answer = diagnosed(0.24, seed);
+            assert_eq!(answer.verdict.effects, ["constant_torque", "timestamp_batching"], "{seed}");
+            let answer = diagnosed(0.0, seed);
+            assert_eq!(answer.verdict.effects, ["timestamp_batching"], "{seed}");
+        }
     }
 }
