@@ -69,9 +69,9 @@ const MOST_DAMPED: f64 = 0.7;
 const SMALLEST_BODY: f64 = 1e-9;
 const LARGEST_BODY: f64 = 1e2;
 
-/// Factor in the decay rate beyond which a line at a harmonic is another body's. Those by which a second body
-/// stands in for a sensor that is not linear decayed 0.9 to 1.2 times as fast as the harmonic (training banks).
-const FASTER: f64 = 2.0;
+/// Factor in the decay rate, either way, beyond which a line at a harmonic is another body's. Those by which a second
+/// body stands in for a sensor that is not linear decayed 0.9 to 1.2 times as fast as the harmonic (training banks).
+const ANOTHER_DECAY: f64 = 1.5;
 
 /// The swing that a second body is told from.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -200,6 +200,15 @@ impl Candidate {
         match self {
             Self::System(SystemEffect::StribeckFriction) => Some(Self::System(SystemEffect::CoulombFriction)),
             _ => None,
+        }
+    }
+
+    /// The simpler candidate that it tends to at an end of its shape, with the same first parameter: hysteresis that
+    /// builds up at once is Coulomb friction.
+    pub(crate) fn tends_to(self) -> Option<Self> {
+        match self {
+            Self::System(SystemEffect::Hysteresis) => Some(Self::System(SystemEffect::CoulombFriction)),
+            _ => self.generalizes(),
         }
     }
 
@@ -402,8 +411,10 @@ impl Candidate {
                 // Beside the swing itself it has to stand clear of the swing's own line too.
                 let width = if order > 1.0 { rate } else { rate.max(swing.decay_rate) };
                 let apart = (line - order * swing.frequency).abs() > width;
-                let faster = order > 1.0 && rate > FASTER * order * swing.decay_rate;
-                rate <= MOST_DAMPED * mode && (apart || swing.starts_once && faster)
+                let harmonic = order * swing.decay_rate;
+                let differs = rate > ANOTHER_DECAY * harmonic || rate * ANOTHER_DECAY < harmonic;
+                let decays_apart = swing.starts_once && order > 1.0 && differs;
+                rate <= MOST_DAMPED * mode && (apart || decays_apart)
             }
             _ => true,
         }
@@ -419,84 +430,5 @@ impl Candidate {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::{Candidate, MainMode};
-    use crate::facts::Facts;
-    use dynamics::{Coordinate, Nominal, SystemEffect};
-    use record::Quantity;
-
-    const FACTS: Facts = Facts {
-        amplitude: 0.7,
-        highest: 0.7,
-        lowest: -0.7,
-        reading: 0.7,
-        speed: 15.0,
-        frequency: 22.0,
-        torque: 340.0,
-        input_torque: 1.0,
-        duration: 25.0,
-        interval: 1.0 / 260.0,
-        inertia: 1.0,
-        stiffness: 484.0,
-        resolution: 1e-3,
-        rate_error: 0.0,
-        tolerance: Facts::UNKNOWN_NOISE,
-    };
-
-    #[test]
-    fn no_sine_is_taken_of_a_length() {
-        let angle = Nominal::new(1.0, 0.2, 484.0, 0.0).unwrap();
-        let length = angle.with_coordinate(Coordinate::Displacement);
-        let ids = |nominal: &Nominal| -> Vec<&str> {
-            let those = Candidate::that_apply(&FACTS, Quantity::Position, nominal);
-            those.into_iter().map(Candidate::id).collect()
-        };
-        let mut of_angles = ids(&angle);
-        of_angles.retain(|id| !ids(&length).contains(id));
-        of_angles.sort_unstable();
-        assert_eq!(of_angles, ["gravity", "sensor_nonlinearity"]);
-    }
-
-    #[test]
-    fn parameters_are_the_laws_own() {
-        for candidate in Candidate::ALL.iter().chain(&[Candidate::UNNAMED]) {
-            let parameters = candidate.parameters(&FACTS);
-            for parameter in &parameters {
-                assert!(parameter.lower < parameter.upper, "{} {}", candidate.id(), parameter.name);
-            }
-            if let Candidate::System(effect) = candidate {
-                let names: Vec<&str> = effect.description().parameters.iter().map(|p| p.name).collect();
-                let fitted: Vec<&str> = parameters.iter().map(|p| p.name).collect();
-                assert_eq!(names, fitted, "{}", candidate.id());
-            }
-        }
-    }
-
-    /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third
-    /// harmonic, which decays at 0.3/s.
-    #[test]
-    fn a_harmonic_is_no_second_body() {
-        let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
-        let swing = MainMode { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true };
-        let is_itself =
-            |line: f64, rate: f64, swing: &MainMode| coupling.is_itself(&[0.0, line, rate], swing);
-        assert!(!is_itself(66.0, 0.3, &swing));
-        assert!(is_itself(66.0, 0.61, &swing));
-        assert!(!is_itself(66.0, 0.61, &MainMode { starts_once: false, ..swing }));
-        assert!(is_itself(66.5, 0.3, &swing));
-        // Near the swing itself no decay tells it apart, and a body that hardly swings is none.
-        assert!(!is_itself(22.0, 2.0, &swing));
-        assert!(!is_itself(60.0, 50.0, &swing));
-    }
-
-    #[test]
-    fn confusion_is_mutual() {
-        for candidate in Candidate::ALL {
-            for other in candidate.confused_with() {
-                if matches!(candidate, Candidate::System(_)) && matches!(other, Candidate::System(_)) {
-                    assert!(other.confused_with().contains(candidate), "{} {}", candidate.id(), other.id());
-                }
-            }
-        }
-    }
-}
+#[path = "candidate_tests.rs"]
+mod tests;

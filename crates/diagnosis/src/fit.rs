@@ -139,6 +139,16 @@ fn evaluate_below(
     Some(predictions)
 }
 
+/// Squares of a hypothesis at a point.
+///
+/// # Errors
+/// What the dynamics refuse at that point.
+pub(crate) fn squares(data: &Data, hypothesis: &Hypothesis, point: &Point) -> Result<f64, DynamicsError> {
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, false)?;
+    let at = evaluate(&mut simulator, &data.segments, point)?;
+    Ok(at.iter().map(|prediction| prediction.residual.norm_squared()).sum())
+}
+
 /// Lets segments that are behind begin again, at the coefficients of `point`.
 fn begin_again(
     simulator: &mut Simulator<'_>,

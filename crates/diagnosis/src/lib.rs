@@ -48,6 +48,7 @@ mod period;
 mod pool;
 mod portrait;
 mod projection;
+mod proposal;
 mod ratio;
 mod reading;
 mod refine;

@@ -105,6 +105,17 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     members.any(|(candidate, part)| !candidate.is_itself(part, &swing))
 }
 
+/// Members with a size at zero.
+pub(crate) fn gone(data: &Data, fit: &Fit) -> Vec<Candidate> {
+    let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
+    let members = fit.hypothesis.candidates.iter().zip(parts);
+    let at_zero = |(candidate, part): &(&Candidate, &[f64])| {
+        let parameters = candidate.parameters(&data.facts);
+        parameters.iter().zip(*part).any(|(own, value)| own.strength && *value <= own.lower)
+    };
+    members.filter(at_zero).map(|(candidate, _)| *candidate).collect()
+}
+
 /// A size at zero, or a shape at which the candidate is a simpler one or another: it is not there.
 pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
     let parameters = fit.hypothesis.parameters(&data.facts);
@@ -127,7 +138,7 @@ mod tests {
 
     #[test]
     fn a_search_led_by_what_does_not_stay_is_made_again_without_it() {
-        let base = calibrated_swing();
+        let (_, base) = calibrated_swing();
         let set = |candidates: &[Candidate], part: f64| Fit {
             hypothesis: base.hypothesis.with(candidates),
             squares: part * base.squares,

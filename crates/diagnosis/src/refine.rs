@@ -3,8 +3,8 @@
 use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::pool::{Pool, vanished};
+use crate::proposal::{fit_all, generalized};
 use crate::score::score;
-use crate::search::{fit_all, generalized};
 use crate::segments::Data;
 use rayon::prelude::*;
 

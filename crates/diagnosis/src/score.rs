@@ -28,9 +28,9 @@ pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorr
     samples * (-2.0 * (score + price(parameters, worth)) / worth).exp()
 }
 
-/// The calibrated simulator fitted to a decaying swing of 1000 samples.
+/// A decaying swing of 1000 samples, and the calibrated simulator fitted to it.
 #[cfg(test)]
-pub(crate) fn calibrated_swing() -> Fit {
+pub(crate) fn calibrated_swing() -> (crate::segments::Data, Fit) {
     use record::{Clock, ClockChoice, Quantity, Record};
     let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
     let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
@@ -39,7 +39,8 @@ pub(crate) fn calibrated_swing() -> Fit {
     let nominal = dynamics::Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
     let observations = crate::Observations::new(&record, &clock);
     let data = crate::segments::cut(&[observations], &[vec![true; 1000]], &nominal).unwrap();
-    crate::calibrate::baseline(&data, &nominal).unwrap().calibrated
+    let calibrated = crate::calibrate::baseline(&data, &nominal).unwrap().calibrated;
+    (data, calibrated)
 }
 
 #[cfg(test)]
@@ -48,7 +49,7 @@ mod tests {
 
     #[test]
     fn squares_and_score_go_together() {
-        let found = calibrated_swing();
+        let (_, found) = calibrated_swing();
         for time in [1.0, 7.0] {
             let squares = squares_at(score(&found, time), found.samples(), found.globals(), time);
             assert!((squares / found.squares - 1.0).abs() < 1e-9, "{time}: {squares} {}", found.squares);

@@ -8,7 +8,8 @@ use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit};
 use crate::observations::Observations;
 use crate::pool::vanished;
-use crate::search::{alone, fit_all};
+use crate::proposal::fit_all;
+use crate::search::alone;
 use crate::segments::{MOST_SEARCHED, cut};
 use dynamics::Nominal;
 
