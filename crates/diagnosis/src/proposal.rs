@@ -120,11 +120,12 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
 
 /// Puts what a member tends to in its place, with the member's size: friction that begins from nothing often ends where it
 /// stops the motion half a swing too early or too late.
-pub(crate) fn simplified(data: &Data, base: &Fit) -> Vec<Proposal> {
+pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
     let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
     let members = base.hypothesis.candidates.iter().zip(parts);
     let simpler = members.filter_map(|(&member, part)| {
-        let added = (member.tends_to()?, vec![*part.first()?]);
+        let special = member.tends_to().filter(|special| candidates.contains(special))?;
+        let added = (special, vec![*part.first()?]);
         Some(proposal(data, base, &[member], &[added]))
     });
     simpler.collect()
@@ -190,11 +191,15 @@ mod tests {
     #[test]
     fn hysteresis_hands_its_torque_to_the_friction_that_it_tends_to() {
         let (data, alone) = swing(&[(DRAG, &[0.01]), (HYSTERESIS, &[0.7, 0.02])]);
-        let [set] = simplified(&data, &alone).try_into().unwrap();
+        let [set] = simplified(&data, &alone, Candidate::ALL).try_into().unwrap();
         assert_eq!(set.hypothesis.candidates, [COULOMB, DRAG]);
         assert_eq!(members(&alone, &set.point), [0.7, 0.01]);
+        assert!(
+            simplified(&data, &alone, &[DRAG, HYSTERESIS]).is_empty(),
+            "that is left out of the question"
+        );
         let (data, beside) = swing(&[(COULOMB, &[0.5]), (HYSTERESIS, &[0.7, 0.02])]);
-        let [set] = simplified(&data, &beside).try_into().unwrap();
+        let [set] = simplified(&data, &beside, Candidate::ALL).try_into().unwrap();
         assert_eq!(set.hypothesis.candidates, [COULOMB]);
         assert_eq!(members(&beside, &set.point), [1.2]);
     }

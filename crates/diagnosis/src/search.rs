@@ -298,7 +298,7 @@ pub(crate) fn search(
             .map(|(place, base)| {
                 let mut own = around(data, base, candidates, breadth, threshold, place == 0);
                 let mut dropped = Vec::new();
-                own.extend(simplified(data, base));
+                own.extend(simplified(data, base, candidates));
                 if place == 0 {
                     own.extend(generalized(data, base, candidates));
                     let (proposals, without) = swaps(data, base, candidates, breadth);
