@@ -65,12 +65,14 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
     if dropped as f64 > MOST * observations.len() as f64 { everything } else { kept }
 }
 
-/// Standard deviation of the white noise of samples, from their distances to their neighbors; rounding is part of it.
+/// Standard deviation of the white noise of samples, from their distances to their neighbors; rounding is part of it,
+/// also where the steps are so coarse that most neighbors agree.
 pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
     let points = points(observations, kept);
     let sizes: Vec<f64> =
         distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
-    OF_MEDIAN * median(&sizes)
+    let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
+    (OF_MEDIAN * median(&sizes)).max(rounding)
 }
 
 /// Index, time and value of a sample.
@@ -319,5 +321,15 @@ mod tests {
         let values = times.iter().zip(normal(6500, 7)).map(|(time, noise)| swing(*time) + noise).collect();
         let found = white_noise(&observed(times, values), &[true; 6500]);
         assert!((found / NOISE - 1.0).abs() < 0.05, "{found}");
+    }
+
+    /// Most neighbors agree, and the median distance is nothing.
+    #[test]
+    fn the_noise_of_coarse_steps_is_their_rounding() {
+        let times = even(6500);
+        let step = 0.02;
+        let values = times.iter().map(|time| (swing(*time) / step).round() * step).collect();
+        let found = white_noise(&observed(times, values), &[true; 6500]);
+        assert!((found / (step / 12.0_f64.sqrt()) - 1.0).abs() < 1e-9, "{found}");
     }
 }
