@@ -91,11 +91,13 @@ impl Columns {
     /// Solves the variational equation along a step, up to and with a degree. `links` tells which rates are
     /// just another state variable.
     pub(crate) fn propagate(&mut self, couplings: &[Coupling], links: &[Option<usize>], degree: usize) {
-        for block in &mut self.blocks {
-            for k in 0..degree {
-                let divisor = 1.0 / (k + 1) as f64;
-                for rate in 0..self.states {
-                    let mut sum = match links.get(rate).copied().flatten() {
+        for k in 0..degree {
+            let divisor = 1.0 / (k + 1) as f64;
+            for rate in 0..self.states {
+                let link = links.get(rate).copied().flatten();
+                // Blocks innermost: their sums do not wait for one another.
+                for block in &mut self.blocks {
+                    let mut sum = match link {
                         Some(state) => coefficient(&block.states, state, k),
                         None => {
                             let mut sum = coefficient(&block.sources, rate, k);

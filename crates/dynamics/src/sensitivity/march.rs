@@ -110,10 +110,11 @@ impl<'a> March<'a> {
         sized(&mut response.position_sensitivity, samples * columns);
         let velocities = if settings.velocity { samples } else { 0 };
         sized(&mut response.velocity, velocities);
-        sized(&mut response.velocity_sensitivity, velocities * columns);
         let accelerations = if settings.acceleration { samples } else { 0 };
         sized(&mut response.acceleration, accelerations);
-        sized(&mut response.acceleration_sensitivity, accelerations * columns);
+        let by_rate = if settings.rate_sensitivities { columns } else { 0 };
+        sized(&mut response.velocity_sensitivity, velocities * by_rate);
+        sized(&mut response.acceleration_sensitivity, accelerations * by_rate);
         sized(&mut response.end_sensitivity, self.model.states * columns);
     }
 
@@ -301,11 +302,15 @@ impl<'a> March<'a> {
             self.model.columns.write(0, after, degree, slots);
             if settings.velocity {
                 put(&mut response.velocity, sample, value(velocity, after));
+            }
+            if settings.velocity && settings.rate_sensitivities {
                 let slots = response.velocity_sensitivity.get_mut(row.clone()).unwrap_or_default();
                 self.model.columns.write(1, after, degree, slots);
             }
             if settings.acceleration {
                 put(&mut response.acceleration, sample, slope(velocity, after));
+            }
+            if settings.acceleration && settings.rate_sensitivities {
                 let slots = response.acceleration_sensitivity.get_mut(row).unwrap_or_default();
                 self.model.columns.write_slope(1, after, degree, slots);
             }

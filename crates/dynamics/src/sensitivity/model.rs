@@ -23,17 +23,27 @@ pub struct Settings {
     pub tolerance: f64,
     /// Degree of the Taylor series, 2 to 19.
     pub degree: usize,
-    /// Whether velocities and their sensitivities are wanted at the samples.
+    /// Whether velocities are wanted at the samples.
     pub velocity: bool,
-    /// Whether accelerations and their sensitivities are wanted at the samples.
+    /// Whether accelerations are wanted at the samples.
     pub acceleration: bool,
+    /// Whether of the velocities and accelerations that are wanted the sensitivities are wanted too. Those of the
+    /// position always are.
+    pub rate_sensitivities: bool,
     /// Most steps before [`DynamicsError::TooManySteps`].
     pub most_steps: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { tolerance: 1e-10, degree: 14, velocity: false, acceleration: false, most_steps: 1_000_000 }
+        Self {
+            tolerance: 1e-10,
+            degree: 14,
+            velocity: false,
+            acceleration: false,
+            rate_sensitivities: true,
+            most_steps: 1_000_000,
+        }
     }
 }
 

@@ -35,9 +35,9 @@ pub struct Response {
     pub columns: usize,
     /// ∂position/∂free, samples × columns.
     pub position_sensitivity: Vec<f64>,
-    /// ∂velocity/∂free, samples × columns; empty unless asked for.
+    /// ∂velocity/∂free, samples × columns; empty unless both are asked for.
     pub velocity_sensitivity: Vec<f64>,
-    /// ∂acceleration/∂free, samples × columns; empty unless asked for.
+    /// ∂acceleration/∂free, samples × columns; empty unless both are asked for.
     pub acceleration_sensitivity: Vec<f64>,
     /// The state at the last sample, hidden states included.
     pub end: FullState,

@@ -31,6 +31,24 @@ fn trajectories_are_the_references_for_every_effect() {
     }
 }
 
+/// What is not asked for is not written, and changes nothing else.
+#[test]
+fn sensitivities_of_rates_are_left_out_on_request() {
+    let system = system(&[("coulomb_friction", &[0.5])]);
+    let free = [Free::StartPosition, Free::Damping];
+    let times = grid(3.0, 100.0);
+    let all = Settings { velocity: true, acceleration: true, ..Settings::default() };
+    let some = Settings { rate_sensitivities: false, ..all };
+    let run = |settings| {
+        Model::new(&system, &free, settings).unwrap().run(Start::release(0.7).into(), None, &times)
+    };
+    let (all, some) = (run(all).unwrap(), run(some).unwrap());
+    assert_eq!(all.velocity_sensitivity.len(), 2 * times.len());
+    assert!(some.velocity_sensitivity.is_empty() && some.acceleration_sensitivity.is_empty());
+    let bare = Response { velocity_sensitivity: Vec::new(), acceleration_sensitivity: Vec::new(), ..all };
+    assert_eq!(some, bare);
+}
+
 /// Every quantity of a system that can be free.
 fn everything_free(system: &System) -> Vec<Free> {
     let nominal = [Free::Inertia, Free::Damping, Free::Stiffness, Free::RestAngle, Free::InputGain];
@@ -95,8 +113,14 @@ fn central(step: f64, at: &dyn Fn(f64) -> Vec<f64>) -> Vec<f64> {
     sum
 }
 
-const EXACT: Settings =
-    Settings { tolerance: 1e-15, degree: 16, velocity: true, acceleration: true, most_steps: 1_000_000 };
+const EXACT: Settings = Settings {
+    tolerance: 1e-15,
+    degree: 16,
+    velocity: true,
+    acceleration: true,
+    rate_sensitivities: true,
+    most_steps: 1_000_000,
+};
 
 /// A motion whose columns are checked.
 struct Case<'a> {
