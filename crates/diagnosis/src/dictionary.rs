@@ -1,11 +1,11 @@
 //! What every candidate would add to the observed values, to first order, at a fit.
 
 use crate::candidate::{Candidate, Distortion};
+use crate::contact::bent;
 use crate::facts::Facts;
 use crate::fit::{Fit, solve};
 use crate::matrices::{element, entry};
 use crate::projection::Projection;
-use crate::response::bent;
 use crate::second_mode::{SecondMode, driven_modes};
 use crate::segments::Data;
 use crate::spectrum::{decaying_lines, frequencies, lines};
@@ -182,7 +182,7 @@ fn bending(displacement: f64, path: &Path, data: &Data, nominal: &Coefficients<f
     let position = &path.motion.position;
     let mut z = match (position.first(), path.motion.velocity.first()) {
         (Some(position), Some(velocity)) if !path.first => {
-            bent(position - nominal.rest_angle, velocity / data.facts.frequency, displacement)
+            bent(position - nominal.rest_angle, velocity / data.facts.frequency, displacement).z
         }
         _ => 0.0,
     };

@@ -22,6 +22,8 @@ pub(crate) struct Effort {
     /// is not yet right stops the motion half a swing too early or too late somewhere, and that one segment would
     /// hold all coefficients.
     pub(crate) wary: bool,
+    /// Whether segments that are behind may begin again where the squares are uneven in their start states.
+    pub(crate) begins_again: bool,
     /// Squares that a fit has to come below to be of use; one that will not do so within its steps is given up.
     pub(crate) below: f64,
 }
@@ -35,8 +37,12 @@ impl Effort {
         little: 2.0,
         sizes_first: 2,
         wary: true,
+        begins_again: true,
         below: f64::INFINITY,
     };
+    /// For an experiment that is only planned: a distance within parts of a thousand is enough. What it is measured from is known,
+    /// so that no segment has to begin again.
+    pub(crate) const PLANNED: Self = Self { steps: 12, small: 1e-3, begins_again: false, ..Self::FINAL };
     /// For parts held out: begun at the fit to all, there is not far to go.
     pub(crate) const HELD_OUT: Self = Self { steps: 12, ..Self::FINAL };
     /// For what is reported: half of 1e-6·N is less than a probability would feel, and the step that gained
@@ -48,6 +54,7 @@ impl Effort {
         little: 20.0,
         sizes_first: 0,
         wary: false,
+        begins_again: true,
         below: f64::INFINITY,
     };
 

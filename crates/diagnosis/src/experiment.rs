@@ -3,9 +3,10 @@
 use crate::answer::Experiment;
 use crate::candidate::Candidate;
 use crate::fit::{Effort, Fit, Moving, Point, fit};
-use crate::response::Simulator;
+use crate::response::{Derivatives, Simulator};
 use crate::segments::{Data, Segment};
 use dynamics::{DynamicsError, Input, SystemEffect};
+use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// A further record beside the present data.
@@ -64,8 +65,7 @@ fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
 fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), DynamicsError> {
     let mut segments = data.segments.clone();
     let mut starts = model.point.starts.clone();
-    let mut now = Simulator::new(data, &model.hypothesis, &model.point.globals, true)?;
-    now.set(&model.point.globals)?;
+    let mut now = Simulator::new(data, &model.hypothesis, &model.point.globals, Derivatives::None)?;
     for (segment, start) in segments.iter_mut().zip(&starts) {
         let residual = now.predict(segment, start)?.residual;
         for (value, residual) in segment.values.iter_mut().zip(residual.iter()) {
@@ -85,8 +85,7 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
     );
     let planned = Data { inputs, ..data.clone() };
     let point = turned(data, model, plan.tilt);
-    let mut then = Simulator::new(&planned, &model.hypothesis, &point, true)?;
-    then.set(&point)?;
+    let mut then = Simulator::new(&planned, &model.hypothesis, &point, Derivatives::None)?;
     let rest = data.facts.rest(&model.point.globals, &model.hypothesis);
     let own: Vec<&Segment> = data.segments.iter().filter(|segment| segment.record == 0).collect();
     let mut state: Vec<f64> = model.point.starts.first().cloned().unwrap_or_default();
@@ -133,7 +132,7 @@ fn distance(data: &Data, model: &Fit, rival: &Fit, plan: &Plan, noise: f64) -> O
     let starts = made.starts.iter().map(|start| start.iter().copied().cycle().take(length).collect());
     let point = Point { globals: rival.point.globals.clone(), starts: starts.collect() };
     // Under a turned mount the rival's own gravity turns too; that is only the same law where both have it.
-    let fitted = fit(&future, &rival.hypothesis, point, Moving::All, Effort::HELD_OUT).ok()?;
+    let fitted = fit(&future, &rival.hypothesis, point, Moving::All, Effort::PLANNED).ok()?;
     Some(fitted.squares.sqrt() / noise)
 }
 
@@ -147,13 +146,16 @@ pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<
         let farther = plan.release <= 1.0 || plan.release * data.facts.amplitude <= FARTHEST;
         farther && (plan.tilt == 0.0 || has(model) != has(rival))
     });
-    let considered: Vec<(String, f64)> = usable
-        .filter_map(|plan| {
+    let usable: Vec<&Plan> = usable.collect();
+    let considered: Vec<Option<(String, f64)>> = usable
+        .into_par_iter()
+        .map(|plan| {
             // A model without gravity sees nothing of the turn; let the one that has it make the data.
             let (from, to) = if plan.tilt != 0.0 && has(rival) { (rival, model) } else { (model, rival) };
             Some((plan.text.to_owned(), distance(data, from, to, plan, noise)?))
         })
         .collect();
+    let considered: Vec<(String, f64)> = considered.into_iter().flatten().collect();
     let (text, distance) = considered.iter().max_by(|a, b| a.1.total_cmp(&b.1)).cloned()?;
     let only = |own: &Fit, other: &Fit| -> Option<&'static str> {
         let mut ids = own.hypothesis.candidates.iter().filter(|c| !other.hypothesis.candidates.contains(c));

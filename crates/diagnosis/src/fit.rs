@@ -15,7 +15,7 @@ pub(crate) use crate::ending::Effort;
 use crate::ending::{Ending, SHORT};
 use crate::hypothesis::Hypothesis;
 use crate::matrices::{element, entry, raised};
-use crate::response::{Prediction, Simulator};
+use crate::response::{Derivatives, Prediction, Simulator};
 use crate::segments::{Data, Segment};
 use crate::settle::settle;
 use crate::statistics::{autocorrelation_time, median};
@@ -49,7 +49,8 @@ pub(crate) struct Fit {
     pub(crate) converged: bool,
     /// Global parameters that ended at an end of their range.
     pub(crate) at_bound: Vec<bool>,
-    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance.
+    /// (JᵀJ)⁻¹ of the global parameters, start states eliminated; times the noise variance it is a covariance. Without
+    /// rows where only start states were moved.
     pub(crate) inverse: DMatrix<f64>,
 }
 
@@ -144,7 +145,7 @@ fn evaluate_below(
 /// # Errors
 /// What the dynamics refuse at that point.
 pub(crate) fn squares(data: &Data, hypothesis: &Hypothesis, point: &Point) -> Result<f64, DynamicsError> {
-    let mut simulator = Simulator::new(data, hypothesis, &point.globals, false)?;
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, Derivatives::None)?;
     let at = evaluate(&mut simulator, &data.segments, point)?;
     Ok(at.iter().map(|prediction| prediction.residual.norm_squared()).sum())
 }
@@ -152,14 +153,24 @@ pub(crate) fn squares(data: &Data, hypothesis: &Hypothesis, point: &Point) -> Re
 /// Lets segments that are behind begin again, at the coefficients of `point`.
 fn begin_again(
     simulator: &mut Simulator<'_>,
+    data: &Data,
     hypothesis: &Hypothesis,
-    segments: &[Segment],
     point: &mut Point,
     at: &mut [Prediction],
 ) -> Result<bool, DynamicsError> {
     // A trial that came to nothing has left its coefficients behind.
     simulator.set(&point.globals)?;
-    Ok(settle(simulator, hypothesis, segments, &mut point.starts, at))
+    let better = settle(data, hypothesis, point, at)?;
+    let mut begun = false;
+    for (index, start) in better {
+        let Some(segment) = data.segments.get(index) else { continue };
+        let prediction = simulator.predict(segment, &start)?;
+        if let (Some(slot), Some(known)) = (at.get_mut(index), point.starts.get_mut(index)) {
+            (*slot, *known) = (prediction, start);
+            begun = true;
+        }
+    }
+    Ok(begun)
 }
 
 /// The damping that a fit begins with, and begins with again.
@@ -321,12 +332,15 @@ pub(crate) fn fit(
 ) -> Result<Fit, DynamicsError> {
     let parameters = hypothesis.parameters(&data.facts);
     let starts = hypothesis.start_length();
-    let globals = parameters.len();
+    let (derivatives, globals) = match moving {
+        Moving::Starts => (Derivatives::Starts, 0),
+        Moving::All => (Derivatives::All, parameters.len()),
+    };
     let mut point = from;
     for (value, parameter) in point.globals.iter_mut().zip(&parameters) {
         *value = value.clamp(parameter.lower, parameter.upper);
     }
-    let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, derivatives)?;
     let mut at = evaluate(&mut simulator, &data.segments, &point)?;
     let mut damping = FIRST_DAMPING;
     let mut raise = RAISE;
@@ -380,15 +394,15 @@ pub(crate) fn fit(
         if wary && (ended || step >= effort.steps / 2) {
             wary = false;
             weights = vec![1.0; data.segments.len()];
-            begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)?;
+            begin_again(&mut simulator, data, hypothesis, &mut point, &mut at)?;
             system = equations(&at, &weights, starts, globals);
             ending.begin_again();
             (damping, settled) = (FIRST_DAMPING, true);
             continue;
         }
-        if uneven && !settled && (ended || damping > SHORT && !in_vain) {
+        if uneven && effort.begins_again && !settled && (ended || damping > SHORT && !in_vain) {
             settled = true;
-            if begin_again(&mut simulator, hypothesis, &data.segments, &mut point, &mut at)? {
+            if begin_again(&mut simulator, data, hypothesis, &mut point, &mut at)? {
                 system = equations(&at, &weights, starts, globals);
                 ending.begin_again();
                 damping = FIRST_DAMPING;

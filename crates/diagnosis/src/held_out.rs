@@ -1,7 +1,7 @@
 //! How well a hypothesis predicts what it was not fitted to.
 
 use crate::fit::{Effort, Fit, Moving, Point, fit};
-use crate::response::Simulator;
+use crate::response::{Derivatives, Simulator};
 use crate::segments::Data;
 use dynamics::DynamicsError;
 use nalgebra::DVector;
@@ -44,7 +44,7 @@ impl Both<'_> {
     /// Fits the parts that `train` names, on the longer horizon. Gives the numbers of the segments that were left too.
     fn learned(
         &self,
-        train: &dyn Fn(usize) -> bool,
+        train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
     ) -> Result<(Fit, Vec<usize>), DynamicsError> {
         let (masked, numbers) = self.longer.masked(train);
@@ -56,7 +56,7 @@ impl Both<'_> {
     /// Residuals of the segments that `train` does not name, only start states fitted to them.
     fn scored(
         &self,
-        train: &dyn Fn(usize) -> bool,
+        train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
     ) -> Result<Vec<DVector<f64>>, DynamicsError> {
         let (learned, _) = self.learned(train, moving)?;
@@ -73,14 +73,14 @@ impl Both<'_> {
     /// The first part is always among those fitted: going back to it would be another question than going on.
     fn continued(
         &self,
-        train: &dyn Fn(usize) -> bool,
+        train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
     ) -> Result<Vec<DVector<f64>>, DynamicsError> {
         let firsts = self.longer.firsts();
         let train = |index: usize| train(index) || firsts.contains(&index);
         let (learned, numbers) = self.learned(&train, moving)?;
-        let mut simulator = Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, true)?;
-        simulator.set(&learned.point.globals)?;
+        let mut simulator =
+            Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, Derivatives::None)?;
         let mut all = Vec::new();
         for (&number, start) in numbers.iter().zip(&learned.point.starts) {
             if let Some(segment) = self.longer.segments.get(number) {
@@ -96,14 +96,15 @@ impl Both<'_> {
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
         let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
         let starts = self.fitted.hypothesis.start_length();
-        let mut first = self.scored(&odd, moving)?.into_iter();
-        let mut second = self.scored(&even, moving)?.into_iter();
+        let (first, second) = rayon::join(|| self.scored(&odd, moving), || self.scored(&even, moving));
+        let (mut first, mut second) = (first?.into_iter(), second?.into_iter());
         let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
             .filter_map(|index| if even(index) { first.next() } else { second.next() })
             .collect();
         let continued = if self.longer.is_joined() {
-            let mut parts = self.continued(&odd, moving)?;
-            parts.extend(self.continued(&even, moving)?);
+            let (first, second) =
+                rayon::join(|| self.continued(&odd, moving), || self.continued(&even, moving));
+            let parts = [first?, second?].concat();
             mean_square(&parts, 0)
         } else {
             mean_square(&residuals, starts)

@@ -8,10 +8,11 @@
 
 use crate::fit::{Effort, Fit, Moving, Point, extended, fit};
 use crate::pool::{Pool, vanished};
-use crate::response::Simulator;
+use crate::response::{Derivatives, Simulator};
 use crate::segments::{Data, Segment};
 use dynamics::DynamicsError;
 use nalgebra::DVector;
+use rayon::prelude::*;
 
 /// Factor by which the recalibrated simulator's error may grow on a longer horizon: it is not the whole truth.
 const RECALIBRATED: f64 = 2.0;
@@ -134,7 +135,7 @@ pub(crate) fn shortened(segments: &Data, longer: &Data, found: &Fit) -> Result<F
     if !longer.is_joined() {
         return Ok(found.clone());
     }
-    let mut simulator = Simulator::new(longer, &found.hypothesis, &found.point.globals, false)?;
+    let mut simulator = Simulator::new(longer, &found.hypothesis, &found.point.globals, Derivatives::None)?;
     let mut starts = Vec::with_capacity(segments.segments.len());
     for (segment, start) in longer.segments.iter().zip(&found.point.starts) {
         let motion = simulator.motion(segment, start)?;
@@ -220,11 +221,10 @@ impl Horizon {
         while let Some(longer) = horizon.doubled(segments) {
             let most = JUDGED * JUDGED * first;
             // What ends there as something else, or as nothing, does not follow.
-            let kept: Vec<Fit> = sets
-                .iter()
-                .filter_map(|set| lengthened(&longer.data, &horizon.data, set, most))
-                .filter(|fit| !vanished(&longer.data, fit))
-                .collect();
+            let followed: Vec<Option<Fit>> =
+                sets.par_iter().map(|set| lengthened(&longer.data, &horizon.data, set, most)).collect();
+            let kept: Vec<Fit> =
+                followed.into_iter().flatten().filter(|fit| !vanished(&longer.data, fit)).collect();
             let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
             if smallest > most {
                 break;

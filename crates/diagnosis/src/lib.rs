@@ -26,6 +26,7 @@ mod chain_statistics;
 mod coefficients;
 mod conclusion;
 mod confidence;
+mod contact;
 mod diagnose;
 mod dictionary;
 mod ending;

@@ -2,7 +2,7 @@
 
 use crate::fit::{Fit, Point};
 use crate::hypothesis::Hypothesis;
-use crate::response::Simulator;
+use crate::response::{Derivatives, Simulator};
 use crate::segments::Data;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
@@ -90,7 +90,7 @@ pub(crate) fn jacobians(
     hypothesis: &Hypothesis,
     point: &Point,
 ) -> Result<Vec<DMatrix<f64>>, DynamicsError> {
-    let mut simulator = Simulator::new(data, hypothesis, &point.globals, true)?;
+    let mut simulator = Simulator::new(data, hypothesis, &point.globals, Derivatives::All)?;
     simulator.set(&point.globals)?;
     data.segments
         .iter()

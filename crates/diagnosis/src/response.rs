@@ -1,9 +1,10 @@
 //! What a hypothesis says a segment looks like, with exact derivatives.
 
 use crate::candidate::{Candidate, Distortion};
+use crate::contact::{Bent, bent};
 use crate::facts::Facts;
 use crate::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
-use crate::matrices::set;
+use crate::matrices::{entry, set};
 use crate::reading::readings;
 use crate::segments::{Data, Segment};
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
@@ -20,6 +21,16 @@ const DEGREE: usize = 12;
 const MOST_STEPS: usize = 1200;
 const MOST_STEPS_PER_SAMPLE: usize = 3;
 
+/// What a prediction is differentiated by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Derivatives {
+    None,
+    /// By the segment's own start state.
+    Starts,
+    /// By the start state and every global parameter.
+    All,
+}
+
 /// A hypothesis made ready for runs.
 pub(crate) struct Simulator<'a> {
     data: &'a Data,
@@ -32,10 +43,20 @@ pub(crate) struct Simulator<'a> {
     response: Response,
     /// Where each global parameter's column stands in the response; none for the sensor's.
     columns: Vec<Option<usize>>,
-    derivatives: bool,
+    contact: Option<Contact>,
+    derivatives: Derivatives,
     times: Vec<f64>,
     /// Integration steps of all runs so far.
     pub(crate) steps: usize,
+}
+
+/// A contact that bends before it slides: its number among the candidates, that of its hidden state, and where the
+/// hidden state's column stands in the response.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    candidate: usize,
+    hidden: usize,
+    column: Option<usize>,
 }
 
 /// A segment's response.
@@ -67,16 +88,23 @@ impl<'a> Simulator<'a> {
         data: &'a Data,
         hypothesis: &'a Hypothesis,
         point: &[f64],
-        derivatives: bool,
+        derivatives: Derivatives,
     ) -> Result<Self, DynamicsError> {
         let facts = &data.facts;
         let sources = hypothesis.sources(facts);
         let measurement = hypothesis.measurement(facts, point);
         let mut free = Vec::new();
         let mut columns = vec![None; sources.len()];
-        if derivatives {
+        let mut contact = contact(hypothesis);
+        if derivatives != Derivatives::None {
             free.extend([Free::StartPosition, Free::StartVelocity]);
             free.extend(hidden(hypothesis).map(Free::StartHidden));
+            if let Some(contact) = &mut contact {
+                contact.column = Some(free.len());
+                free.push(Free::StartHidden(contact.hidden));
+            }
+        }
+        if derivatives == Derivatives::All {
             for (source, column) in sources.iter().zip(&mut columns) {
                 let own = match *source {
                     Source::Nominal(which) => Some(which.free()),
@@ -103,7 +131,8 @@ impl<'a> Simulator<'a> {
         let settings = Settings {
             tolerance: facts.tolerance,
             velocity: true,
-            acceleration: curved || !derivatives || data.quantity != Quantity::Position,
+            acceleration: curved || derivatives == Derivatives::None || data.quantity != Quantity::Position,
+            rate_sensitivities: measurement.lag.is_some() || data.quantity != Quantity::Position,
             most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest as usize,
             degree: DEGREE,
         };
@@ -118,6 +147,7 @@ impl<'a> Simulator<'a> {
             model,
             response: Response::default(),
             columns,
+            contact,
             derivatives,
             times: Vec::new(),
             steps: 0,
@@ -128,7 +158,8 @@ impl<'a> Simulator<'a> {
         &self.data.facts
     }
 
-    /// Moves to another point. Only for a simulator with derivatives, whose parameters are all free.
+    /// Moves to another point. Only a simulator with all derivatives has parameters that are free; of the others the
+    /// point has to be the one that they were made for.
     pub(crate) fn set(&mut self, point: &[f64]) -> Result<(), DynamicsError> {
         let mut values = Vec::new();
         let parts = self.hypothesis.parts(self.facts(), point);
@@ -169,36 +200,56 @@ impl<'a> Simulator<'a> {
             [position, velocity, own @ ..] => (*position, *velocity, own),
             _ => (0.0, 0.0, start),
         };
-        let mut hidden = [0.0; dynamics::SYSTEM_HIDDEN];
-        let mut own = own.iter();
-        let mut at = 0;
-        let parts = self.hypothesis.parts(self.facts(), &self.point);
-        let mut any = false;
-        for (candidate, part) in self.hypothesis.candidates.iter().zip(parts) {
-            let Candidate::System(effect) = candidate else { continue };
-            for _ in 0..effect.description().hidden_states {
-                if let Some(slot) = hidden.get_mut(at) {
-                    *slot = match (effect, part) {
-                        (SystemEffect::Hysteresis, &[_, displacement]) if !segment.first => {
-                            let deflection = position - self.data.facts.rest(&self.point, self.hypothesis);
-                            bent(deflection, velocity / self.data.facts.frequency, displacement)
-                        }
-                        (SystemEffect::FlexibleCoupling, _) => own.next().copied().unwrap_or(0.0),
-                        _ => 0.0,
-                    };
-                }
-                any = true;
-                at += 1;
+        let mut all = [0.0; dynamics::SYSTEM_HIDDEN];
+        for (index, value) in hidden(self.hypothesis).zip(own) {
+            if let Some(slot) = all.get_mut(index) {
+                *slot = *value;
             }
         }
-        FullState { position, velocity, hidden: any.then_some(hidden) }
+        if let Some((contact, bent)) = self.contact.zip(self.bent(segment, start))
+            && let Some(slot) = all.get_mut(contact.hidden)
+        {
+            *slot = bent.z;
+        }
+        let any = self.contact.is_some() || hidden(self.hypothesis).next().is_some();
+        FullState { position, velocity, hidden: any.then_some(all) }
+    }
+
+    /// How far the contact is bent at a segment's start; none where there is none or the record begins.
+    fn bent(&self, segment: &Segment, start: &[f64]) -> Option<Bent> {
+        let contact = self.contact.filter(|_| !segment.first)?;
+        let parts = self.hypothesis.parts(self.facts(), &self.point);
+        let &&[_, displacement] = parts.get(contact.candidate)? else { return None };
+        let &[position, velocity, ..] = start else { return None };
+        let deflection = position - self.facts().rest(&self.point, self.hypothesis);
+        Some(bent(deflection, velocity / self.facts().frequency, displacement))
+    }
+
+    /// The columns of the Jacobian that a contact's hidden state at a segment's start depends on, with its derivatives by
+    /// them.
+    fn bends_by(&self, segment: &Segment, start: &[f64]) -> Vec<(usize, f64)> {
+        let Some((contact, bent)) = self.contact.zip(self.bent(segment, start)) else { return Vec::new() };
+        let mut all = vec![(0, bent.by_deflection), (1, bent.by_quadrature / self.facts().frequency)];
+        if self.derivatives == Derivatives::All {
+            let starts = self.hypothesis.start_length();
+            let number = |own: Source| self.sources.iter().position(|source| *source == own);
+            let by_rest = number(Source::Nominal(Calibrated::RestAngle));
+            all.extend(by_rest.map(|number| (starts + number, -bent.by_deflection)));
+            let by_displacement = number(Source::Candidate(contact.candidate, 1));
+            all.extend(by_displacement.map(|number| (starts + number, bent.by_displacement)));
+        }
+        all
     }
 
     /// The prediction for a segment from a start state.
     pub(crate) fn predict(&mut self, segment: &Segment, start: &[f64]) -> Result<Prediction, DynamicsError> {
         self.run(segment, start)?;
         let starts = self.hypothesis.start_length();
-        let width = if self.derivatives { starts + self.sources.len() } else { 0 };
+        let width = match self.derivatives {
+            Derivatives::None => 0,
+            Derivatives::Starts => starts,
+            Derivatives::All => starts + self.sources.len(),
+        };
         let count = segment.times.len();
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, width);
@@ -222,6 +273,8 @@ impl<'a> Simulator<'a> {
             }
             Quantity::Acceleration => (&response.acceleration_sensitivity, &missing, &missing),
         };
+        let bends_by = self.bends_by(segment, start);
+        let bending = self.contact.and_then(|contact| contact.column);
         let total = response.columns;
         let start_time = segment.times.first().copied().unwrap_or_default();
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
@@ -230,7 +283,7 @@ impl<'a> Simulator<'a> {
             if let Some(slot) = residual.get_mut(row) {
                 *slot = value - observed.value;
             }
-            if !self.derivatives {
+            if self.derivatives == Derivatives::None {
                 continue;
             }
             let [d0, d1, d2] = observed.by_motion;
@@ -245,7 +298,8 @@ impl<'a> Simulator<'a> {
             for column in 0..starts {
                 set(&mut jacobian, row, column, through(column));
             }
-            for (number, (source, column)) in self.sources.iter().zip(&self.columns).enumerate() {
+            let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
+            for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
                 let value = match (column, *source) {
                     (Some(column), _) => through(*column),
                     (None, Source::Candidate(index, parameter)) => {
@@ -255,6 +309,13 @@ impl<'a> Simulator<'a> {
                     (None, Source::Nominal(_)) => 0.0,
                 };
                 set(&mut jacobian, row, starts + number, value);
+            }
+            if let Some(column) = bending {
+                let moved = through(column);
+                for &(column, by) in &bends_by {
+                    let known = entry(&jacobian, row, column);
+                    set(&mut jacobian, row, column, known + by * moved);
+                }
             }
         }
         // At rest nothing says from which side it came.
@@ -283,7 +344,7 @@ impl<'a> Simulator<'a> {
                 }
             }
         }
-        if let Some(own) = self.by_width().filter(|_| self.derivatives) {
+        if let Some(own) = self.by_width().filter(|_| self.derivatives == Derivatives::All) {
             let column = self.hypothesis.start_length() + own;
             for (row, reading) in readings.iter().enumerate() {
                 set(jacobian, row, column, reading.by_width);
@@ -300,7 +361,7 @@ impl<'a> Simulator<'a> {
 
     /// From derivatives by the laws' parameters to those by the fit's.
     fn combine(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
-        if !self.derivatives {
+        if self.derivatives != Derivatives::All {
             return;
         }
         let parts = self.hypothesis.parts(self.facts(), &self.point);
@@ -347,6 +408,22 @@ impl Facts {
     }
 }
 
+/// The contact that bends among a hypothesis's effects.
+fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
+    let effects = hypothesis.candidates.iter().map(|candidate| match candidate {
+        Candidate::System(effect) => Some(*effect),
+        Candidate::Chain(_) => None,
+    });
+    let mut at = 0;
+    for (candidate, effect) in effects.enumerate() {
+        if effect == Some(SystemEffect::Hysteresis) {
+            return Some(Contact { candidate, hidden: at, column: None });
+        }
+        at += effect.map_or(0, |effect| effect.description().hidden_states);
+    }
+    None
+}
+
 /// Numbers of the hidden states that each segment fits, among all of the system's.
 fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
     let mut at = 0;
@@ -370,68 +447,6 @@ fn sensor_parameter(candidate: Option<&Candidate>, parameter: usize) -> Option<u
     }
 }
 
-/// The hidden state of Dahl's law in a steady swing, at a deflection and a velocity over the frequency.
-///
-/// From a reversal on, z = s − (s − z₀)·exp(−path/δ) with the direction s; in a steady swing of amplitude A it runs
-/// between ±tanh(A/δ).
-pub(crate) fn bent(deflection: f64, quadrature: f64, displacement: f64) -> f64 {
-    let amplitude = deflection.hypot(quadrature);
-    let direction = if quadrature < 0.0 { -1.0 } else { 1.0 };
-    let path = (amplitude + direction * deflection).max(0.0);
-    let reversal = (amplitude / displacement).tanh();
-    direction * (1.0 - (1.0 + reversal) * (-path / displacement).exp())
-}
-
 #[cfg(test)]
-mod tests {
-    use super::Simulator;
-    use crate::candidate::{Candidate, Distortion};
-    use crate::hypothesis::{Calibrated, Hypothesis};
-    use crate::observations::Observations;
-    use crate::segments::{Data, cut};
-    use dynamics::Nominal;
-    use record::{Clock, ClockChoice, Quantity, Record};
-
-    const STEP: f64 = 0.01;
-
-    /// A swing of 0.3 rad that decays, 10 s at 100 samples a second, rounded to hundredths.
-    fn data() -> (Data, Nominal) {
-        let times: Vec<f64> = (0..1000).map(|i| f64::from(i) / 100.0).collect();
-        let values =
-            times.iter().map(|t| STEP * (30.0 * (-0.1 * t).exp() * (6.0 * t).cos()).round()).collect();
-        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
-        let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
-        let nominal = Nominal::new(1.0, 0.2, 36.0, 0.0).unwrap();
-        let kept = [vec![true; observations.len()]];
-        (cut(std::slice::from_ref(&observations), &kept, &nominal).unwrap(), nominal)
-    }
-
-    /// But for the first reading, whose turn of before the derivatives take for fixed.
-    #[test]
-    fn a_held_readings_derivatives_are_those_of_its_values() {
-        let (data, nominal) = data();
-        let candidates = vec![Candidate::Chain(Distortion::ReadingHysteresis)];
-        let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
-        let hypothesis = Hypothesis { nominal, calibrated, candidates };
-        let globals = [0.2, 36.0, 0.01, 0.4 * STEP];
-        let mut simulator = Simulator::new(&data, &hypothesis, &globals, true).unwrap();
-        for segment in &data.segments {
-            let at = simulator.predict(segment, &segment.guess).unwrap();
-            for column in 0..6 {
-                let mut shifted = |by: f64| {
-                    let (mut start, mut globals) = (segment.guess, globals);
-                    let parameter = start.iter_mut().chain(&mut globals).nth(column).unwrap();
-                    *parameter += by;
-                    simulator.set(&globals).unwrap();
-                    simulator.predict(segment, &start).unwrap().residual
-                };
-                let h = 1e-7;
-                let difference = (shifted(-h) - shifted(h)) / (2.0 * h);
-                let own = at.jacobian.column(column);
-                for (row, (own, difference)) in own.iter().zip(difference.iter()).enumerate().skip(10) {
-                    assert!((own - difference).abs() < 1e-3, "{row} {column}: {own} {difference}");
-                }
-            }
-        }
-    }
-}
+#[path = "response_tests.rs"]
+mod tests;

@@ -164,25 +164,24 @@ fn around(
 /// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
 /// member too: begun here they often fit better than on their own.
 fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
-    let mut proposals = Vec::new();
-    let mut dropped = Vec::new();
-    for &member in base.hypothesis.candidates.iter().filter(|member| member.counts()) {
+    let counted: Vec<Candidate> = base.hypothesis.candidates.iter().copied().filter(|c| c.counts()).collect();
+    let of = |&member: &Candidate| {
         let reduced = proposal(data, base, &[member], &[]);
-        let Ok(bare) = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH) else {
-            continue;
-        };
-        let Ok(dictionary) = Dictionary::at(data, &bare, candidates) else { continue };
+        let bare = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Effort::SEARCH).ok()?;
+        let dictionary = Dictionary::at(data, &bare, candidates).ok()?;
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
         let is_confused = |gain: &Gain| dictionary.candidate(gain).is_some_and(|own| confused.contains(&own));
         let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
         let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
-        for (_, gain) in chosen {
-            proposals.push(proposal(data, &bare, &[], &additions(&data.facts, &dictionary, gain)));
-        }
-        dropped.push(bare);
-    }
-    (proposals, dropped)
+        let proposals: Vec<Proposal> = chosen
+            .map(|(_, gain)| proposal(data, &bare, &[], &additions(&data.facts, &dictionary, gain)))
+            .collect();
+        Some((proposals, bare))
+    };
+    let swaps: Vec<Option<(Vec<Proposal>, Fit)>> = counted.par_iter().map(of).collect();
+    let (proposals, dropped): (Vec<Vec<Proposal>>, Vec<Fit>) = swaps.into_iter().flatten().unzip();
+    (proposals.into_iter().flatten().collect(), dropped)
 }
 
 /// Fits proposals of sets that were not tried yet, and of those that begin closer to the data than they are known to end.

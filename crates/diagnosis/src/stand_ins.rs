@@ -12,6 +12,7 @@ use crate::segments::Data;
 use crate::unnamed::{beside, evidence};
 use crate::verdict::{EVEN, Weighed, beyond};
 use dynamics::DynamicsError;
+use rayon::prelude::*;
 
 /// Log evidence by which a part of a set may fall behind the whole on the samples of the search and still be asked on all
 /// samples.
@@ -75,24 +76,23 @@ impl Question<'_> {
         let time = self.found.autocorrelation_time();
         let alone = self.score(whole, time);
         let counted: Vec<Candidate> = set.iter().copied().filter(|own| own.counts()).collect();
-        let mut near = Vec::new();
-        for part in 0..(1_usize << counted.len()) - 1 {
+        let of = |part: usize| {
             let is_out = |own: &Candidate| {
                 counted.iter().position(|other| other == own).is_some_and(|place| part & (1 << place) == 0)
             };
             let own: Vec<Candidate> = set.iter().copied().filter(|own| !is_out(own)).collect();
             let known = self.found.find(&own).cloned();
             let keep = |index: usize| set.get(index).is_some_and(|own| !is_out(own));
-            let Some(fit) = known.or_else(|| without(self.coarse, whole, keep)) else { continue };
+            let Some(fit) = known.or_else(|| without(self.coarse, whole, keep)) else { return Ok(None) };
             let behind = alone - self.score(&fit, time) + EVEN;
             let bound = PROMISED * behind - SLACK;
-            let Some(with) = beside(self.coarse, &fit, time, bound)? else { continue };
+            let Some(with) = beside(self.coarse, &fit, time, bound)? else { return Ok(None) };
             let behind = behind - evidence(self.coarse, &with, &fit, time);
-            if behind < SLACK {
-                near.push((behind, own));
-            }
-        }
-        Ok(near)
+            Ok((behind < SLACK).then_some((behind, own)))
+        };
+        let parts = (0..(1_usize << counted.len()) - 1).into_par_iter();
+        let near: Vec<Result<Option<_>, _>> = parts.map(of).collect();
+        near.into_iter().filter_map(Result::transpose).collect()
     }
 
     /// How well a set is supported at an autocorrelation time.

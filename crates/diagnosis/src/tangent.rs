@@ -6,9 +6,10 @@
 //! the ratio of the accelerations after and before. One set of steps serves any number of torques; that is what
 //! makes it possible to ask for a hundred candidates at once. Full fits use exact sensitivities instead.
 
+use crate::contact::bent;
 use crate::facts::Facts;
 use crate::fit::Fit;
-use crate::response::{Motion, Simulator};
+use crate::response::{Derivatives, Motion, Simulator};
 use crate::segments::Data;
 use dynamics::scalar::Dual;
 use dynamics::{
@@ -76,7 +77,7 @@ pub(crate) struct Path {
 impl Path {
     /// The paths of all segments of a fit.
     pub(crate) fn of(data: &Data, fit: &Fit) -> Result<Vec<Self>, DynamicsError> {
-        let mut simulator = Simulator::new(data, &fit.hypothesis, &fit.point.globals, false)?;
+        let mut simulator = Simulator::new(data, &fit.hypothesis, &fit.point.globals, Derivatives::None)?;
         let system = fit.hypothesis.system(&data.facts, &fit.point.globals)?;
         let measurement = fit.hypothesis.measurement(&data.facts, &fit.point.globals);
         let mut paths = Vec::with_capacity(data.segments.len());
@@ -288,7 +289,7 @@ fn slopes(system: &System, path: &Path, index: usize, facts: &Facts) -> (f64, f6
         }
         if let (SystemEffect::Hysteresis, &[torque, displacement, ..]) = (effect, &values) {
             let deflection = plain.position - c.rest_angle;
-            let z = crate::response::bent(deflection, plain.velocity / facts.frequency, displacement);
+            let z = bent(deflection, plain.velocity / facts.frequency, displacement).z;
             stiffness += torque * (1.0 - z * plain.direction).max(0.0) / displacement;
             continue;
         }

@@ -71,9 +71,8 @@ pub(crate) fn unnamed(work: &Work<'_>, held: &Held<'_>) -> Result<Option<Unnamed
     let segments = work.segments.data;
     let Ok(fitted) = shortened(segments, data, &followed) else { return Ok(None) };
     let both = Both { longer: data, followed: &followed, segments, fitted: &fitted };
-    let predicted =
-        both.interleaved(Moving::All).and_then(|after| Ok((after, both.last_third(Moving::All)?)));
-    let Ok((after, last_third)) = predicted else { return Ok(None) };
+    let predicted = rayon::join(|| both.interleaved(Moving::All), || both.last_third(Moving::All));
+    let (Ok(after), Ok(last_third)) = predicted else { return Ok(None) };
     if after.mean_square() >= held.after.mean_square() {
         return Ok(None);
     }

@@ -16,6 +16,7 @@ use crate::refine::without;
 use crate::segments::Data;
 use crate::statistics::normal_above;
 use crate::verdict::{Weighed, ratio, significant};
+use rayon::prelude::*;
 
 /// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's
 /// name and adds to the false alarms.
@@ -156,24 +157,28 @@ impl<'a> Work<'a> {
         let recalibrated = recalibrated_both.interleaved(Moving::All)?;
         let third = recalibrated_both.last_third(Moving::All)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
-        let mut tried: Vec<Held<'a>> = Vec::new();
-        for w in weighed.iter().take(HELD_OUT) {
-            if w.fit.hypothesis.candidates.is_empty() {
-                break;
-            }
+        let of = |w: &Weighed<'a>| {
             // A set whose motion cannot be followed from parts of the data predicts nothing.
-            let Ok(fitted) = shortened(self.segments.data, self.data, w.fit) else { continue };
+            let fitted = shortened(self.segments.data, self.data, w.fit).ok()?;
             let both =
                 Both { longer: self.data, followed: w.fit, segments: self.segments.data, fitted: &fitted };
-            let Ok(after) = both.interleaved(Moving::All) else { continue };
-            let Ok(later) = both.last_third(Moving::All) else { continue };
+            let (after, later) =
+                rayon::join(|| both.interleaved(Moving::All), || both.last_third(Moving::All));
+            let (after, later) = (after.ok()?, later.ok()?);
             let further = w.fit.globals() - self.base.calibrated.globals();
-            if predicts(&after, &recalibrated, further, self.data.samples()) {
+            predicts(&after, &recalibrated, further, self.data.samples()).then(|| {
                 let last_third = [third, later];
                 let (nominal, recalibrated) = (nominal.clone(), recalibrated.clone());
-                tried.push(Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted });
-            }
-        }
+                Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted }
+            })
+        };
+        let asked: Vec<&Weighed<'a>> = weighed
+            .iter()
+            .take(HELD_OUT)
+            .take_while(|weighed| !weighed.fit.hypothesis.candidates.is_empty())
+            .collect();
+        let tried: Vec<Option<Held<'a>>> = asked.into_par_iter().map(of).collect();
+        let tried: Vec<Held<'a>> = tried.into_iter().flatten().collect();
         let least = tried.iter().map(|held| held.after.mean_square()).fold(f64::INFINITY, f64::min);
         if let Some(held) = tried.into_iter().find(|held| held.after.mean_square() <= CLEARLY_WORSE * least) {
             return Ok(held);
@@ -190,6 +195,7 @@ impl<'a> Work<'a> {
     pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
         let count = repaired.hypothesis.candidates.len();
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
+            .into_par_iter()
             .map(|set| {
                 let members: Vec<Candidate> = repaired
                     .hypothesis
@@ -294,17 +300,18 @@ impl<'a> Work<'a> {
 
     pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {
         let candidates = &repaired.hypothesis.candidates;
-        candidates
-            .iter()
+        let all: Vec<Option<Detectability>> = candidates
+            .par_iter()
             .enumerate()
-            .filter_map(|(left_out, candidate)| {
+            .map(|(left_out, candidate)| {
                 let rest: Vec<Candidate> = candidates.iter().copied().filter(|c| c != candidate).collect();
                 let known = self.pool.find(&rest).cloned();
                 let reduced = known.or_else(|| without(self.data, repaired, |index| index != left_out))?;
                 let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
                 Some(Detectability { effect: candidate.id(), d })
             })
-            .collect()
+            .collect();
+        all.into_iter().flatten().collect()
     }
 }
 
