@@ -32,7 +32,7 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
             ),
         });
     }
-    findings.extend(dropouts(stamps));
+    findings.extend(dropouts(stamps, observations.input.is_some()));
     findings.extend(errors_of_stamps(observations, kept));
     let outliers = kept.iter().filter(|kept| !**kept).count();
     if outliers > 0 {
@@ -75,8 +75,10 @@ pub(crate) fn without_motion(kept: &[Vec<bool>], in_segments: usize) -> Option<F
     })
 }
 
-/// Whether the stamps tell that samples are missing.
-fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
+const UNDRIVEN: &str = "; the input is missing there too, and what it did meanwhile stays unexplained";
+
+/// Whether the stamps tell that samples are missing, and those of an input with them.
+fn dropouts(stamps: &StampStatistics, driven: bool) -> Option<Finding> {
     let (gaps, lost) = (counted(stamps.gaps, "gap"), counted(stamps.lost, "sample"));
     let text = match (stamps.gaps, stamps.lost) {
         (0, 0) => return None,
@@ -84,6 +86,7 @@ fn dropouts(stamps: &StampStatistics) -> Option<Finding> {
         (_, 0) => format!("{gaps} of more than 1.5 sampling intervals in the stamps"),
         (_, _) => format!("{lost} missing in {gaps} of the stamps, by whole sampling intervals"),
     };
+    let text = if driven { text + UNDRIVEN } else { text };
     Some(Finding { effect: Some("dropouts"), text })
 }
 
@@ -318,6 +321,24 @@ mod tests {
         let found = named(1, |time, error| (!lost(time)).then_some(time + 1.0 + 1e-4 * error));
         assert_eq!(found, ["dropouts", "timestamp_jitter"]);
         assert_eq!(named(1, |time, _| (!lost(time)).then_some(time)), ["dropouts"]);
+    }
+
+    #[test]
+    fn where_samples_are_missing_the_input_is_too() {
+        let times = (0..600).filter(|index| index % 50 > 4).map(|index| f64::from(index) / 100.0);
+        let times: Vec<f64> = times.collect();
+        let values: Vec<f64> = times.iter().map(|time| (5.0 * time).sin()).collect();
+        let said = |input: Option<Vec<f64>>| {
+            let record =
+                Record::new(times.clone(), values.clone(), input, Quantity::Position, "rad").unwrap();
+            let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+            let nominal = Nominal::new(1.0, 0.2, 25.0, 0.0).unwrap();
+            let kept = crate::outliers::kept(&observations);
+            let all = findings(&observations, &kept, &nominal);
+            let own = all.into_iter().find(|finding| finding.effect == Some("dropouts"));
+            own.unwrap().text.ends_with(super::UNDRIVEN)
+        };
+        assert!(said(Some(values.clone())) && !said(None));
     }
 
     /// A rate that changes by 2·10⁻⁵ a second bends 25 s of stamps by 0.47 ms, root mean square: twice the noise.

@@ -135,5 +135,11 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
 /// The name of an id in words, inside a sentence.
 fn title(result: &DiagnosisResult, id: &str) -> String {
     let known = result.effects.iter().find(|row| row.id == id);
-    known.map_or_else(|| id.replace('_', " "), |row| in_a_sentence(&row.title))
+    let title = known.map_or_else(|| capitalized(&id.replace('_', " ")), |row| row.title.clone());
+    in_a_sentence(&title)
+}
+
+fn capitalized(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }

@@ -88,6 +88,17 @@ fn what_is_absent_is_said_and_breaks_nothing() {
     assert!(!html.contains("NaN"));
 }
 
+/// Rivals without a row of their own keep the capital of a person's name.
+#[test]
+fn names_of_persons_keep_their_capital() {
+    let mut result = small();
+    result["rivals"] = json!([{ "effect": "gravity", "rival": "coulomb_friction", "distance": 3.0 },
+                              { "effect": "gravity", "rival": "end_stop", "distance": 4.0 }]);
+    let html = page(&result, "");
+    assert!(html.contains("gravity and Coulomb friction: 3.0 noise units"), "{html}");
+    assert!(html.contains("gravity and end stop: 4.0 noise units"));
+}
+
 #[test]
 fn the_worst_stretch_is_the_one_farthest_off() {
     let rows: Vec<SeriesRow> = (0..300)
