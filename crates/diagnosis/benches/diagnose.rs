@@ -6,11 +6,12 @@
 
 use diagnosis::{Diagnosis, Observations, Settings, diagnose};
 use divan::{Bencher, black_box};
-use dynamics::chain::{Chain, Observed, SampledMotion};
-use dynamics::reference::{Tolerance, simulate};
-use dynamics::{Active, Coordinate, Nominal, Start, System};
-use record::{Clock, ClockChoice, Quantity, Record};
-use seed::Seed;
+use dynamics::chain::{Chain, Observed};
+use dynamics::{Active, Nominal, System};
+use record::{Clock, ClockChoice};
+
+#[path = "../src/fixtures.rs"]
+mod fixtures;
 
 /// What is missing in the simulator, and the step of the encoder in rad, 0 for none.
 type Case = (&'static str, &'static [(&'static str, &'static [f64])], f64);
@@ -33,19 +34,9 @@ fn nominal() -> Nominal {
 fn observed((_, effects, step): &Case) -> Observations {
     let active = |(id, values): &(&str, &[f64])| Active::new(id, values).unwrap();
     let system = System::new(nominal(), effects.iter().map(active).collect()).unwrap();
-    let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
-    let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
-    let sampled = SampledMotion {
-        times_s: &times,
-        position: &motion.position,
-        velocity: &motion.velocity,
-        acceleration: &motion.acceleration,
-    };
     let encoder = (*step > 0.0).then(|| Active::new("sensor_quantization", &[*step]).unwrap());
     let chain = Chain::new(Observed::Position, 3e-4, encoder.into_iter().collect()).unwrap();
-    let seed = Seed::new(0);
-    let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
-    let record = Record::new(samples.stamps_s, samples.values, None, Quantity::Position, "rad").unwrap();
+    let record = fixtures::record(&system, 0.7, 6500, &chain, 0);
     Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap())
 }
 

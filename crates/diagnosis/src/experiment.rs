@@ -147,15 +147,14 @@ pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<
         farther && (plan.tilt == 0.0 || has(model) != has(rival))
     });
     let usable: Vec<&Plan> = usable.collect();
-    let considered: Vec<Option<(String, f64)>> = usable
+    let considered: Vec<(String, f64)> = usable
         .into_par_iter()
-        .map(|plan| {
+        .filter_map(|plan| {
             // A model without gravity sees nothing of the turn; let the one that has it make the data.
             let (from, to) = if plan.tilt != 0.0 && has(rival) { (rival, model) } else { (model, rival) };
             Some((plan.text.to_owned(), distance(data, from, to, plan, noise)?))
         })
         .collect();
-    let considered: Vec<(String, f64)> = considered.into_iter().flatten().collect();
     let (text, distance) = considered.iter().max_by(|a, b| a.1.total_cmp(&b.1)).cloned()?;
     let only = |own: &Fit, other: &Fit| -> Option<&'static str> {
         let mut ids = own.hypothesis.candidates.iter().filter(|c| !other.hypothesis.candidates.contains(c));

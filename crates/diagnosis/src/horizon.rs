@@ -221,10 +221,11 @@ impl Horizon {
         while let Some(longer) = horizon.doubled(segments) {
             let most = JUDGED * JUDGED * first;
             // What ends there as something else, or as nothing, does not follow.
-            let followed: Vec<Option<Fit>> =
-                sets.par_iter().map(|set| lengthened(&longer.data, &horizon.data, set, most)).collect();
-            let kept: Vec<Fit> =
-                followed.into_iter().flatten().filter(|fit| !vanished(&longer.data, fit)).collect();
+            let kept: Vec<Fit> = sets
+                .par_iter()
+                .filter_map(|set| lengthened(&longer.data, &horizon.data, set, most))
+                .filter(|fit| !vanished(&longer.data, fit))
+                .collect();
             let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
             if smallest > most {
                 break;

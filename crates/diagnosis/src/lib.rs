@@ -34,6 +34,8 @@ mod error;
 mod experiment;
 mod facts;
 mod fit;
+#[cfg(test)]
+mod fixtures;
 mod gap;
 mod held_out;
 mod horizon;

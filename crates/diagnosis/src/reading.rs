@@ -74,12 +74,11 @@ pub(crate) fn readings(
 #[cfg(test)]
 mod tests {
     use super::readings;
+    use crate::fixtures::record;
     use crate::{Diagnosis, Observations, Settings, Status, diagnose};
-    use dynamics::chain::{Chain, Observed, SampledMotion};
-    use dynamics::reference::{Tolerance, simulate};
-    use dynamics::{Active, Coordinate, Nominal, Start, System};
-    use record::{Clock, ClockChoice, Quantity, Record};
-    use seed::Seed;
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use record::{Clock, ClockChoice};
 
     const WIDTH: f64 = 0.02;
 
@@ -90,19 +89,9 @@ mod tests {
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
         let drag = Active::new("quadratic_drag", &[0.02]).unwrap();
         let system = System::new(nominal, vec![drag]).unwrap();
-        let times: Vec<f64> = (0..3900).map(|i| f64::from(i) / 260.0).collect();
-        let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
-        let sampled = SampledMotion {
-            times_s: &times,
-            position: &motion.position,
-            velocity: &motion.velocity,
-            acceleration: &motion.acceleration,
-        };
         let encoder = Active::new("sensor_quantization", &[step, steps * step]).unwrap();
         let chain = Chain::new(Observed::Position, 0.1 * step, vec![encoder]).unwrap();
-        let seed = Seed::new(11);
-        let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
-        let record = Record::new(samples.stamps_s, samples.values, None, Quantity::Position, "rad").unwrap();
+        let record = record(&system, 0.7, 3900, &chain, 11);
         let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
         diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
     }

@@ -46,8 +46,6 @@ pub(crate) struct Simulator<'a> {
     contact: Option<Contact>,
     derivatives: Derivatives,
     times: Vec<f64>,
-    /// Integration steps of all runs so far.
-    pub(crate) steps: usize,
 }
 
 /// A contact that bends before it slides: its number among the candidates, that of its hidden state, and where the
@@ -150,7 +148,6 @@ impl<'a> Simulator<'a> {
             contact,
             derivatives,
             times: Vec::new(),
-            steps: 0,
         })
     }
 
@@ -188,9 +185,7 @@ impl<'a> Simulator<'a> {
         self.times.extend(segment.times.iter().map(|time| self.measurement.true_time(*time)));
         let state = self.state(segment, start);
         let input = self.data.inputs.get(segment.record).and_then(Option::as_ref);
-        let outcome = self.model.run_into(state, input, &self.times, &mut self.response);
-        self.steps += self.response.steps;
-        outcome
+        self.model.run_into(state, input, &self.times, &mut self.response)
     }
 
     /// The full state at a segment's start. Hidden states that are not fitted are relaxed where the record begins;
@@ -408,31 +403,28 @@ impl Facts {
     }
 }
 
+/// Effects of a hypothesis's system, with their numbers among its candidates and those of their first hidden states.
+fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, SystemEffect, usize)> {
+    let mut hidden = 0;
+    hypothesis.candidates.iter().enumerate().filter_map(move |(number, candidate)| {
+        let Candidate::System(effect) = *candidate else { return None };
+        let from = hidden;
+        hidden += effect.description().hidden_states;
+        Some((number, effect, from))
+    })
+}
+
 /// The contact that bends among a hypothesis's effects.
 fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
-    let effects = hypothesis.candidates.iter().map(|candidate| match candidate {
-        Candidate::System(effect) => Some(*effect),
-        Candidate::Chain(_) => None,
-    });
-    let mut at = 0;
-    for (candidate, effect) in effects.enumerate() {
-        if effect == Some(SystemEffect::Hysteresis) {
-            return Some(Contact { candidate, hidden: at, column: None });
-        }
-        at += effect.map_or(0, |effect| effect.description().hidden_states);
-    }
-    None
+    let mut effects = system_effects(hypothesis);
+    let own = effects.find(|(_, effect, _)| *effect == SystemEffect::Hysteresis);
+    own.map(|(candidate, _, hidden)| Contact { candidate, hidden, column: None })
 }
 
 /// Numbers of the hidden states that each segment fits, among all of the system's.
 fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
-    let mut at = 0;
-    hypothesis.candidates.iter().flat_map(move |candidate| {
-        let Candidate::System(effect) = candidate else { return 0..0 };
-        let from = at;
-        at += effect.description().hidden_states;
-        from..from + candidate.free_hidden()
-    })
+    system_effects(hypothesis)
+        .flat_map(|(_, effect, from)| from..from + Candidate::System(effect).free_hidden())
 }
 
 /// Place of a sensor effect's parameter in [`crate::hypothesis::Observed::by_parameter`].

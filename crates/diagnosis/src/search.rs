@@ -179,8 +179,7 @@ fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -
             .collect();
         Some((proposals, bare))
     };
-    let swaps: Vec<Option<(Vec<Proposal>, Fit)>> = counted.par_iter().map(of).collect();
-    let (proposals, dropped): (Vec<Vec<Proposal>>, Vec<Fit>) = swaps.into_iter().flatten().unzip();
+    let (proposals, dropped): (Vec<Vec<Proposal>>, Vec<Fit>) = counted.par_iter().filter_map(of).unzip();
     (proposals.into_iter().flatten().collect(), dropped)
 }
 

@@ -1,7 +1,7 @@
 //! Trials on simulated and on measured records.
 
 use crate::{Diagnosis, Observations, Settings, Status, diagnose};
-use dynamics::chain::{Chain, Observed, SampledMotion};
+use dynamics::chain::{Chain, Observed};
 use dynamics::reference::{Tolerance, simulate};
 use dynamics::{Active, Coordinate, Nominal, Start, System};
 use rand::RngExt;
@@ -250,14 +250,9 @@ const CHAINS: &[(&str, &[f64])] = &[
 fn through(system: &System, release: f64, chain: &Chain, seed: u64) -> Observations {
     let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
     let motion = simulate(system, Start::release(release), None, &times, &Tolerance::default()).unwrap();
-    let sampled = SampledMotion {
-        times_s: &times,
-        position: &motion.position,
-        velocity: &motion.velocity,
-        acceleration: &motion.acceleration,
-    };
     let seed = Seed::new(seed);
-    let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
+    let samples =
+        chain.observe(&motion.sampled(&times), Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
     let round = |value: f64| (value * 1e6).round() / 1e6;
     let stamps = samples.stamps_s.iter().map(|stamp| round(*stamp)).collect();
     let values = samples.values.iter().map(|value| round(*value)).collect();

@@ -177,8 +177,7 @@ impl<'a> Work<'a> {
             .take(HELD_OUT)
             .take_while(|weighed| !weighed.fit.hypothesis.candidates.is_empty())
             .collect();
-        let tried: Vec<Option<Held<'a>>> = asked.into_par_iter().map(of).collect();
-        let tried: Vec<Held<'a>> = tried.into_iter().flatten().collect();
+        let tried: Vec<Held<'a>> = asked.into_par_iter().filter_map(of).collect();
         let least = tried.iter().map(|held| held.after.mean_square()).fold(f64::INFINITY, f64::min);
         if let Some(held) = tried.into_iter().find(|held| held.after.mean_square() <= CLEARLY_WORSE * least) {
             return Ok(held);
@@ -300,29 +299,27 @@ impl<'a> Work<'a> {
 
     pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {
         let candidates = &repaired.hypothesis.candidates;
-        let all: Vec<Option<Detectability>> = candidates
+        candidates
             .par_iter()
             .enumerate()
-            .map(|(left_out, candidate)| {
+            .filter_map(|(left_out, candidate)| {
                 let rest: Vec<Candidate> = candidates.iter().copied().filter(|c| c != candidate).collect();
                 let known = self.pool.find(&rest).cloned();
                 let reduced = known.or_else(|| without(self.data, repaired, |index| index != left_out))?;
                 let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
                 Some(Detectability { effect: candidate.id(), d })
             })
-            .collect();
-        all.into_iter().flatten().collect()
+            .collect()
     }
 }
 
 #[cfg(test)]
 mod tests {
+    use crate::fixtures::record;
     use crate::{Diagnosis, Observations, Settings, diagnose};
-    use dynamics::chain::{Chain, Observed, SampledMotion};
-    use dynamics::reference::{Tolerance, simulate};
-    use dynamics::{Active, Coordinate, Nominal, Start, System};
-    use record::{Clock, ClockChoice, Quantity, Record};
-    use seed::Seed;
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use record::{Clock, ClockChoice};
 
     /// What is said of 25 s of a swing under a constant torque, 260 samples a second in bursts whose receive times
     /// scatter by 2.5 ms: the swing shows more finely than these whether the rate is right.
@@ -330,19 +327,9 @@ mod tests {
         let nominal = Nominal::new(1.0, 0.19, 55.0, 0.0).unwrap();
         let preload = Active::new("constant_torque", &[torque]).unwrap();
         let system = System::new(nominal, vec![preload]).unwrap();
-        let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
-        let motion = simulate(&system, Start::release(0.55), None, &times, &Tolerance::default()).unwrap();
-        let sampled = SampledMotion {
-            times_s: &times,
-            position: &motion.position,
-            velocity: &motion.velocity,
-            acceleration: &motion.acceleration,
-        };
         let bursts = Active::new("timestamp_batching", &[0.042, 0.0025]).unwrap();
         let chain = Chain::new(Observed::Position, 2e-4, vec![bursts]).unwrap();
-        let seed = Seed::new(seed);
-        let samples = chain.observe(&sampled, Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
-        let record = Record::new(samples.stamps_s, samples.values, None, Quantity::Position, "rad").unwrap();
+        let record = record(&system, 0.55, 6500, &chain, seed);
         let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
         diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
     }

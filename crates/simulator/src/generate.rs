@@ -1,7 +1,7 @@
 //! From a truth to a record.
 
 use crate::generation_error::GenerationError;
-use dynamics::chain::{Observed, SampledMotion};
+use dynamics::chain::Observed;
 use dynamics::reference::{Tolerance, simulate};
 use dynamics::{Coordinate, Hold, Input};
 use record::{Quantity, Record};
@@ -46,15 +46,10 @@ pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
         })
         .transpose()?;
     let motion = simulate(&truth.system, truth.start, input.as_ref(), &times, &Tolerance::default())?;
-    let sampled = SampledMotion {
-        times_s: &times,
-        position: &motion.position,
-        velocity: &motion.velocity,
-        acceleration: &motion.acceleration,
-    };
     let coordinate = truth.system.nominal().coordinate();
     let seed = branch(&truth.draws).child("measuring chain");
-    let samples = truth.chain.observe(&sampled, coordinate, |id| seed.child(id).generator())?;
+    let samples =
+        truth.chain.observe(&motion.sampled(&times), coordinate, |id| seed.child(id).generator())?;
     let stamps = samples
         .stamps_s
         .iter()

@@ -1,5 +1,7 @@
 //! What the reference integrator gives.
 
+use crate::chain::SampledMotion;
+
 /// What happened at an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Happening {
@@ -69,4 +71,17 @@ pub struct Motion {
     pub accounts: Vec<Account>,
     /// Steps taken.
     pub steps: usize,
+}
+
+impl Motion {
+    /// The motion as a measuring chain takes it, at the times in seconds that it was simulated for.
+    #[must_use]
+    pub fn sampled<'a>(&'a self, times_s: &'a [f64]) -> SampledMotion<'a, f64> {
+        SampledMotion {
+            times_s,
+            position: &self.position,
+            velocity: &self.velocity,
+            acceleration: &self.acceleration,
+        }
+    }
 }
