@@ -1,0 +1,60 @@
+//! An oscillator read from the turning points of a free decay.
+
+use crate::{Basis, Estimated, LinearOscillator, order};
+use envelope::{Envelope, RecommendedPipeline};
+use record::{Clock, Record};
+use std::f64::consts::PI;
+
+/// Frequency from the times of turning points, damping from their heights; `None` where a record has too few.
+///
+/// Turning points follow each other by half a period π/ω_d, so that ω_d is π over the slope of their times on their
+/// number; λ is the slope of the logarithms of their heights. Then ω₀² = ω_d² + λ² and 2ζω₀ = 2λ.
+pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscillator> {
+    let extraction = RecommendedPipeline::default().extract(record, clock).ok()?;
+    let envelope = &extraction.envelope;
+    let line = oracle::decay_rate(envelope).ok()?;
+    let half_period = half_period(envelope)?;
+    let damped = PI / half_period.value;
+    let decay = line.decay_rate.max(0.0);
+    let stiffness = Estimated {
+        value: damped * damped + decay * decay,
+        std_error: 2.0 * damped * damped * half_period.std_error / half_period.value,
+    };
+    let rest = (order(record.quantity()) == 0).then(|| Estimated {
+        value: extraction.offset,
+        // The offset is a median of means of three heights, each as uncertain as the line leaves them.
+        std_error: scatter(envelope, &line) / (envelope.len() as f64).sqrt(),
+    });
+    Some(LinearOscillator {
+        stiffness,
+        damping: Estimated { value: 2.0 * decay, std_error: 2.0 * line.std_error },
+        rest,
+        input_gain: None,
+        basis: Basis::TurningPoints(envelope.len()),
+    })
+}
+
+/// Slope of the turning points' times on their number, in seconds, by least squares.
+fn half_period(envelope: &Envelope) -> Option<Estimated> {
+    let times = envelope.times_s();
+    let count = times.len() as f64;
+    let middle = (count - 1.0) / 2.0;
+    let mean = times.iter().sum::<f64>() / count;
+    let centered = || times.iter().enumerate().map(|(number, time)| (number as f64 - middle, time - mean));
+    let squares: f64 = centered().map(|(number, _)| number * number).sum();
+    let slope = centered().map(|(number, time)| number * time).sum::<f64>() / squares;
+    let rest: f64 = centered().map(|(number, time)| (time - slope * number).powi(2)).sum();
+    let std_error = (rest / (count - 2.0).max(1.0) / squares).sqrt();
+    (slope > 0.0).then_some(Estimated { value: slope, std_error })
+}
+
+/// Root mean square distance of the heights from the fitted decay, in the record's unit.
+fn scatter(envelope: &Envelope, line: &oracle::DecayFit) -> f64 {
+    let squares: f64 = envelope
+        .times_s()
+        .iter()
+        .zip(envelope.log_amplitudes())
+        .map(|(&time, logarithm)| (logarithm.exp() - line.log_amplitude_at(time).exp()).powi(2))
+        .sum();
+    (squares / envelope.len() as f64).sqrt()
+}

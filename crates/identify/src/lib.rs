@@ -1,0 +1,205 @@
+//! The linear oscillator nearest to a record: a first guess of a nominal simulator where nobody has one.
+//!
+//! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is read from its turning points
+//! ([`decay`]): these know the damping best. A record with an input, or without turning points enough, is read by
+//! a regression in weak form ([`weak`]), which differentiates smooth windows in place of noisy samples.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod decay;
+mod weak;
+
+use record::{Clock, Quantity, Record};
+use thiserror::Error;
+
+/// A number with its standard error, in the same unit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimated {
+    /// The number.
+    pub value: f64,
+    /// Its standard error.
+    pub std_error: f64,
+}
+
+/// A linear oscillator per unit of inertia.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LinearOscillator {
+    /// Stiffness over inertia, ω₀², in 1/s²; 0 where the record shows no restoring torque.
+    pub stiffness: Estimated,
+    /// Damping over inertia, 2ζω₀, in 1/s; 0 or above.
+    pub damping: Estimated,
+    /// Rest position, in the record's unit; `None` where the sensor observes no position or nothing restores it.
+    pub rest: Option<Estimated>,
+    /// Acceleration per unit of the input; `None` for a record without one.
+    pub input_gain: Option<Estimated>,
+    /// What the numbers were read from.
+    pub basis: Basis,
+}
+
+/// What an oscillator was read from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Basis {
+    /// So many turning points of a free decay.
+    TurningPoints(usize),
+    /// A regression over so many smooth windows.
+    Windows(usize),
+}
+
+impl LinearOscillator {
+    /// Natural frequency ω₀/2π, in Hz; `None` without a restoring torque.
+    #[must_use]
+    pub fn natural_frequency_hz(&self) -> Option<Estimated> {
+        let omega = self.omega()?;
+        // dω = dk/(2ω).
+        let std_error = self.stiffness.std_error / (2.0 * omega);
+        Some(Estimated { value: omega, std_error }.times(1.0 / std::f64::consts::TAU))
+    }
+
+    /// Damping ratio ζ; `None` without a restoring torque.
+    #[must_use]
+    pub fn damping_ratio(&self) -> Option<Estimated> {
+        // The frequency is known far better than the damping, so that its error adds nothing.
+        Some(self.damping.times(0.5 / self.omega()?))
+    }
+
+    fn omega(&self) -> Option<f64> {
+        (self.stiffness.value > 0.0).then(|| self.stiffness.value.sqrt())
+    }
+}
+
+impl Estimated {
+    fn times(self, factor: f64) -> Self {
+        Self { value: self.value * factor, std_error: self.std_error * factor.abs() }
+    }
+}
+
+/// Why a record shows no oscillator.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum IdentifyError {
+    /// Nothing moves.
+    #[error("nothing moves in the record: all {samples} values of it are the same")]
+    NoMotion {
+        /// Samples there are.
+        samples: usize,
+    },
+    /// Too short for its own time scale.
+    #[error(
+        "the record is too short to show an oscillator: {windows} windows of {width_s:.3} s fit into it, at least \
+         {needed} are needed; give a longer record"
+    )]
+    TooShort {
+        /// Windows that fit.
+        windows: usize,
+        /// Fewest that determine the coefficients.
+        needed: usize,
+        /// Width of a window, in seconds.
+        width_s: f64,
+    },
+    /// The regression has no solution.
+    #[error(
+        "the record does not tell damping, stiffness and input apart: its motion is too simple; give a record with a \
+         free decay or a richer input"
+    )]
+    Undetermined,
+}
+
+/// Reads the linear oscillator nearest to a record under a clock. Linear in the number of samples.
+///
+/// # Errors
+/// [`IdentifyError`] where nothing moves, where the record is shorter than a few swings, or where its motion does not
+/// tell the coefficients apart.
+pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, IdentifyError> {
+    let values = record.values();
+    if values.windows(2).all(|pair| pair.first() == pair.last()) {
+        return Err(IdentifyError::NoMotion { samples: values.len() });
+    }
+    let free = if record.input().is_none() { decay::oscillator(record, clock) } else { None };
+    match free {
+        Some(oscillator) => Ok(oscillator),
+        None => weak::oscillator(record, clock),
+    }
+}
+
+/// How often the observed quantity was differentiated.
+fn order(quantity: Quantity) -> usize {
+    match quantity {
+        Quantity::Position => 0,
+        Quantity::Velocity => 1,
+        Quantity::Acceleration => 2,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Basis, IdentifyError, LinearOscillator, identify};
+    use rand_distr::{Distribution, Normal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    const RATE: f64 = 200.0;
+
+    /// A swing of damping ratio `zeta` at 2 Hz about 0.1, by exact steps under an input held between samples.
+    fn record(zeta: f64, noise: f64, input: Option<fn(f64) -> f64>, seed: u64) -> Record {
+        let omega = 2.0 * std::f64::consts::TAU;
+        let mut draws = Seed::new(seed).child("noise").generator();
+        let normal = Normal::new(0.0, noise).unwrap();
+        let (step, steps) = (1.0 / RATE, 20);
+        let (mut x, mut v) = if input.is_some() { (0.0, 0.0) } else { (0.5, 0.0) };
+        let (mut times, mut values, mut inputs) = (Vec::new(), Vec::new(), Vec::new());
+        for sample in 0..3000 {
+            let time = f64::from(sample) * step;
+            let torque = input.map_or(0.0, |input| input(time));
+            times.push(time);
+            values.push(0.1 + x + normal.sample(&mut draws));
+            inputs.push(torque);
+            let small = step / f64::from(steps);
+            for _ in 0..steps {
+                let rate = |x: f64, v: f64| 3.0 * torque - 2.0 * zeta * omega * v - omega * omega * x;
+                let (vm, am) =
+                    (v + 0.5 * small * rate(x, v), rate(x + 0.5 * small * v, v + 0.5 * small * rate(x, v)));
+                x += small * vm;
+                v += small * am;
+            }
+        }
+        let input = input.map(|_| inputs);
+        Record::new(times, values, input, Quantity::Position, "rad").unwrap()
+    }
+
+    fn found(record: &Record) -> LinearOscillator {
+        identify(record, &Clock::new(record, ClockChoice::Auto).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_free_decay_is_read_from_its_turning_points() {
+        let found = found(&record(0.02, 1e-4, None, 1));
+        assert!(matches!(found.basis, Basis::TurningPoints(_)));
+        let frequency = found.natural_frequency_hz().unwrap();
+        assert!((frequency.value - 2.0).abs() < 1e-3, "{frequency:?}");
+        let ratio = found.damping_ratio().unwrap();
+        assert!((ratio.value - 0.02).abs() < 3.0 * ratio.std_error + 2e-5, "{ratio:?}");
+        assert!((found.rest.unwrap().value - 0.1).abs() < 1e-3);
+        assert!(found.input_gain.is_none());
+    }
+
+    #[test]
+    fn a_driven_record_tells_its_gain_too() {
+        let sweep = |time: f64| (time * (3.0 + 0.8 * time)).sin();
+        for seed in 0..5 {
+            let found = found(&record(0.05, 1e-4, Some(sweep), seed));
+            assert!(matches!(found.basis, Basis::Windows(_)));
+            let (frequency, ratio) = (found.natural_frequency_hz().unwrap(), found.damping_ratio().unwrap());
+            assert!((frequency.value - 2.0).abs() < 0.01, "{frequency:?}");
+            assert!((ratio.value - 0.05).abs() < 4.0 * ratio.std_error + 1e-3, "{ratio:?}");
+            assert!((found.input_gain.unwrap().value - 3.0).abs() < 0.1, "{:?}", found.input_gain);
+        }
+    }
+
+    #[test]
+    fn what_does_not_move_is_refused() {
+        let record =
+            Record::new((0..50).map(f64::from).collect(), vec![0.3; 50], None, Quantity::Position, "rad")
+                .unwrap();
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        assert_eq!(identify(&record, &clock), Err(IdentifyError::NoMotion { samples: 50 }));
+    }
+}

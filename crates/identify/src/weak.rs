@@ -1,0 +1,187 @@
+//! An oscillator read by regression in weak form.
+//!
+//! The equation of motion is multiplied by a smooth window φ that vanishes with its first derivatives at both ends, and
+//! integrated by parts until nothing but φ is differentiated (Shinbrot 1957; Messenger, Bortz 2021):
+//!
+//!   ∫φ″·θ = 2ζω₀·∫φ′·θ − ω₀²·∫φ·θ + g·∫φ·u + b·∫φ, with b = ω₀²·θ_rest.
+//!
+//! Each window gives one equation that is linear in the coefficients. A velocity obeys the same equation with u̇ for u,
+//! an acceleration with ü: the derivatives fall on φ again.
+
+use crate::{Basis, Estimated, IdentifyError, LinearOscillator, order};
+use nalgebra::{DMatrix, DVector};
+use record::{Clock, Record};
+use std::f64::consts::TAU;
+
+/// Samples that the time scale is looked for in; more add nothing to it.
+const MOST_SAMPLES: usize = 8192;
+/// Frequencies tried for the time scale.
+const FREQUENCIES: u32 = 400;
+/// Windows for each coefficient that is fitted.
+const WINDOWS_EACH: usize = 3;
+/// A step between samples that is so many times the usual one is a gap.
+const GAP: f64 = 4.0;
+/// Standard errors that a restoring torque has to stand above zero.
+const SIGNIFICANT: f64 = 3.0;
+
+/// Fits damping, stiffness, input gain and rest position to all windows of a record.
+pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Result<LinearOscillator, IdentifyError> {
+    let samples = Samples::new(record, clock);
+    let width = samples.period().min(samples.duration() / 4.0);
+    let rows = samples.rows(width);
+    let columns = if samples.input.is_some() { 4 } else { 3 };
+    let needed = WINDOWS_EACH * columns;
+    if rows.len() < needed {
+        return Err(IdentifyError::TooShort { windows: rows.len(), needed, width_s: width });
+    }
+    let with_spring = fit(&rows, columns, true)?;
+    let [damping, stiffness, shift, gain] = with_spring;
+    let restored = stiffness.value > SIGNIFICANT * stiffness.std_error;
+    let [damping, stiffness, shift, gain] =
+        if restored { [damping, stiffness, shift, gain] } else { fit(&rows, columns, false)? };
+    let rest = (restored && samples.order == 0).then(|| shift.times(1.0 / stiffness.value));
+    Ok(LinearOscillator {
+        stiffness,
+        damping: Estimated { value: damping.value.max(0.0), ..damping },
+        rest,
+        input_gain: samples.input.is_some().then_some(gain),
+        basis: Basis::Windows(rows.len()),
+    })
+}
+
+/// One window: ∫φ″·θ, then ∫φ′·θ, −∫φ·θ, ∫φ and the input's integral.
+type Row = (f64, [f64; 4]);
+
+/// Damping, stiffness, shift and gain by least squares, each with its standard error; 0 for what is not fitted.
+fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], IdentifyError> {
+    let free: Vec<usize> = (0..columns).filter(|column| spring || *column != 1).collect();
+    let entry = |row: usize, column: usize| {
+        let at = free.get(column).copied().unwrap_or_default();
+        rows.get(row).and_then(|(_, entries)| entries.get(at)).copied().unwrap_or_default()
+    };
+    let mut design = DMatrix::from_fn(rows.len(), free.len(), entry);
+    // Columns of size 1, so that the decomposition's cut-off means the same for each.
+    let sizes: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
+    if sizes.iter().any(|size| !size.is_finite() || *size <= 0.0) {
+        return Err(IdentifyError::Undetermined);
+    }
+    for (mut column, size) in design.column_iter_mut().zip(&sizes) {
+        column /= *size;
+    }
+    let target = DVector::from_iterator(rows.len(), rows.iter().map(|(target, _)| *target));
+    let normal = design.tr_mul(&design);
+    let inverse = normal.try_inverse().ok_or(IdentifyError::Undetermined)?;
+    let solution = &inverse * design.tr_mul(&target);
+    let freedom = (rows.len().saturating_sub(free.len())).max(1) as f64;
+    // Windows overlap by half, so that two neighbors count for little more than one.
+    let variance = 2.0 * (&target - &design * &solution).norm_squared() / freedom;
+    let mut found = [Estimated { value: 0.0, std_error: 0.0 }; 4];
+    for (number, (column, size)) in free.iter().zip(&sizes).enumerate() {
+        let value = solution.get(number).copied().unwrap_or(f64::NAN) / size;
+        let std_error = (variance * inverse.get((number, number)).copied().unwrap_or(f64::NAN)).sqrt() / size;
+        if !value.is_finite() || !std_error.is_finite() {
+            return Err(IdentifyError::Undetermined);
+        }
+        if let Some(place) = found.get_mut(*column) {
+            *place = Estimated { value, std_error };
+        }
+    }
+    Ok(found)
+}
+
+/// A record's columns as the windows need them.
+struct Samples<'a> {
+    times: &'a [f64],
+    /// Observed values without their mean, which only the shift would see.
+    values: Vec<f64>,
+    mean: f64,
+    input: Option<&'a [f64]>,
+    /// Time derivatives that the sensor has taken already.
+    order: usize,
+    /// The usual step between samples, in seconds.
+    step: f64,
+}
+
+impl<'a> Samples<'a> {
+    fn new(record: &'a Record, clock: &'a Clock) -> Self {
+        let mean = record.values().iter().sum::<f64>() / record.len() as f64;
+        Self {
+            times: &clock.times_s,
+            values: record.values().iter().map(|value| value - mean).collect(),
+            mean,
+            input: record.input(),
+            order: order(record.quantity()),
+            step: 1.0 / clock.sample_rate_hz,
+        }
+    }
+
+    fn duration(&self) -> f64 {
+        self.times.first().zip(self.times.last()).map_or(0.0, |(first, last)| last - first)
+    }
+
+    /// Period of the strongest line in the values' spectrum, in seconds, between eight samples and half the record.
+    fn period(&self) -> f64 {
+        let stride = self.times.len().div_ceil(MOST_SAMPLES).max(1);
+        let (longest, shortest) = (self.duration() / 2.0, 8.0 * self.step * stride as f64);
+        let period = |number: u32| {
+            let share = f64::from(number) / f64::from(FREQUENCIES);
+            longest * (shortest / longest).powf(share)
+        };
+        let power = |period: f64| {
+            let rate = TAU / period;
+            let picked = self.times.iter().zip(&self.values).step_by(stride);
+            let (sine, cosine) = picked.fold((0.0, 0.0), |(sine, cosine), (time, value)| {
+                let (s, c) = (rate * time).sin_cos();
+                (sine + value * s, cosine + value * c)
+            });
+            sine * sine + cosine * cosine
+        };
+        let best = (0..=FREQUENCIES)
+            .map(|number| (power(period(number)), number))
+            .max_by(|(one, _), (other, _)| one.total_cmp(other));
+        best.map_or(longest, |(_, number)| period(number))
+    }
+
+    /// The equations of all windows of a width in seconds that hold no gap, each half a width after the last.
+    fn rows(&self, width: f64) -> Vec<Row> {
+        let Some(&first) = self.times.first() else { return Vec::new() };
+        let count = (2.0 * (self.duration() / width - 1.0)).floor().max(-1.0) as i64 + 1;
+        (0..count).filter_map(|number| self.row(first + 0.5 * width * number as f64, width)).collect()
+    }
+
+    fn row(&self, start: f64, width: f64) -> Option<Row> {
+        let from = self.times.partition_point(|time| *time < start);
+        let to = self.times.partition_point(|time| *time <= start + width);
+        let times = self.times.get(from..to)?;
+        if times.len() < 8 || times.windows(2).any(|pair| matches!(pair, [a, b] if b - a > GAP * self.step)) {
+            return None;
+        }
+        let (mut target, mut entries) = (0.0, [0.0; 4]);
+        for (at, time) in times.iter().enumerate() {
+            // Trapezoids; the windows vanish at their ends, where one neighbor is missing.
+            let before = at.checked_sub(1).and_then(|at| times.get(at)).unwrap_or(time);
+            let after = times.get(at + 1).unwrap_or(time);
+            let weight = 0.5 * (after - before);
+            let derivatives = window(2.0 * (time - start) / width - 1.0, 2.0 / width);
+            let [phi, slope, curvature] = derivatives.map(|value| weight * value);
+            let value = self.values.get(from + at)?;
+            target += curvature * value;
+            let [damping, stiffness, shift, gain] = &mut entries;
+            *damping += slope * value;
+            *stiffness -= phi * (value + self.mean);
+            *shift += phi;
+            if let Some(input) = self.input {
+                let sign = if self.order == 1 { -1.0 } else { 1.0 };
+                *gain += sign * [phi, slope, curvature].get(self.order)? * input.get(from + at)?;
+            }
+        }
+        Some((target, entries))
+    }
+}
+
+/// The window φ(s) = (1 − s²)⁴ on −1 to 1 with its first two derivatives in time, where ds/dt = `rate`.
+fn window(s: f64, rate: f64) -> [f64; 3] {
+    let inside = (1.0 - s * s).max(0.0);
+    let cubed = inside * inside * inside;
+    [cubed * inside, -8.0 * s * cubed * rate, (-8.0 * cubed + 48.0 * s * s * inside * inside) * rate * rate]
+}
