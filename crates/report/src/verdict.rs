@@ -100,19 +100,21 @@ fn comparison(result: &EstimationResult) -> String {
         format!("differs from {ORACLE} by {}", format::percent(result.error_percent))
     };
     if result.error_percent > result.tolerance_percent {
-        return format!("{distance}, more than the stated {tolerance}");
+        return format!("{distance}, so it does not solve least squares to the stated {tolerance}");
     }
     let seeds = result.seeds.len();
     let worst = format::percent(result.worst_error_percent);
     if !result.pass && seeds > 1 {
         format!(
-            "{distance}, within the stated {tolerance}, but the worst of its {seeds} seeds \
+            "{distance}, which solves least squares to the stated {tolerance}, but the worst of its {seeds} seeds \
              differs by {worst}, and every seed has to be within"
         )
     } else if seeds > 1 {
-        format!("{distance}, within the stated {tolerance} (the worst of its {seeds} seeds by {worst})")
+        format!(
+            "{distance}, which solves least squares to the stated {tolerance} (the worst of its {seeds} seeds by {worst})"
+        )
     } else {
-        format!("{distance}, within the stated {tolerance}")
+        format!("{distance}, which solves least squares to the stated {tolerance}")
     }
 }
 

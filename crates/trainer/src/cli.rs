@@ -28,7 +28,7 @@ Examples:
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
   trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
-                                                  begins, or goes on where it was stopped or killed
+                                                  starts, or resumes after an interruption
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
@@ -82,7 +82,7 @@ pub(crate) struct RunOptions {
     /// Folder for what comes out: new or empty [default: a new one below reports/runs]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Goes on in the folder of --out where it stopped, with the same bits; begins there where nothing was begun
+    /// Resumes the run in the folder of --out, with the same result to the bit; starts it if the folder is new
     #[arg(long, requires = "out")]
     pub(crate) resume: bool,
     /// Overrides the configuration's seed

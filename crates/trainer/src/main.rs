@@ -11,6 +11,7 @@
     )
 )]
 
+mod agreement;
 mod cautions;
 mod check;
 mod cite;
@@ -27,6 +28,7 @@ mod explain;
 mod fit;
 mod input;
 mod interrupt;
+mod known_truth;
 mod list;
 mod list_runs;
 mod method;
