@@ -196,7 +196,7 @@ fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError
 
 /// The known name that is spelled most alike, if one is close enough to be a slip of the hand.
 #[must_use]
-pub(crate) fn nearest(name: &str, known: &[String]) -> Option<String> {
+pub fn nearest(name: &str, known: &[String]) -> Option<String> {
     known
         .iter()
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))

@@ -33,16 +33,16 @@ pub(crate) fn disagreement(rows: &[PipelineRow], data: &DataSummary) -> Option<S
         .filter(|(_, errors, share)| *errors > PLAIN || share.abs() > FREQUENCY)
         .collect();
     let how = |(row, errors, share): &(&PipelineRow, f64, f64)| {
-        format!(
-            "{} puts ζ {errors:.1} standard errors and ω {} away",
-            name(row),
-            format::percent(100.0 * share.abs())
-        )
+        let zeta = (*errors > PLAIN).then(|| format!("ζ {errors:.1} standard errors away"));
+        let omega =
+            (share.abs() > FREQUENCY).then(|| format!("ω {} away", format::percent(100.0 * share.abs())));
+        let away: Vec<String> = zeta.into_iter().chain(omega).collect();
+        format!("{} puts {}", name(row), away.join(" and "))
     };
     let said: Vec<String> = differing.iter().map(how).collect();
     (!said.is_empty()).then(|| {
         format!(
-            "The ways through this record disagree: beside {}, in force, {}. {}",
+            "Pipelines or clocks disagree on this record: next to {}, in force, {}. {}",
             name(own),
             said.join("; "),
             belief(own, data)
@@ -57,9 +57,9 @@ fn name(row: &PipelineRow) -> String {
 /// Which answer to believe, and why.
 fn belief(own: &PipelineRow, data: &DataSummary) -> String {
     let why = format!(
-        "it takes the samples as they are, on the clock that the record speaks for ({}); the paper's interpolates between \
-         the stamps",
-        data.believed_clock_reason
+        "it takes the samples as they are, on the clock that the record speaks for ({}); the paper's interpolates \
+         between the stamps",
+        data.believed_clock
     );
     if own.pipeline == "recommended" && own.clock == data.believed_clock {
         format!("Believe the one in force: {why}.")
