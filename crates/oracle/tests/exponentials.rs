@@ -110,7 +110,6 @@ fn standard_errors_are_neither_too_small_nor_too_large() {
     let found = deviations(2000);
     let spread = (found.iter().map(|deviation| deviation * deviation).sum::<f64>() / 2000.0).sqrt();
     let mean = found.iter().sum::<f64>() / 2000.0;
-    println!("{} of 2000 held, mean {mean:.3}, spread {spread:.3}", held(&found));
     assert!((1860..=1960).contains(&held(&found)), "{} of 2000", held(&found));
     assert!((0.85..1.15).contains(&spread) && mean.abs() < 0.3, "mean {mean:.3}, spread {spread:.3}");
 }
