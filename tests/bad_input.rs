@@ -56,7 +56,7 @@ fn what_cannot_be_simulated_is_refused() {
         let message = refusal(&[command, "configs/pinn.toml"]);
         let told =
             "this is a configuration for the task \"estimate\", which `trainer configs/pinn.toml` runs";
-        assert!(message.contains("configs/pinn.toml:34:1: ") && message.contains(told), "{message}");
+        assert!(message.contains("configs/pinn.toml:23:1: ") && message.contains(told), "{message}");
     }
 }
 

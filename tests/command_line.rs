@@ -10,19 +10,40 @@ const COMMANDS: &[&str] = &[
 ];
 
 #[test]
-fn every_command_takes_every_option() {
-    for command in COMMANDS.iter().map(|name| vec![*name]).chain([vec![]]) {
-        let output = trainer(&[&command[..], &["--help"]].concat());
-        let help = String::from_utf8(output.stdout).unwrap();
-        for option in ["--out", "--seed", "--threads", "--quiet", "--json", "--resume"] {
-            assert!(help.lines().any(|line| line.trim_start().starts_with(option)), "{command:?}: {option}");
-        }
+fn every_command_takes_every_option_and_shows_those_that_do_something() {
+    for command in COMMANDS {
+        let all =
+            ["--out", "x", "--seed", "3", "--threads", "2", "--quiet", "--json", "--resume", "--nonsense"];
+        let message = String::from_utf8(trainer(&[&[*command], &all[..]].concat()).stderr).unwrap();
+        assert!(message.contains("unexpected argument '--nonsense'"), "{command}: {message}");
+        let help = String::from_utf8(trainer(&[command, "--help"]).stdout).unwrap();
+        assert!(!help.contains("No effect here") && help.contains("--help"), "{help}");
     }
+    let shown = |command: &str, option: &str| {
+        String::from_utf8(trainer(&[command, "--help"]).stdout).unwrap().contains(option)
+    };
+    assert!(shown("simulate", "--seed") && !shown("report", "--seed") && !shown("list", "--resume"));
     let options = ["--out", "x", "--seed", "3", "--threads", "2", "--resume", "--quiet"];
     let output = trainer(&[&["list", "effects"], &options[..]].concat());
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     let output = trainer(&["check", "configs/pinn.toml", "--seed", "17"]);
     assert!(String::from_utf8(output.stdout).unwrap().contains("seed 17"));
+}
+
+#[test]
+fn completions_and_manual_pages_name_every_command() {
+    for shell in ["bash", "zsh", "fish"] {
+        let script = String::from_utf8(trainer(&["completions", shell]).stdout).unwrap();
+        assert!(COMMANDS.iter().all(|command| script.contains(command)), "{shell}");
+    }
+    let page = String::from_utf8(trainer(&["man"]).stdout).unwrap();
+    assert!(page.contains(".TH") && page.contains("diagnose"), "{page}");
+    let folder = tempfile::tempdir().unwrap();
+    let output = trainer(&["man", folder.path().to_str().unwrap()]);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    for command in COMMANDS {
+        assert!(folder.path().join(format!("trainer-{command}.1")).is_file(), "{command}");
+    }
 }
 
 #[test]

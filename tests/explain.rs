@@ -117,9 +117,13 @@ fn a_check_refuses_what_a_run_refuses() {
 fn a_key_is_explained_with_its_place_range_unit_meaning_and_source() {
     let key = "fit.tolerance_percent";
     let said = text(&["explain", key, "configs/pinn.toml"]);
-    for words in
-        ["configs/pinn.toml:", "from 0 to 1000000000", "unit      %", "against the oracle", "the paper's bar"]
-    {
+    for words in [
+        "configs/pinn.toml:",
+        "from 0 to 1000000000",
+        "unit      %",
+        "from closed-form least squares",
+        "the paper's bar",
+    ] {
         assert!(said.contains(words), "no `{words}` in {said}");
     }
     let origin = |arguments: &[&str]| json(arguments)["origin"].clone();

@@ -18,6 +18,7 @@ mod browser;
 mod cite;
 mod command_line;
 mod comparison;
+mod defaults;
 mod diagnose;
 mod documents;
 mod explain;

@@ -12,7 +12,7 @@ fn close(found: f64, expected: f64, digits: i32) {
 fn the_papers_pipeline_gives_the_papers_numbers() {
     let Some(path) = measured("horizontal-pendulum/80P.txt") else { return };
     let (code, result, _) =
-        result(&["configs/pinn.toml", &format!("data.path={path}"), "data.format=host-log", "fit.seeds=10"]);
+        result(&["configs/paper-record.toml", &format!("data.path={path}"), "fit.seeds=10"]);
     assert_eq!(code, 0, "{result}");
     assert_eq!(result["data"]["samples"], 7_625);
     assert_eq!(result["envelope"]["samples"], 14_650);

@@ -132,7 +132,8 @@ fn the_shipped_record_is_what_its_configuration_gives() {
 /// three of its 69 peaks; bending in ln A, as the rig's does.
 #[test]
 fn the_shipped_record_resembles_the_papers() {
-    let (_, found, _) = result(&["configs/pinn.toml", "fit.max_steps=0"]);
+    let (_, found, _) =
+        result(&["configs/pinn.toml", "fit.max_steps=0", "data.clock=host", "envelope.pipeline=paper"]);
     assert_eq!(found["data"]["origin"], "simulated");
     assert!((number(&found, "/envelope/peaks") - 69.0).abs() <= 3.0, "{}", found["envelope"]);
     assert!((number(&found, "/oracle/decay_rate") / 0.191 - 1.0).abs() < 0.03, "{}", found["oracle"]);

@@ -13,6 +13,18 @@ pub struct Envelope {
     times_s: Vec<f64>,
     log_amplitudes: Vec<f64>,
     omega_rad_s: f64,
+    log_std_errors: Option<Vec<f64>>,
+    ratio: RatioDefinition,
+}
+
+/// How a damping ratio follows from a decay rate λ and the angular frequency ω of the damped swing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum RatioDefinition {
+    /// λ/ω: the paper's, for small damping; too large by ζ²/2 of itself.
+    #[default]
+    SmallDamping,
+    /// λ/√(λ² + ω²): the logarithmic decrement's, exact for viscous damping.
+    LogarithmicDecrement,
 }
 
 impl Envelope {
@@ -41,7 +53,23 @@ impl Envelope {
         }
         let first = times_s.first().copied().unwrap_or_default();
         let times_s = times_s.into_iter().map(|time| time - first).collect();
-        Ok(Self { times_s, log_amplitudes, omega_rad_s })
+        let ratio = RatioDefinition::default();
+        Ok(Self { times_s, log_amplitudes, omega_rad_s, log_std_errors: None, ratio })
+    }
+
+    /// The same with the standard error that the sensor's noise leaves in each ln A. Left out where their number is another
+    /// or one of them is not a positive number.
+    #[must_use]
+    pub fn with_log_std_errors(self, errors: Vec<f64>) -> Self {
+        let usable =
+            errors.len() == self.len() && errors.iter().all(|error| error.is_finite() && *error > 0.0);
+        Self { log_std_errors: usable.then_some(errors), ..self }
+    }
+
+    /// The same with another definition of the damping ratio.
+    #[must_use]
+    pub fn with_ratio(self, ratio: RatioDefinition) -> Self {
+        Self { ratio, ..self }
     }
 
     /// Number of peaks.
@@ -74,10 +102,31 @@ impl Envelope {
         self.omega_rad_s
     }
 
-    /// Damping ratio that belongs to a decay rate in 1/s: ζ = λ/ω.
+    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it. It grows as 1/A.
+    #[must_use]
+    pub fn log_std_errors(&self) -> Option<&[f64]> {
+        self.log_std_errors.as_deref()
+    }
+
+    /// Damping ratio that belongs to a decay rate in 1/s, by the envelope's [`RatioDefinition`].
     #[must_use]
     pub fn damping_ratio(&self, decay_rate: f64) -> f64 {
-        decay_rate / self.omega_rad_s
+        match self.ratio {
+            RatioDefinition::SmallDamping => decay_rate / self.omega_rad_s,
+            RatioDefinition::LogarithmicDecrement => decay_rate / decay_rate.hypot(self.omega_rad_s),
+        }
+    }
+
+    /// Standard error of the damping ratio from a decay rate and its standard error, both in 1/s, the frequency taken as
+    /// known.
+    #[must_use]
+    pub fn damping_ratio_error(&self, decay_rate: f64, std_error: f64) -> f64 {
+        match self.ratio {
+            RatioDefinition::SmallDamping => std_error / self.omega_rad_s,
+            RatioDefinition::LogarithmicDecrement => {
+                std_error * self.omega_rad_s.powi(2) / decay_rate.hypot(self.omega_rad_s).powi(3)
+            }
+        }
     }
 }
 

@@ -16,7 +16,7 @@ mod peaks;
 mod recommended;
 mod savitzky_golay;
 
-pub use envelope::{Envelope, Extraction};
+pub use envelope::{Envelope, Extraction, RatioDefinition};
 pub use error::EnvelopeError;
 pub use interpolation::resample;
 pub use noise::noise_level;

@@ -1,6 +1,6 @@
 //! The pipeline we would recommend.
 
-use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, differences, median};
+use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, RatioDefinition, differences, median};
 use crate::error::EnvelopeError;
 use crate::noise::noise_level;
 use crate::peaks::{local_maxima, prominences};
@@ -34,11 +34,36 @@ impl Default for RecommendedPipeline {
 /// Most iterations of a singular value decomposition with at most five columns; some ten are usual.
 const MOST_SWEEPS: usize = 1000;
 
+/// Prominence that noise alone does not reach, in its standard deviations.
+const NO_WIGGLE: f64 = 8.0;
+
+/// Half-width of the running median that is compared with the floor, in turning points.
+const NEIGHBORS: usize = 2;
+
 /// A turning point.
 #[derive(Debug, Clone, Copy)]
 struct Turn {
     time: f64,
     value: f64,
+    /// Variance of the value for noise of variance 1.
+    leverage: f64,
+    /// What noise of variance 1 adds to the value on average, since a top is looked for; negative at a bottom.
+    lift: f64,
+    /// Standard deviation of the samples about the polynomial; `None` where too few are left over to tell.
+    scatter: Option<f64>,
+}
+
+impl Turn {
+    /// ln A without what the noise adds to it on average: the top that is looked for lies too high by `lift`, the logarithm
+    /// of a scattering height too low by half its relative variance.
+    fn log_amplitude(&self, center: f64, noise: f64) -> f64 {
+        let amplitude = self.value - center;
+        let variance = noise * noise;
+        // Where the correction is not small against the error it corrects nothing: an almost flat top has any lift.
+        let most = noise * self.leverage.sqrt() / amplitude.abs();
+        let added = variance * (self.lift / amplitude - self.leverage / (2.0 * amplitude.powi(2)));
+        amplitude.abs().ln() - added.clamp(-most, most)
+    }
 }
 
 impl RecommendedPipeline {
@@ -52,9 +77,11 @@ impl RecommendedPipeline {
         let noise = noise_level(values).max(quantum / 12_f64.sqrt());
         let floor = self.floor_in_noise * noise;
 
-        // Prominence is from valley to top: twice the amplitude.
-        let upper = prominent(values.to_vec(), 2.0 * floor);
-        let lower = prominent(values.iter().map(|value| -value).collect(), 2.0 * floor);
+        // Prominence is from valley to top: twice the amplitude. Tops well below the floor are found too, so that the cut is
+        // where the decay reaches the floor and not where noise first does.
+        let least = (2.0 * floor).min(floor.max(NO_WIGGLE * noise));
+        let upper = prominent(values.to_vec(), least);
+        let lower = prominent(values.iter().map(|value| -value).collect(), least);
         let too_few = |found: usize| EnvelopeError::TooFewPeaks {
             pipeline: "recommended",
             found,
@@ -77,7 +104,7 @@ impl RecommendedPipeline {
         let mut indices = [upper, lower].concat();
         indices.sort_unstable();
         let turns: Vec<Turn> =
-            indices.iter().filter_map(|&at| refine(&clock.times_s, values, at, half_width)).collect();
+            indices.iter().filter_map(|&at| turning_point(&clock.times_s, values, at, half_width)).collect();
 
         let offset = center(&turns).ok_or_else(|| too_few(turns.len()))?;
         let decay = free_decay(&turns, offset, floor);
@@ -85,13 +112,18 @@ impl RecommendedPipeline {
             return Err(too_few(decay.len()));
         }
         let times: Vec<f64> = decay.iter().map(|turn| turn.time).collect();
-        let log_amplitudes = decay.iter().map(|turn| (turn.value - offset).abs().ln()).collect();
+        let noise =
+            median(decay.iter().filter_map(|turn| turn.scatter).collect()).unwrap_or(noise_level(values));
+        let log_amplitudes = decay.iter().map(|turn| turn.log_amplitude(offset, noise)).collect();
+        let errors = log_std_errors(&decay, offset, noise, quantum);
         // Turning points on the same side are two apart.
         let period_s = median(differences(&times, 2)).unwrap_or(coarse_period);
         let start = clock.times_s.first().copied().unwrap_or_default();
         Ok(Extraction {
             first_peak_s: times.first().copied().unwrap_or_default() - start,
-            envelope: Envelope::new(times, log_amplitudes, TAU / period_s)?,
+            envelope: Envelope::new(times, log_amplitudes, TAU / period_s)?
+                .with_log_std_errors(errors)
+                .with_ratio(RatioDefinition::LogarithmicDecrement),
             period_s,
             offset,
             samples: values.len(),
@@ -99,23 +131,48 @@ impl RecommendedPipeline {
     }
 }
 
+/// Indices of the tops at least so prominent, one for each: where noise makes samples of one top equally high, each of them
+/// is as prominent as the top.
 fn prominent(values: Vec<f64>, least: f64) -> Vec<usize> {
     let maxima = local_maxima(&values);
     let prominences = prominences(&values, &maxima);
-    maxima
-        .into_iter()
-        .zip(prominences)
-        .filter(|(_, prominence)| *prominence >= least && *prominence > 0.0)
-        .map(|(peak, _)| peak)
-        .collect()
+    let is_top = |prominence: f64| prominence >= least && prominence > 0.0;
+    let mut tops: Vec<usize> = Vec::new();
+    for (peak, _) in maxima.into_iter().zip(prominences).filter(|(_, prominence)| is_top(*prominence)) {
+        let height = |at: usize| values.get(at).copied().unwrap_or(f64::NAN);
+        let same = tops.last().is_some_and(|&last| {
+            let valley = values.iter().take(peak).skip(last).copied().fold(f64::INFINITY, f64::min);
+            !is_top(height(last).min(height(peak)) - valley)
+        });
+        if !same {
+            tops.push(peak);
+        }
+    }
+    tops
+}
+
+/// The turning point near a sample. The highest of noisy samples may lie well beside the top, so the stretch is laid about
+/// the top that a first fit finds.
+fn turning_point(times: &[f64], values: &[f64], at: usize, half_width: f64) -> Option<Turn> {
+    let first = refine(times, values, at, *times.get(at)?, half_width)?;
+    let near =
+        times.partition_point(|&time| time < first.time).clamp(1, times.len().saturating_sub(2).max(1));
+    refine(times, values, near, first.time, half_width).or(Some(first))
+}
+
+/// Standard error of each turning point's ln A. Noise above half a quantum makes rounding errors independent, and they are in
+/// the scatter; below that all samples of a flat top are rounded alike, and no averaging helps.
+fn log_std_errors(decay: &[Turn], center: f64, noise: f64, quantum: f64) -> Vec<f64> {
+    let rounding = if noise < quantum / 2.0 { quantum.powi(2) / 12.0 } else { 0.0 };
+    let error = |turn: &Turn| (noise.powi(2) * turn.leverage + rounding).sqrt() / (turn.value - center).abs();
+    decay.iter().map(error).collect()
 }
 
 /// Time and value of the turning point near a sample: the stationary point of a polynomial fitted to
-/// the samples within `half_width` of it. Quartic where there are samples enough, so that the shape of
+/// the samples within `half_width` of `center`. Quartic where there are samples enough, so that the shape of
 /// a swing does not pull the height; else a parabola. `None` where even that has no samples, or where
 /// the stationary point falls outside the stretch.
-fn refine(times: &[f64], values: &[f64], at: usize, half_width: f64) -> Option<Turn> {
-    let center = *times.get(at)?;
+fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64) -> Option<Turn> {
     let from = times.partition_point(|&time| time < center - half_width);
     let to = times.partition_point(|&time| time <= center + half_width);
     // A coarse record may have no neighbors inside the stretch: take the nearest ones then.
@@ -135,7 +192,7 @@ fn refine(times: &[f64], values: &[f64], at: usize, half_width: f64) -> Option<T
         times.get(row).map_or(0.0, |time| ((time - center) / scale).powi(power as i32))
     });
     // Without a limit the decomposition of what is not finite never ends.
-    let decomposition = design.try_svd(true, true, 5.0 * f64::EPSILON, MOST_SWEEPS)?;
+    let decomposition = design.clone().try_svd(true, true, 5.0 * f64::EPSILON, MOST_SWEEPS)?;
     let solution = decomposition.solve(&DVector::from_row_slice(values), 1e-12).ok()?;
     let coefficients: Vec<f64> = solution.iter().copied().collect();
     // Newton's method on the derivative, from the sample; it needs few steps on a smooth top.
@@ -151,7 +208,29 @@ fn refine(times: &[f64], values: &[f64], at: usize, half_width: f64) -> Option<T
             break;
         }
     }
-    (u.abs() <= 1.0).then(|| Turn { time: center + u * scale, value: evaluate(&coefficients, u).0 })
+    if u.abs() > 1.0 {
+        return None;
+    }
+    let residuals = &design * &solution - DVector::from_row_slice(values);
+    let left_over = values.len().saturating_sub(order + 1);
+    let scatter = (left_over >= 3).then(|| (residuals.norm_squared() / left_over as f64).sqrt());
+    // Variance of a combination of the coefficients for noise of variance 1.
+    let variance = |combination: DVector<f64>| -> Option<f64> {
+        let projected = decomposition.v_t.as_ref()? * combination;
+        let shares = projected.iter().zip(decomposition.singular_values.iter());
+        Some(
+            shares
+                .filter(|(_, singular)| **singular > 0.0)
+                .map(|(part, singular)| (part / singular).powi(2))
+                .sum(),
+        )
+    };
+    let leverage = variance(DVector::from_fn(order + 1, |power, _| u.powi(power as i32)))?;
+    let slope =
+        variance(DVector::from_fn(order + 1, |power, _| power as f64 * u.powi((power as i32 - 1).max(0))))?;
+    let (value, _, curvature) = evaluate(&coefficients, u);
+    let lift = -slope / (2.0 * curvature);
+    Some(Turn { time: center + u * scale, value, leverage, lift, scatter })
 }
 
 /// Value, first and second derivative of a polynomial with rising powers.
@@ -161,22 +240,24 @@ fn evaluate(coefficients: &[f64], u: f64) -> (f64, f64, f64) {
     })
 }
 
-/// The position that successive turning points swing about: the median of their weighted means
-/// (1, 2, 1)/4, from which a geometric decay drops out to second order.
+/// The position that successive turning points swing about: the median over three in a row of the center about which they
+/// decay geometrically (Aitken's delta-squared), a weighted mean near (1, 2, 1)/4.
 fn center(turns: &[Turn]) -> Option<f64> {
     median(
         turns
             .windows(3)
             .filter_map(|part| match part {
-                [a, b, c] => Some(0.25 * (a.value + 2.0 * b.value + c.value)),
+                [a, b, c] => Some(
+                    b.value - (b.value - a.value) * (c.value - b.value) / (c.value - 2.0 * b.value + a.value),
+                ),
                 _ => None,
             })
             .collect(),
     )
 }
 
-/// The turning points from the largest one on, up to the first that is not above the floor or does not
-/// lie on the other side of the center.
+/// The turning points from the largest one on, up to where they fall to the floor, by a running median, or one does not lie
+/// on the other side of the center.
 fn free_decay(turns: &[Turn], center: f64, floor: f64) -> Vec<Turn> {
     let size = |turn: &Turn| (turn.value - center).abs();
     let largest = turns
@@ -184,30 +265,40 @@ fn free_decay(turns: &[Turn], center: f64, floor: f64) -> Vec<Turn> {
         .enumerate()
         .max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
         .map_or(0, |(index, _)| index);
+    let turns: Vec<Turn> = turns.iter().skip(largest).copied().collect();
+    let is_above_floor = |at: usize| {
+        let near = turns.iter().take(at + NEIGHBORS + 1).skip(at.saturating_sub(NEIGHBORS));
+        median(near.map(size).collect()).is_some_and(|size| size > floor)
+    };
     let mut side: Option<bool> = None;
     turns
         .iter()
-        .skip(largest)
-        .take_while(|turn| {
+        .enumerate()
+        .take_while(|(at, turn)| {
             let above = turn.value > center;
-            let alternates = side != Some(above);
-            side = Some(above);
-            alternates && size(turn) > floor
+            side.replace(above) != Some(above) && is_above_floor(*at)
         })
-        .copied()
+        .map(|(_, turn)| *turn)
         .collect()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::refine;
+    use super::{prominent, refine};
+
+    /// Found by simulated decays: readings of one top that happened to be equal ended the decay there.
+    #[test]
+    fn equal_readings_of_one_top_are_one_top() {
+        let values = vec![0.0, 2.0, 5.0, 4.9, 5.0, 2.0, 0.0, 1.0, 4.0, 3.0, 0.0];
+        assert_eq!(prominent(values, 1.0), [2, 8]);
+    }
 
     /// Found by fuzzing: samples around a turning point that share one stamp were fitted over no time at all.
     #[test]
     fn a_burst_on_one_stamp_has_no_turning_point_and_an_end() {
         let times = [0.0, 1.0, 1.0, 1.0, 1.0, 1.0, 2.0];
         let values = [0.0, 1.0, 2.0, 3.0, 2.0, 1.0, 0.0];
-        assert!(refine(&times, &values, 3, 0.1).is_none());
-        assert!(refine(&times, &values, 3, 1.0).is_some());
+        assert!(refine(&times, &values, 3, 1.0, 0.1).is_none());
+        assert!(refine(&times, &values, 3, 1.0, 1.0).is_some());
     }
 }

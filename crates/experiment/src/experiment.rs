@@ -58,8 +58,20 @@ pub enum Single {
 pub struct Comparison {
     /// Names of the methods, each known; `None` for all of the paper's.
     pub methods: Option<Vec<String>>,
-    /// Moment of inertia, in kg·m².
-    pub inertia_kg_m2: f64,
+    /// Moment of inertia, in kg·m², where it is known.
+    pub inertia_kg_m2: Option<f64>,
+    /// Whose statements the numbers are held against.
+    pub claims: Claims,
+}
+
+/// Whose statements a comparison's numbers are held against.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Claims {
+    /// Nobody's.
+    None,
+    /// The paper's.
+    Paper,
 }
 
 /// The keys at the top.
@@ -76,6 +88,8 @@ pub(crate) struct Top {
 pub struct DataSettings {
     /// The record file.
     pub path: String,
+    /// Where the record can be had, where the configuration says so.
+    pub source: Option<String>,
     format: Format,
     quantity: Quantity,
     /// Which clock to believe.

@@ -16,8 +16,8 @@ pub mod sweep;
 mod tests;
 
 pub use experiment::{
-    CheckpointSettings, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings, Pipeline,
-    Single, Task, resolve,
+    CheckpointSettings, Claims, Comparison, DataSettings, EnvelopeSettings, Experiment, FitSettings,
+    Pipeline, Single, Task, resolve,
 };
 pub use json_schema::{compare_schema, estimate_schema, predict_schema};
 pub use nominal::{NOMINAL, StatedNominal, resolve_nominal};

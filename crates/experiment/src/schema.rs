@@ -42,10 +42,16 @@ const COMPARE_FIELDS: &[Field] = &[
     Field {
         key: "inertia_kg_m2",
         kind: Kind::Float { min: 1e-12, max: 1e12 },
-        default: Default::Float(5.0e-4),
         unit: "kg m^2",
-        meaning: "Moment of inertia, for stiffness and damping coefficient; the record does not tell it.",
-        source: "the paper's m L^2 = 50 g (100 mm)^2",
+        meaning: "Moment of inertia, for stiffness and damping coefficient, which are per unit of inertia without it; a record of a free decay does not tell it.",
+        ..PLAIN
+    },
+    Field {
+        key: "claims",
+        kind: Kind::Choice(&["none", "paper"]),
+        default: Default::Text("none"),
+        meaning: "Whose statements to check against the numbers: the paper's, or nobody's.",
+        ..PLAIN
     },
 ];
 
@@ -75,9 +81,15 @@ pub(crate) const TOP: &[Field] = &[
 pub(crate) const DATA: &[Field] = &[
     Field {
         key: "path",
+        kind: Kind::Path,
         default: Default::Text("experiments/default-record/record.csv"),
-        meaning: "The record file; a relative path starts from the current folder.",
+        meaning: "The record file; a relative path starts from the folder of the configuration that says it, on the command line from the working directory.",
         source: "the simulated record that the project ships",
+        ..PLAIN
+    },
+    Field {
+        key: "source",
+        meaning: "Where the record can be had, for the message where it is absent: repository and file.",
         ..PLAIN
     },
     Field {
@@ -268,7 +280,7 @@ const FIT: &[Field] = &[
         kind: Kind::Float { min: 0.0, max: 1e9 },
         default: Default::Float(0.1),
         unit: "%",
-        meaning: "Largest error against the oracle that passes.",
+        meaning: "Largest distance from closed-form least squares that passes.",
         source: "the paper's bar",
     },
 ];

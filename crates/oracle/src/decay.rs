@@ -14,8 +14,11 @@ pub struct DecayFit {
     pub log_amplitude: f64,
     /// Damping ratio ζ = λ/ω.
     pub zeta: f64,
-    /// Standard error of λ under independent residuals of one variance, in 1/s.
+    /// Standard error of λ under independent residuals, in 1/s: of one variance, or of variances in the ratios that the
+    /// envelope states ([`Envelope::log_std_errors`]) and at least of those sizes.
     pub std_error: f64,
+    /// `std_error` over that under residuals of one variance; 1 where the envelope states none.
+    pub scatter_factor: f64,
     /// 95 % interval of λ by Student's t with n − 2 degrees of freedom, in 1/s.
     pub interval_95: [f64; 2],
     /// Standard error of ζ, the frequency taken as known.
@@ -54,18 +57,45 @@ pub fn decay_rate(envelope: &Envelope) -> Result<DecayFit, OracleError> {
     let degrees = (envelope.len() - 2) as f64;
     let quantile = StudentsT::new(0.0, 1.0, degrees).map_or(f64::NAN, |t| t.inverse_cdf(0.975));
     let decay_rate = -slope;
+    let scatter_factor = match uneven_std_error(envelope, &fit.residuals) {
+        Some(uneven) if std_error > 0.0 => uneven / std_error,
+        _ => 1.0,
+    };
+    let std_error = scatter_factor * std_error;
     Ok(DecayFit {
         decay_rate,
         log_amplitude,
         zeta: envelope.damping_ratio(decay_rate),
         std_error,
+        scatter_factor,
         interval_95: [decay_rate - quantile * std_error, decay_rate + quantile * std_error],
-        zeta_std_error: envelope.damping_ratio(std_error),
+        zeta_std_error: envelope.damping_ratio_error(decay_rate, std_error),
         r_squared: fit.r_squared,
         condition: fit.condition,
         promised_digits: fit.promised_digits,
         residual_autocorrelation: autocorrelation(&fit.residuals),
     })
+}
+
+/// Standard error of the unweighted least-squares slope where the scatter of ln A grows as the swing decays.
+///
+/// The variances v that the envelope states are raised in common by the factor RSS/E\[RSS\] where the residuals are larger
+/// than they promise (Birge 1932), never lowered. `None` where the envelope states none.
+fn uneven_std_error(envelope: &Envelope, residuals: &[f64]) -> Option<f64> {
+    let variances = || envelope.log_std_errors().into_iter().flatten().map(|error| error * error);
+    envelope.log_std_errors()?;
+    let times = envelope.times_s();
+    let count = times.len() as f64;
+    let mean = times.iter().sum::<f64>() / count;
+    let spread: f64 = times.iter().map(|time| (time - mean).powi(2)).sum();
+    let leverage = |time: &f64| 1.0 / count + (time - mean).powi(2) / spread;
+    let expected: f64 =
+        variances().zip(times).map(|(variance, time)| variance * (1.0 - leverage(time))).sum();
+    let found: f64 = residuals.iter().map(|residual| residual * residual).sum();
+    let slope: f64 =
+        variances().zip(times).map(|(variance, time)| variance * ((time - mean) / spread).powi(2)).sum();
+    let error = ((found / expected).max(1.0) * slope).sqrt();
+    error.is_finite().then_some(error)
 }
 
 /// Lag-one autocorrelation of residuals (their mean is 0); 0 where there are no residuals to speak of.
@@ -112,6 +142,20 @@ mod tests {
         let fit = decay_rate(&Envelope::new(times, logs, 6.0).unwrap()).unwrap();
         let half_width = (fit.interval_95[1] - fit.interval_95[0]) / 2.0;
         assert!((half_width / fit.std_error - 2.306_004).abs() < 1e-5);
+    }
+
+    /// Times −1, 0, 1 about their mean: the slope is half the difference of the ends.
+    #[test]
+    fn scatter_that_grows_widens_the_error_and_quiet_residuals_do_not_narrow_it() {
+        let envelope = Envelope::new(vec![0.0, 1.0, 2.0], vec![1.0, 1.0, 4.0], 6.0).unwrap();
+        let error =
+            |logs: Vec<f64>| decay_rate(&envelope.clone().with_log_std_errors(logs)).unwrap().std_error;
+        // RSS = 3/2, and E[RSS] = 100/6 + 4/6 + 900/6.
+        assert!((error(vec![10.0, 1.0, 30.0]) - 250_f64.sqrt()).abs() < 1e-9);
+        // A tenth of that each: RSS is more than E[RSS].
+        let factor: f64 = 1.5 / (0.01 / 6.0 + 0.000_4 / 6.0 + 0.09 / 6.0);
+        assert!((error(vec![0.1, 0.01, 0.3]) - (factor * 0.025).sqrt()).abs() < 1e-9);
+        assert_eq!(decay_rate(&envelope).unwrap().scatter_factor, 1.0);
     }
 
     #[test]

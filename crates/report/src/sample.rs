@@ -171,6 +171,7 @@ fn result() -> EstimationResult {
             r_squared: 0.9645,
             zeta: 0.008_753,
             std_error: 0.004_478,
+            scatter_factor: 1.0,
             interval_95: [0.182_023, 0.199_899],
             zeta_std_error: 0.000_205_3,
             zeta_interval_95: [0.008_343, 0.009_163],
@@ -208,6 +209,8 @@ fn result() -> EstimationResult {
             })
             .collect(),
         worst_error_percent: 2.7e-5,
+        disagreement: None,
+        truth: None,
         pipelines: vec![
             pipeline("paper", "uniform-index", true, 69, 0.008_753, 0.9645),
             pipeline("paper", "host", false, 68, 0.008_811, 0.9581),

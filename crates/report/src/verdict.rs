@@ -100,19 +100,21 @@ fn comparison(result: &EstimationResult) -> String {
         format!("differs from {ORACLE} by {}", format::percent(result.error_percent))
     };
     if result.error_percent > result.tolerance_percent {
-        return format!("{distance}, more than the stated {tolerance}");
+        return format!("{distance}, so it does not solve least squares to the stated {tolerance}");
     }
     let seeds = result.seeds.len();
     let worst = format::percent(result.worst_error_percent);
     if !result.pass && seeds > 1 {
         format!(
-            "{distance}, within the stated {tolerance}, but the worst of its {seeds} seeds \
+            "{distance}, which solves least squares to the stated {tolerance}, but the worst of its {seeds} seeds \
              differs by {worst}, and every seed has to be within"
         )
     } else if seeds > 1 {
-        format!("{distance}, within the stated {tolerance} (the worst of its {seeds} seeds by {worst})")
+        format!(
+            "{distance}, which solves least squares to the stated {tolerance} (the worst of its {seeds} seeds by {worst})"
+        )
     } else {
-        format!("{distance}, within the stated {tolerance}")
+        format!("{distance}, which solves least squares to the stated {tolerance}")
     }
 }
 
@@ -201,7 +203,7 @@ mod tests {
             (
                 "Within tolerance",
                 "The physics-informed neural network finds a damping ratio of 0.00875 ± 0.00021; \
-                 it differs from closed-form least squares by 3.1 × 10⁻⁷ %, within the stated \
+                 it differs from closed-form least squares by 3.1 × 10⁻⁷ %, which solves least squares to the stated \
                  0.1 %."
                     .to_owned()
             )
@@ -217,7 +219,10 @@ mod tests {
         });
         assert_eq!(label, "Outside tolerance");
         assert!(text.starts_with("The PINN finds"), "{text}");
-        assert!(text.ends_with("by 2.3 %, more than the stated 0.1 %."), "{text}");
+        assert!(
+            text.ends_with("by 2.3 %, so it does not solve least squares to the stated 0.1 %."),
+            "{text}"
+        );
     }
 
     #[test]

@@ -82,7 +82,7 @@ fn names(leaf: &Leaf) -> Result<Vec<String>, SettingsError> {
 }
 
 /// A path without `.` and without `name/..`.
-fn simplified(path: &Path) -> PathBuf {
+pub(crate) fn simplified(path: &Path) -> PathBuf {
     let mut simple = PathBuf::new();
     for part in path.components() {
         match part {

@@ -2,6 +2,7 @@
 
 use crate::error::SettingsError;
 use std::fmt;
+use std::path::Path;
 use toml::Value;
 use toml::de::{DeTable, DeValue};
 
@@ -42,7 +43,15 @@ pub struct Leaf {
     pub value: Value,
     /// Where it was written.
     pub origin: Origin,
+    /// Folder that a relative path in the value starts from; empty for the working directory.
+    pub folder: String,
 }
+
+/// The key at the top that says where relative paths of a file start: [`FROM_FILE`] or [`FROM_WORKING_DIRECTORY`].
+pub(crate) const PATHS: &str = "paths";
+pub(crate) const FROM_FILE: &str = "file";
+/// As a run's own copy of its configuration has it.
+pub(crate) const FROM_WORKING_DIRECTORY: &str = "working-directory";
 
 /// A configuration as written, overrides included: an ordered list of leaves, each key once.
 ///
@@ -70,6 +79,7 @@ impl Document {
         })?;
         let mut document = Self { file: file.to_owned(), ..Self::default() };
         document.collect(text, "", table.get_ref())?;
+        document.place_paths()?;
         Ok(document)
     }
 
@@ -130,7 +140,8 @@ impl Document {
             .ok()
             .filter(|value| !matches!(value, Value::Table(_)))
             .unwrap_or_else(|| Value::String(text.to_owned()));
-        self.set(Leaf { key: key.to_owned(), value, origin: Origin::Override(argument.to_owned()) });
+        let origin = Origin::Override(argument.to_owned());
+        self.set(Leaf { key: key.to_owned(), value, origin, folder: String::new() });
         Ok(())
     }
 
@@ -183,6 +194,29 @@ impl Document {
         }
     }
 
+    /// Lets relative paths start from the file's folder, unless the file says that they start from the working directory.
+    fn place_paths(&mut self) -> Result<(), SettingsError> {
+        let folder =
+            Path::new(&self.file).parent().map_or_else(String::new, |path| path.display().to_string());
+        match self.take(PATHS) {
+            Some(leaf) if leaf.value.as_str() == Some(FROM_WORKING_DIRECTORY) => return Ok(()),
+            Some(leaf) if leaf.value.as_str() != Some(FROM_FILE) => {
+                return Err(SettingsError::BadValue {
+                    origin: leaf.origin,
+                    key: leaf.key,
+                    found: leaf.value.to_string(),
+                    expected: format!("\"{FROM_FILE}\" or \"{FROM_WORKING_DIRECTORY}\""),
+                    unit: String::new(),
+                });
+            }
+            _ => {}
+        }
+        for leaf in &mut self.leaves {
+            leaf.folder.clone_from(&folder);
+        }
+        Ok(())
+    }
+
     fn collect(&mut self, text: &str, prefix: &str, table: &DeTable<'_>) -> Result<(), SettingsError> {
         for (name, value) in table {
             let key = if prefix.is_empty() {
@@ -221,7 +255,7 @@ impl Document {
                     column,
                     problem,
                 })?;
-                self.leaves.push(Leaf { key, value, origin });
+                self.leaves.push(Leaf { key, value, origin, folder: String::new() });
             }
         }
         Ok(())

@@ -23,6 +23,9 @@ pub enum Kind {
     },
     /// Free text.
     Text,
+    /// Name of a file or folder; a relative one starts from the folder of the configuration that says it, on the command
+    /// line from the working directory.
+    Path,
     /// One of a fixed set of words.
     Choice(&'static [&'static str]),
     /// A list of texts.
@@ -136,7 +139,9 @@ impl Kind {
     /// A sentence that says what was expected, for instance `a number from 0 to 1`.
     pub fn admit(&self, value: &Value) -> Result<Value, String> {
         let admitted = match (self, value) {
-            (Self::Boolean, Value::Boolean(_)) | (Self::Text, Value::String(_)) => Some(value.clone()),
+            (Self::Boolean, Value::Boolean(_)) | (Self::Text | Self::Path, Value::String(_)) => {
+                Some(value.clone())
+            }
             (&Self::Integer { min, max }, &Value::Integer(number)) => {
                 (min..=max).contains(&number).then(|| value.clone())
             }
@@ -178,7 +183,7 @@ impl Kind {
             Self::Boolean => "true or false".to_owned(),
             Self::Integer { min, max } => format!("a whole number {}", range(min, max)),
             Self::Float { min, max } => format!("a finite number {}", range(min, max)),
-            Self::Text => "text in quotes".to_owned(),
+            Self::Text | Self::Path => "text in quotes".to_owned(),
             Self::Choice(words) => {
                 let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
                 format!("one of {}", quoted.join(", "))

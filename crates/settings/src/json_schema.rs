@@ -3,6 +3,7 @@
 //! What has to be given is kept apart from what may be: a file that stands on another
 //! ([`Document::on_its_bases`](crate::Document::on_its_bases)) need not say it itself.
 
+use crate::document::{FROM_FILE, FROM_WORKING_DIRECTORY, PATHS};
 use crate::field::{Default, Field, Kind, Section};
 use serde_json::{Map, Value, json};
 
@@ -87,6 +88,12 @@ pub fn with_base(mut table: Value, requirements: Value) -> Value {
         "anyOf": [{ "type": "string" }, { "type": "array", "items": { "type": "string" } }],
     });
     insert(&mut table, "", "base", base);
+    let paths = json!({
+        "description": "Where relative paths in this file start: its own folder, or the working directory.",
+        "enum": [FROM_FILE, FROM_WORKING_DIRECTORY],
+        "default": FROM_FILE,
+    });
+    insert(&mut table, "", PATHS, paths);
     if let Some(object) = table.as_object_mut() {
         object.insert("if".to_owned(), json!({ "not": { "required": ["base"] } }));
         object.insert("then".to_owned(), requirements);
@@ -126,7 +133,7 @@ fn kind(kind: &Kind) -> Map<String, Value> {
         Kind::Boolean => object(json!({ "type": "boolean" })),
         Kind::Integer { min, max } => integer(min, max),
         Kind::Float { min, max } => number(min, max),
-        Kind::Text => object(json!({ "type": "string" })),
+        Kind::Text | Kind::Path => object(json!({ "type": "string" })),
         Kind::Choice(words) => object(json!({ "enum": words })),
         // A single text stands for a list: `a,b`.
         Kind::Texts { at_least, at_most } => {

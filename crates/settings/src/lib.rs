@@ -19,7 +19,7 @@ mod resolved;
 pub use document::{Document, Leaf, Origin};
 pub use error::SettingsError;
 pub use field::{Default, Field, Kind, Section};
-pub use resolved::{Resolved, Setting};
+pub use resolved::{Resolved, Setting, nearest};
 
 #[cfg(test)]
 mod tests;

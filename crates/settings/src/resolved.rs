@@ -1,9 +1,11 @@
 //! A configuration with every key known, typed, in range, and defaults filled in.
 
-use crate::document::{Document, Origin};
+use crate::base::simplified;
+use crate::document::{Document, FROM_WORKING_DIRECTORY, Origin, PATHS};
 use crate::error::SettingsError;
-use crate::field::{Field, Section};
+use crate::field::{Field, Kind, Section};
 use serde::de::DeserializeOwned;
+use std::path::Path;
 use toml::{Table, Value};
 
 /// One key's value in force.
@@ -56,7 +58,8 @@ impl Resolved {
                     unit: if unit.is_empty() { String::new() } else { format!(" ({unit})") },
                 }
             })?;
-            setting.value = Some(value);
+            setting.value =
+                Some(if setting.field.kind == Kind::Path { placed(value, &leaf.folder) } else { value });
             setting.origin = leaf.origin.clone();
         }
         let missing = settings
@@ -120,10 +123,14 @@ impl Resolved {
 
     /// The configuration as TOML, every value in force, with unit and origin as comments.
     ///
-    /// Read again, it resolves to the same values.
+    /// Read again, it resolves to the same values: relative paths start from the working directory, and where there are
+    /// any the text says so.
     #[must_use]
     pub fn to_toml(&self) -> String {
         let mut text = String::new();
+        if self.settings.iter().any(is_relative_path) {
+            text.push_str(&format!("{PATHS} = \"{FROM_WORKING_DIRECTORY}\"\n"));
+        }
         let mut current = "";
         for setting in &self.settings {
             if setting.section != current {
@@ -165,6 +172,21 @@ impl Setting {
     }
 }
 
+/// A path as seen from the working directory.
+fn placed(value: Value, folder: &str) -> Value {
+    match value.as_str() {
+        Some(path) if !folder.is_empty() && Path::new(path).is_relative() => {
+            Value::String(simplified(&Path::new(folder).join(path)).display().to_string())
+        }
+        _ => value,
+    }
+}
+
+fn is_relative_path(setting: &Setting) -> bool {
+    let path = setting.value.as_ref().and_then(Value::as_str);
+    setting.field.kind == Kind::Path && path.is_some_and(|path| Path::new(path).is_relative())
+}
+
 fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError {
     let keys: Vec<String> = settings.iter().map(Setting::key).collect();
     let section = key.rsplit_once('.').map_or("", |(section, _)| section);
@@ -174,7 +196,7 @@ fn unknown_key(key: &str, origin: Origin, settings: &[Setting]) -> SettingsError
 
 /// The known name that is spelled most alike, if one is close enough to be a slip of the hand.
 #[must_use]
-pub(crate) fn nearest(name: &str, known: &[String]) -> Option<String> {
+pub fn nearest(name: &str, known: &[String]) -> Option<String> {
     known
         .iter()
         .map(|candidate| (strsim::damerau_levenshtein(name, candidate), candidate))

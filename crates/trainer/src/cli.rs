@@ -28,7 +28,7 @@ Examples:
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
   trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
-                                                  begins, or goes on where it was stopped or killed
+                                                  starts, or resumes after an interruption
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
@@ -82,7 +82,7 @@ pub(crate) struct RunOptions {
     /// Folder for what comes out: new or empty [default: a new one below reports/runs]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Goes on in the folder of --out where it stopped, with the same bits; begins there where nothing was begun
+    /// Resumes the run in the folder of --out, with the same result to the bit; starts it if the folder is new
     #[arg(long, requires = "out")]
     pub(crate) resume: bool,
     /// Overrides the configuration's seed
@@ -108,13 +108,25 @@ pub(crate) struct Output {
 pub(crate) enum Command {
     /// Checks a configuration and that its data can be read; runs and writes nothing
     Check(ConfigArguments),
+    /// Prints the completion script of a shell
+    Completions {
+        /// The shell
+        #[arg(value_enum)]
+        shell: clap_complete::Shell,
+    },
+    /// Prints the manual page, or writes one for each command into a folder
+    Man {
+        /// Folder for the pages: new or empty
+        #[arg(value_name = "DIR")]
+        folder: Option<PathBuf>,
+    },
     /// Prints the literature that a run, or an estimator, follows, as BibTeX
     Cite(CiteArguments),
-    /// Says where the gap between a nominal simulator and records lies, what causes it, and how far it closes
+    /// Diagnoses the gap between a nominal simulator and records: where it is, which effects cause it, how far it closes
     Diagnose(Box<DiagnoseArguments>),
-    /// Says what is in force in a configuration, where it comes from, and what it means
+    /// Explains a configuration's values: what they mean and where they were set
     Explain(ExplainArguments),
-    /// Lists what there is to choose from
+    /// Lists estimators, effects or runs
     List {
         /// What to list
         #[arg(value_enum, default_value_t = Listing::Estimators)]
@@ -125,21 +137,21 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
-    /// Prints what a configuration may hold, as JSON Schema for editors
+    /// Prints the JSON Schema of configurations, for editors
     Schema {
         /// What the file is for [default: what its key `task` says]
         #[arg(value_enum)]
         purpose: Option<Purpose>,
     },
-    /// Makes records of systems drawn from priors, their truths sealed in a folder apart
+    /// Simulates records of systems drawn from priors; their true parameters are sealed in a separate folder
     Simulate(ExperimentArguments),
     /// Runs every combination of some keys' values, in parallel; resumable
     Sweep(Box<SweepArguments>),
-    /// Puts finished runs side by side in one table
+    /// Compares finished runs in one table
     Compare(CompareArguments),
-    /// Withheld-effect trials: makes cases whose truth is sealed, diagnoses them blind, opens the seal, scores
+    /// Tests the diagnosis blind on simulated cases with sealed truths, and scores it
     Trials(Box<TrialsArguments>),
-    /// Runs a finished run again from its folder alone, and says `identical` or where the two differ
+    /// Repeats a finished run from its folder and reports any difference
     Verify {
         /// The run's folder
         run: PathBuf,
@@ -151,7 +163,7 @@ pub(crate) enum Command {
     },
     /// Writes finished runs for TensorBoard or MLflow
     Export(ExportArguments),
-    /// Makes the report of a finished run again, from its folder alone
+    /// Rebuilds the report of a finished run from its folder
     Report {
         /// The run's folder
         run: PathBuf,

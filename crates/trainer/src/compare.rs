@@ -1,17 +1,19 @@
 //! `task = "compare"`: many methods, classical and learned, on one envelope.
 
 use crate::Outcome;
+use crate::agreement::disagreement;
 use crate::cautions::cautions;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
 use crate::interrupt::Saving;
+use crate::known_truth::{self, Answer};
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
 use crate::resume::end;
 use crate::run::Run;
 use crate::summary;
-use experiment::Comparison;
+use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
 use runs::result::{
@@ -34,7 +36,9 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
     let fits = fit_all(run, &methods)?;
     let _saving = Saving::begin();
     let interrupted = run.cancel.is_requested() && fits.iter().flatten().any(is_interrupted);
-    let result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
+    let mut result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
+    let answer = Answer { zeta: result.oracle.zeta, zeta_std_error: Some(result.oracle.zeta_std_error) };
+    result.truth = known_truth::compare(&run.input, &answer)?;
     keep(run, &result, interrupted)?;
     run.print(&result, || summary::comparison(&result, run.folder.path()))?;
     Ok(if interrupted {
@@ -132,11 +136,11 @@ fn outcome(run: &Run<'_>, fits: Vec<Result<SeedFit, String>>) -> MethodOutcome {
     let errors = || rows.iter().map(|row| row.error_percent);
     let worst = scoring::worst(errors());
     let envelope = &run.input.extraction.envelope;
-    let std_error = first.estimate.uncertainty.map(|known| known.std_error);
+    let stated = run.input.scaled(first.estimate.uncertainty, row.decay_rate);
     MethodOutcome::Estimate(MethodEstimate {
         decay_rate: row.decay_rate,
         zeta: row.zeta,
-        zeta_std_error: std_error.map(|error| envelope.damping_ratio(error)),
+        zeta_std_error: stated.map(|known| envelope.damping_ratio_error(row.decay_rate, known.std_error)),
         error_percent: row.error_percent,
         median_error_percent: scoring::median(errors()),
         worst_error_percent: worst,
@@ -170,6 +174,16 @@ fn result(
     let max_error_percent = scoring::worst(estimates().map(|row| row.worst_error_percent));
     let pass = estimates().filter(|row| row.pass).count() == results.len();
     let derived = derived(run, comparison.inertia_kg_m2);
+    let cautions = match comparison.claims {
+        Claims::None => Vec::new(),
+        Claims::Paper => cautions(
+            input,
+            &input.envelope_summary(experiment),
+            &derived,
+            max_error_percent,
+            &input.pipelines,
+        ),
+    };
     let envelope = input.envelope_summary(experiment);
     let pipelines = input.pipelines.clone();
     ComparisonResult {
@@ -185,13 +199,16 @@ fn result(
         tolerance_percent: experiment.fit.tolerance_percent,
         pass,
         seconds,
-        cautions: cautions(input, &envelope, &derived, max_error_percent, &pipelines),
+        cautions,
+        disagreement: disagreement(&pipelines, &input.data_summary(experiment)),
+        truth: None,
         envelope,
         pipelines,
     }
 }
 
-fn derived(run: &Run<'_>, inertia: f64) -> Derived {
+fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
+    let inertia = stated.unwrap_or(1.0);
     let oracle = &run.input.oracle;
     let omega = run.input.extraction.envelope.omega_rad_s();
     let period = run.input.extraction.period_s;
@@ -200,6 +217,7 @@ fn derived(run: &Run<'_>, inertia: f64) -> Derived {
         period_s: period,
         frequency_hz: 1.0 / period,
         inertia_kg_m2: inertia,
+        per_unit_of_inertia: stated.is_none(),
         stiffness_n_m_per_rad: stiffness,
         damping_n_m_s_per_rad: scoring::damping_coefficient(inertia, oracle.decay_rate),
         critical_damping_n_m_s_per_rad: scoring::critical_damping(inertia, stiffness),

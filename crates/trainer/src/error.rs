@@ -34,6 +34,16 @@ pub(crate) enum TrainerError {
     OtherTask { origin: Origin, file: String, task: String, wanted: &'static str, example: &'static str },
     #[error(transparent)]
     Record(#[from] RecordError),
+    /// A record that is not there, and of which the configuration says where it can be had.
+    #[error(
+        "{error}. It does not come with this project: get it from {source_of}, and name it with data.path=FILE"
+    )]
+    AbsentRecord { error: RecordError, source_of: String },
+    /// A file that states the truth of another record than the one that it lies beside.
+    #[error(
+        "{file} states the truth of a record {stated}, but {record} is {found}; remove it, or state the truth of this record"
+    )]
+    OtherTruth { file: String, record: String, stated: String, found: String },
     #[error("{file}: {source}")]
     Envelope { file: String, source: EnvelopeError },
     #[error("{file}: {source}")]
@@ -121,6 +131,8 @@ impl TrainerError {
             | Self::Settings(_)
             | Self::OtherTask { .. }
             | Self::Record(_)
+            | Self::AbsentRecord { .. }
+            | Self::OtherTruth { .. }
             | Self::Envelope { .. }
             | Self::Oracle { .. }
             | Self::Classical { .. }

@@ -1,9 +1,11 @@
 //! `task = "estimate"`: one method, one or more seeds.
 
 use crate::Outcome;
+use crate::agreement::disagreement;
 use crate::error::TrainerError;
 use crate::fit::{FitSetting, SeedFit, seeds};
 use crate::interrupt::Saving;
+use crate::known_truth::{self, Answer};
 use crate::method::Method;
 use crate::progress::Progress;
 use crate::rerender::write_report;
@@ -22,7 +24,12 @@ pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, Traine
     let Some((first, _)) = fits.split_first() else {
         return Err(TrainerError::TooManySeeds { seed: run.experiment.seed });
     };
-    let result = result(run, method, first, &fits);
+    let mut result = result(run, method, first, &fits);
+    let answer = Answer {
+        zeta: result.estimate.zeta,
+        zeta_std_error: result.estimate.zeta_std_error.or(Some(result.oracle.zeta_std_error)),
+    };
+    result.truth = known_truth::compare(&run.input, &answer)?;
     // Seeds that were not begun are left out.
     let interrupted =
         (fits.len() as u64) < run.experiment.fit.seeds || fits.iter().any(SeedFit::is_interrupted);
@@ -71,7 +78,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
     let (experiment, input) = (run.experiment, &run.input);
     let envelope = &input.extraction.envelope;
     let estimate = &first.estimate;
-    let uncertainty = estimate.uncertainty;
+    let uncertainty = input.scaled(estimate.uncertainty, estimate.decay_rate);
     let tolerance = experiment.fit.tolerance_percent;
     let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
     let worst = scoring::worst(rows.iter().map(|row| row.error_percent));
@@ -90,7 +97,8 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
             zeta: envelope.damping_ratio(estimate.decay_rate),
             std_error: uncertainty.map(|known| known.std_error),
             interval_95: uncertainty.map(|known| known.interval_95),
-            zeta_std_error: uncertainty.map(|known| envelope.damping_ratio(known.std_error)),
+            zeta_std_error: uncertainty
+                .map(|known| envelope.damping_ratio_error(estimate.decay_rate, known.std_error)),
             zeta_interval_95: uncertainty
                 .map(|known| known.interval_95.map(|bound| envelope.damping_ratio(bound))),
             reached: estimate.stop.reached.name().to_owned(),
@@ -104,6 +112,8 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         parameters: estimate.parameters,
         seeds: rows,
         worst_error_percent: worst,
+        disagreement: disagreement(&input.pipelines, &input.data_summary(experiment)),
+        truth: None,
         pipelines: input.pipelines.clone(),
     }
 }

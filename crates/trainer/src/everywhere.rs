@@ -1,17 +1,18 @@
-//! The options that every command takes, added where a command has nothing for one to act on.
+//! The options that every command takes, accepted without effect, and left out of the help, where a command has nothing for one to
+//! act on.
 
 use clap::{Arg, ArgAction, Command, value_parser};
 
-/// An option, the name of its value, and what its help says where nothing is done with it.
-type Idle = (&'static str, Option<&'static str>, &'static str);
+/// An option and the name of its value.
+type Idle = (&'static str, Option<&'static str>);
 
 const OPTIONS: [Idle; 6] = [
-    ("out", Some("DIR"), "No effect here: there is no folder to choose"),
-    ("seed", Some("N"), "No effect here: nothing new is drawn"),
-    ("threads", Some("N"), "No effect here: one thread is enough"),
-    ("quiet", None, "No effect here: all that is printed is the result"),
-    ("json", None, "No effect here: the result is JSON already"),
-    ("resume", None, "No effect here: there is nothing to go on with"),
+    ("out", Some("DIR")),
+    ("seed", Some("N")),
+    ("threads", Some("N")),
+    ("quiet", None),
+    ("json", None),
+    ("resume", None),
 ];
 
 /// The command line with every option on every command, so that a script may pass them without asking which.
@@ -25,8 +26,8 @@ pub(crate) fn everywhere(command: Command) -> Command {
     })
 }
 
-fn idle((name, value, help): Idle) -> Arg {
-    let option = Arg::new(name).long(name).help(help);
+fn idle((name, value): Idle) -> Arg {
+    let option = Arg::new(name).long(name).hide(true);
     match value {
         None => option.action(ArgAction::SetTrue),
         // Held to what the same option takes elsewhere.

@@ -2,9 +2,10 @@
 
 use crate::error::TrainerError;
 use envelope::Extraction;
-use experiment::{Experiment, Pipeline};
+use estimator::Uncertainty;
+use experiment::{DataSettings, Experiment, Pipeline};
 use oracle::DecayFit;
-use record::{Clock, ClockChoice, Record, Source, Statements, read_file};
+use record::{Clock, ClockChoice, Record, RecordError, Source, Statements, read_file};
 use runs::result::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
 use std::path::Path;
 
@@ -26,7 +27,8 @@ pub(crate) struct Input {
 impl Input {
     pub(crate) fn read(experiment: &Experiment) -> Result<Self, TrainerError> {
         let data = &experiment.data;
-        let (record, source) = read_file(Path::new(&data.path), &data.read_options())?;
+        let (record, source) =
+            read_file(Path::new(&data.path), &data.read_options()).map_err(|error| absent(error, data))?;
         let clock_of = |choice| Clock::new(&record, choice).map_err(|fault| fault.in_file(&source.path));
         let believed = clock_of(ClockChoice::Auto)?;
         let clock = clock_of(data.clock)?;
@@ -94,6 +96,7 @@ impl Input {
             r_squared: self.oracle.r_squared,
             zeta: self.oracle.zeta,
             std_error: self.oracle.std_error,
+            scatter_factor: self.oracle.scatter_factor,
             interval_95: self.oracle.interval_95,
             zeta_std_error: self.oracle.zeta_std_error,
             zeta_interval_95: self.oracle.interval_95.map(|bound| envelope.damping_ratio(bound)),
@@ -101,6 +104,15 @@ impl Input {
             promised_digits: self.oracle.promised_digits,
             residual_autocorrelation: self.oracle.residual_autocorrelation,
         }
+    }
+
+    /// What a method states of its error, which takes the scatter of ln A to be even, for the scatter of this record.
+    pub(crate) fn scaled(&self, stated: Option<Uncertainty>, decay_rate: f64) -> Option<Uncertainty> {
+        let factor = self.oracle.scatter_factor;
+        stated.map(|known| Uncertainty {
+            std_error: factor * known.std_error,
+            interval_95: known.interval_95.map(|bound| decay_rate + factor * (bound - decay_rate)),
+        })
     }
 
     /// The rows of `envelope.csv`, `fitted` being an estimator's function at the peaks.
@@ -139,6 +151,16 @@ fn fit(extraction: &Extraction, oracle: &DecayFit) -> PipelineOutcome {
         zeta: oracle.zeta,
         zeta_std_error: oracle.zeta_std_error,
         r_squared: oracle.r_squared,
+    }
+}
+
+/// A record's fault; where the file is absent, with the place that the configuration names for it.
+fn absent(error: RecordError, data: &DataSettings) -> TrainerError {
+    match &data.source {
+        Some(source) if !Path::new(&data.path).exists() => {
+            TrainerError::AbsentRecord { error, source_of: source.clone() }
+        }
+        _ => error.into(),
     }
 }
 

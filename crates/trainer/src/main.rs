@@ -11,6 +11,7 @@
     )
 )]
 
+mod agreement;
 mod cautions;
 mod check;
 mod cite;
@@ -27,9 +28,12 @@ mod explain;
 mod fit;
 mod input;
 mod interrupt;
+mod known_truth;
 mod list;
 mod list_runs;
+mod manual;
 mod method;
+mod misplaced;
 mod predict;
 mod progress;
 mod quit;
@@ -53,6 +57,13 @@ use std::process::ExitCode;
 
 fn main() -> ExitCode {
     let command = everywhere::everywhere(Arguments::command());
+    let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    if let Some(message) = misplaced::remedy(&words, &names) {
+        console::error(&message);
+        return ExitCode::from(2);
+    }
     let arguments = Arguments::from_arg_matches(&command.get_matches());
     match dispatch(arguments.unwrap_or_else(|error| error.exit())).and_then(printed) {
         Ok(outcome) => ExitCode::from(outcome.exit_code()),
@@ -106,6 +117,8 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),
         Some(Command::Export(arguments)) => tracking::command(&arguments),
+        Some(Command::Completions { shell }) => manual::completions(shell),
+        Some(Command::Man { folder }) => manual::man(folder.as_deref()),
         Some(Command::Report { run, output }) => rerender::rerender(&run, output),
         None => run::run(&arguments.experiment),
     }

@@ -4,6 +4,7 @@ use comfy_table::{ContentArrangement, Table, presets};
 use report::format;
 use runs::result::{
     ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, PipelineOutcome, PipelineRow,
+    TruthComparison,
 };
 use std::path::Path;
 
@@ -31,10 +32,11 @@ pub(crate) fn two_digits(value: f64) -> String {
 
 /// The result as a person wants to read it.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
-    let mut parts = vec![headline(result), numbers(result)];
+    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    parts.extend([headline(result), numbers(result)]);
     if result.seeds.len() > 1 {
         parts.push(format!(
-            "{} seeds from {} on: worst error {} %, slowest {:.2} s",
+            "{} seeds from {} on: {} % from least squares at worst, slowest {:.2} s",
             result.seeds.len(),
             result.seed,
             two_digits(result.worst_error_percent),
@@ -48,14 +50,14 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
 }
 
 fn headline(result: &EstimationResult) -> String {
-    let verdict = if result.pass { "passes" } else { "FAILS" };
+    let verdict = if result.pass { "solves" } else { "does NOT solve" };
     format!(
-        "{} on {} ({} record): error {} % of the oracle's damping ratio, {verdict} the {} % bar",
+        "{} on {} ({} record): {verdict} least squares to {} %; its damping ratio is {} % from that of the closed form",
         result.estimator_title,
         result.data.path,
         result.data.origin,
-        two_digits(result.worst_error_percent),
         result.tolerance_percent,
+        two_digits(result.worst_error_percent),
     )
 }
 
@@ -65,57 +67,78 @@ fn numbers(result: &EstimationResult) -> String {
         Some(error) => format!("{} ± {error:.1e} (standard error)", digits(result.estimate.zeta)),
         None => digits(result.estimate.zeta),
     };
-    table(
-        &[],
-        vec![
-            row("peaks", result.envelope.peaks.to_string()),
-            row("angular frequency ω", format!("{:.9} rad/s", result.envelope.omega_rad_s)),
-            row("decay rate λ", format!("{} 1/s", digits(result.estimate.decay_rate))),
-            row("damping ratio ζ", zeta),
-            row(
-                "oracle's ζ",
-                format!(
-                    "{} ± {:.1e} (standard error), R² {:.6}",
-                    digits(result.oracle.zeta),
-                    result.oracle.zeta_std_error,
-                    result.oracle.r_squared
-                ),
+    let mut rows = vec![
+        row("peaks", result.envelope.peaks.to_string()),
+        row("angular frequency ω", format!("{:.9} rad/s", result.envelope.omega_rad_s)),
+        row("decay rate λ", format!("{} 1/s", digits(result.estimate.decay_rate))),
+        row("damping ratio ζ", zeta),
+        row(
+            "ζ by closed-form least squares",
+            format!(
+                "{} ± {:.1e} (standard error), R² {:.6}",
+                digits(result.oracle.zeta),
+                result.oracle.zeta_std_error,
+                result.oracle.r_squared
             ),
-            row("error", format!("{} %", two_digits(result.error_percent))),
-            row(
-                "stopped",
-                format!(
-                    "{} after {} steps: {}",
-                    result.estimate.reached.replace('_', " "),
-                    result.steps,
-                    result.estimate.stopped_because
-                ),
+        ),
+        row("distance from least squares", format!("{} %", two_digits(result.error_percent))),
+        row(
+            "stopped",
+            format!(
+                "{} after {} steps: {}",
+                result.estimate.reached.replace('_', " "),
+                result.steps,
+                result.estimate.stopped_because
             ),
-            row("time", format!("{:.2} s for {} parameters", result.seconds, result.parameters)),
-        ],
-    )
+        ),
+        row("time", format!("{:.2} s for {} parameters", result.seconds, result.parameters)),
+    ];
+    rows.extend(truth(result.truth.as_ref()));
+    table(&[], rows)
+}
+
+/// The truth of a simulated record, and how far the answer is from it.
+fn truth(known: Option<&TruthComparison>) -> Vec<Vec<String>> {
+    let Some(known) = known else { return Vec::new() };
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let mut rows = Vec::new();
+    if let (Some(omega), Some(off)) = (known.omega_rad_s, known.omega_off_percent) {
+        rows.push(row("true ω", format!("{omega:.6} rad/s; found {off:+.2} % from it")));
+    }
+    if let (Some(zeta), Some(off)) = (known.zeta, known.zeta_off_percent) {
+        let errors = known
+            .zeta_off_std_errors
+            .map_or_else(String::new, |errors| format!(", {errors:+.1} standard errors"));
+        rows.push(row(
+            "true ζ",
+            format!("{}; found {off:+.2} % from it{errors}", format::significant(zeta, 6)),
+        ));
+    }
+    rows.push(row("of the truth", known.meaning.clone()));
+    rows
 }
 
 /// A comparison as a person wants to read it: the paper's Tables 3 to 5 in one screen or two.
 pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
-    let parts = [
+    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    parts.extend([
         comparison_headline(result),
         oscillation(result),
         methods(result),
         pipelines(&result.pipelines),
         comparison_remarks(result),
         ending(folder),
-    ];
+    ]);
     parts.join("\n\n")
 }
 
 fn comparison_headline(result: &ComparisonResult) -> String {
     let passed = result.results.iter().filter(|row| passes(row)).count();
     let count = result.results.len();
-    let verdict = if result.pass { "pass" } else { "PASS, THE OTHERS FAIL" };
+    let verdict = if result.pass { "" } else { ", THE OTHERS DO NOT" };
     format!(
-        "{passed} of {count} methods on {} ({} record) {verdict} the {} % bar; largest error {} %, \
-         seeds {} to {}, {:.1} s",
+        "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
+         form, seeds {} to {}, {:.1} s",
         result.data.path,
         result.data.origin,
         result.tolerance_percent,
@@ -133,34 +156,40 @@ fn passes(row: &MethodRow) -> bool {
 fn oscillation(result: &ComparisonResult) -> String {
     let (oracle, derived) = (&result.oracle, &result.derived);
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    table(
-        &[],
-        vec![
-            row("peaks", result.envelope.peaks.to_string()),
-            row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
-            row("angular frequency ω", format!("{:.6} rad/s", result.envelope.omega_rad_s)),
-            row("decay rate λ", format!("{} 1/s", digits(oracle.decay_rate))),
-            row("R²", format!("{:.6}", oracle.r_squared)),
-            row(
-                "damping ratio ζ",
-                format!("{} ± {:.1e} (standard error)", digits(oracle.zeta), oracle.zeta_std_error),
-            ),
-            row("stiffness", format!("{:.4} N m/rad", derived.stiffness_n_m_per_rad)),
-            row("damping coefficient", format!("{:.4e} N m s/rad", derived.damping_n_m_s_per_rad)),
-            row("critical damping", format!("{:.4e} N m s/rad", derived.critical_damping_n_m_s_per_rad)),
-            row(
-                "quality factor",
-                format!(
-                    "{:.2}; to 1/e in {:.2} cycles",
-                    derived.quality_factor, derived.cycles_to_one_over_e
-                ),
-            ),
-            row(
-                "half-life, time constant",
-                format!("{:.3} s, {:.3} s", derived.half_life_s, derived.time_constant_s),
-            ),
-        ],
-    )
+    let unit = |with_inertia: &str, without: &str| match derived.per_unit_of_inertia {
+        true => format!("{without} per unit of inertia (compare.inertia_kg_m2 is not given)"),
+        false => with_inertia.to_owned(),
+    };
+    let mut rows = vec![
+        row("peaks", result.envelope.peaks.to_string()),
+        row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
+        row("angular frequency ω", format!("{:.6} rad/s", result.envelope.omega_rad_s)),
+        row("decay rate λ", format!("{} 1/s", digits(oracle.decay_rate))),
+        row("R²", format!("{:.6}", oracle.r_squared)),
+        row(
+            "damping ratio ζ",
+            format!("{} ± {:.1e} (standard error)", digits(oracle.zeta), oracle.zeta_std_error),
+        ),
+        row("stiffness", format!("{:.4} {}", derived.stiffness_n_m_per_rad, unit("N m/rad", "1/s^2"))),
+        row(
+            "damping coefficient",
+            format!("{:.4e} {}", derived.damping_n_m_s_per_rad, unit("N m s/rad", "1/s")),
+        ),
+        row(
+            "critical damping",
+            format!("{:.4e} {}", derived.critical_damping_n_m_s_per_rad, unit("N m s/rad", "1/s")),
+        ),
+        row(
+            "quality factor",
+            format!("{:.2}; to 1/e in {:.2} cycles", derived.quality_factor, derived.cycles_to_one_over_e),
+        ),
+        row(
+            "half-life, time constant",
+            format!("{:.3} s, {:.3} s", derived.half_life_s, derived.time_constant_s),
+        ),
+    ];
+    rows.extend(truth(result.truth.as_ref()));
+    table(&[], rows)
 }
 
 fn methods(result: &ComparisonResult) -> String {
@@ -201,7 +230,8 @@ fn comparison_remarks(result: &ComparisonResult) -> String {
         .cautions
         .iter()
         .map(|caution| format!("not borne out: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
-    clock(&result.data).into_iter().chain(cautions).collect::<Vec<_>>().join("\n")
+    let correlation = correlated(result.oracle.residual_autocorrelation);
+    clock(&result.data).into_iter().chain(correlation).chain(cautions).collect::<Vec<_>>().join("\n")
 }
 
 /// Ten significant digits.
@@ -260,13 +290,14 @@ fn clock(data: &DataSummary) -> Vec<String> {
 }
 
 fn remarks(result: &EstimationResult) -> Vec<String> {
-    let mut remarks = clock(&result.data);
-    if result.oracle.residual_autocorrelation.abs() > 0.5 {
-        remarks.push(format!(
-            "note: the residuals of ln A are autocorrelated ({:.2}): the envelope is no pure \
-             exponential, and the standard errors are too small",
-            result.oracle.residual_autocorrelation
-        ));
-    }
-    remarks
+    clock(&result.data).into_iter().chain(correlated(result.oracle.residual_autocorrelation)).collect()
+}
+
+fn correlated(correlation: f64) -> Option<String> {
+    (correlation.abs() > 0.5).then(|| {
+        format!(
+            "note: the residuals of ln A are autocorrelated ({correlation:.2}): the envelope is no pure exponential, and the \
+             standard errors are too small"
+        )
+    })
 }

@@ -56,16 +56,24 @@ pub(super) fn derived(result: &ComparisonResult) -> WordTable {
     // To first order whatever is proportional to λ or to 1/λ has λ's relative standard error.
     let relative = (oracle.std_error / oracle.decay_rate).abs();
     let with = |value: f64| with_uncertainty(value, value.abs() * relative);
-    let rows = [
-        ("Moment of inertia I", significant(derived.inertia_kg_m2, 4), "kg·m²", "as configured"),
-        ("Stiffness k", significant(derived.stiffness_n_m_per_rad, 4), "N·m/rad", "k = I·ω²"),
-        ("Damping coefficient c", with(derived.damping_n_m_s_per_rad), "N·m·s/rad", "c = 2·I·λ"),
-        (
-            "Critical damping",
-            significant(derived.critical_damping_n_m_s_per_rad, 4),
-            "N·m·s/rad",
-            "c_crit = 2·√(k·I)",
-        ),
+    let stiffness = significant(derived.stiffness_n_m_per_rad, 4);
+    let damping = with(derived.damping_n_m_s_per_rad);
+    let critical = significant(derived.critical_damping_n_m_s_per_rad, 4);
+    let mechanical = if derived.per_unit_of_inertia {
+        vec![
+            ("Stiffness per unit of inertia", stiffness, "1/s²", "k/I = ω²"),
+            ("Damping per unit of inertia", damping, "1/s", "c/I = 2·λ"),
+            ("Critical damping per unit of inertia", critical, "1/s", "2·ω"),
+        ]
+    } else {
+        vec![
+            ("Moment of inertia I", significant(derived.inertia_kg_m2, 4), "kg·m²", "as configured"),
+            ("Stiffness k", stiffness, "N·m/rad", "k = I·ω²"),
+            ("Damping coefficient c", damping, "N·m·s/rad", "c = 2·I·λ"),
+            ("Critical damping", critical, "N·m·s/rad", "c_crit = 2·√(k·I)"),
+        ]
+    };
+    let others = [
         ("Quality factor Q", with(derived.quality_factor), "", "Q = 1/(2ζ)"),
         ("Cycles to 1/e of the amplitude", with(derived.cycles_to_one_over_e), "", "ω/(2π·λ) = Q/π"),
         ("Half-life of the amplitude", with(derived.half_life_s), "s", "ln 2/λ"),
@@ -75,12 +83,15 @@ pub(super) fn derived(result: &ComparisonResult) -> WordTable {
         id: "derived",
         title: "Derived parameters".to_owned(),
         note: "The standard errors follow from that of λ to first order; I and ω are taken as known, so \
-               what follows from them alone has none. I comes from the configuration, not from the record."
+               what follows from them alone has none. A record does not tell I: it comes from the configuration \
+               (compare.inertia_kg_m2), and where that names none the numbers are per unit of inertia."
             .to_owned(),
         columns: ["Parameter", "Value ± standard error", "Formula"],
-        rows: rows
+        rows: mechanical
+            .into_iter()
+            .chain(others)
             .map(|(name, value, unit, formula)| [name.to_owned(), quantity(&value, unit), formula.to_owned()])
-            .into(),
+            .collect(),
         is_prose: false,
     }
 }

@@ -96,6 +96,7 @@ pub(crate) fn result() -> ComparisonResult {
             period_s: run.envelope.period_s,
             frequency_hz: 1.0 / run.envelope.period_s,
             inertia_kg_m2: INERTIA,
+            per_unit_of_inertia: false,
             stiffness_n_m_per_rad: stiffness,
             damping_n_m_s_per_rad: 2.0 * INERTIA * oracle.decay_rate,
             critical_damping_n_m_s_per_rad: 2.0 * (stiffness * INERTIA).sqrt(),
@@ -113,6 +114,8 @@ pub(crate) fn result() -> ComparisonResult {
         pass: false,
         seconds: 163.2,
         pipelines: run.pipelines,
+        disagreement: None,
+        truth: None,
         cautions: vec![
             Caution {
                 statement: "Q = 1/(2ζ) ≈ 57 cycles to decay to 1/e".into(),

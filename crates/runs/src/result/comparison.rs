@@ -1,6 +1,8 @@
 //! A comparison of many methods on one envelope.
 
-use super::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, null_is_not_a_number};
+use super::{
+    DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison, null_is_not_a_number,
+};
 use serde::{Deserialize, Serialize};
 
 /// What a comparison found: the content of `result.json` with `task = "compare"`.
@@ -35,6 +37,12 @@ pub struct ComparisonResult {
     pub seconds: f64,
     /// The same record through each pipeline and clock, by certified least squares.
     pub pipelines: Vec<PipelineRow>,
+    /// Where those differ by more than their errors: which, by how much, and which to believe.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disagreement: Option<String>,
+    /// Least squares beside the truth, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth: Option<TruthComparison>,
     /// What is commonly read off such a table and does not follow from it.
     pub cautions: Vec<Caution>,
 }
@@ -46,8 +54,11 @@ pub struct Derived {
     pub period_s: f64,
     /// Frequency, in hertz.
     pub frequency_hz: f64,
-    /// Moment of inertia I as configured, in kg·m².
+    /// Moment of inertia I as configured, in kg·m²; 1 where none is.
     pub inertia_kg_m2: f64,
+    /// Whether no inertia is configured: stiffness and damping are then per unit of inertia, in 1/s² and 1/s.
+    #[serde(default)]
+    pub per_unit_of_inertia: bool,
     /// Stiffness k = I·ω², in N·m/rad.
     pub stiffness_n_m_per_rad: f64,
     /// Damping coefficient c = 2·I·λ, in N·m·s/rad.

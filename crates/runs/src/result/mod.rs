@@ -80,6 +80,31 @@ pub struct EstimationResult {
     pub worst_error_percent: f64,
     /// The same record through each pipeline and clock, by closed-form least squares.
     pub pipelines: Vec<PipelineRow>,
+    /// Where those differ by more than their errors: which, by how much, and which to believe.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disagreement: Option<String>,
+    /// The answer beside the truth, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub truth: Option<TruthComparison>,
+}
+
+/// An answer beside the truth of a simulated record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct TruthComparison {
+    /// The file that states the truth.
+    pub file: String,
+    /// What the true numbers are, in a sentence.
+    pub meaning: String,
+    /// True undamped angular frequency, in rad/s.
+    pub omega_rad_s: Option<f64>,
+    /// Distance of the envelope's frequency from it, in percent, with its sign.
+    pub omega_off_percent: Option<f64>,
+    /// True damping ratio.
+    pub zeta: Option<f64>,
+    /// Distance of the estimate from it, in percent, with its sign.
+    pub zeta_off_percent: Option<f64>,
+    /// The same in standard errors of the estimate.
+    pub zeta_off_std_errors: Option<f64>,
 }
 
 /// Where the record came from and what its file was found to be.
@@ -145,8 +170,12 @@ pub struct OracleSummary {
     pub r_squared: f64,
     /// λ / ω.
     pub zeta: f64,
-    /// Standard error of λ under independent residuals, in 1/s.
+    /// Standard error of λ under independent residuals, in 1/s; the sensor's noise, which weighs more as the amplitude falls,
+    /// is allowed for where the pipeline knows it.
     pub std_error: f64,
+    /// `std_error` over the standard error under residuals of one variance.
+    #[serde(default = "one")]
+    pub scatter_factor: f64,
     /// 95 % interval of λ under independent residuals, in 1/s.
     pub interval_95: [f64; 2],
     /// Standard error of ζ, the frequency taken as known.
@@ -170,7 +199,8 @@ pub struct EstimateSummary {
     pub log_amplitude: f64,
     /// λ / ω.
     pub zeta: f64,
-    /// Standard error of λ, in 1/s, where the estimator states one.
+    /// Standard error of λ, in 1/s, where the estimator states one: that under residuals of one variance, times
+    /// [`OracleSummary::scatter_factor`].
     pub std_error: Option<f64>,
     /// 95 % interval of λ, in 1/s, where the estimator states one.
     pub interval_95: Option<[f64; 2]>,
@@ -267,6 +297,11 @@ pub struct EnvelopeRow {
     pub oracle: f64,
     /// The estimator's fitted function at this time.
     pub estimate: f64,
+}
+
+/// The factor of a result that was written before there was one.
+fn one() -> f64 {
+    1.0
 }
 
 /// JSON has no word for infinite or no number; it writes `null`.

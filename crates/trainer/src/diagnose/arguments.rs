@@ -46,8 +46,8 @@ pub(crate) struct DiagnoseArguments {
     /// ANSWERS/<id>/diagnosis.json; answers that are there already are left alone
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Goes on in the folder of --out where an interrupted diagnosis left it, and gives a finished answer
-    /// again. A batch always goes on
+    /// Resumes an interrupted diagnosis in the folder of --out, or prints its answer again if it is finished. A
+    /// batch always resumes
     #[arg(long, requires = "out")]
     pub(crate) resume: bool,
     #[command(flatten)]

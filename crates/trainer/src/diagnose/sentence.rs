@@ -14,9 +14,9 @@ pub(crate) fn verdict(found: &Diagnosis) -> String {
     };
     // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
     let rest = if gap.ratio_to_floor.interval_95.first().is_some_and(|low| low.powi(2) > 2.0) {
-        "; most of what is left is still not noise"
+        "; most of the remaining error is not noise"
     } else if found.verdict.left_over > 0.5 {
-        "; a part of what is left is still not noise"
+        "; part of the remaining error is not noise"
     } else {
         ""
     };
@@ -113,10 +113,8 @@ fn names(ids: &[&str]) -> String {
 /// Why no experiment is proposed.
 pub(crate) fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
-        Status::None | Status::Calibration => {
-            "None: nothing was named that would have to be told from something else."
-        }
-        Status::Effect => "None: nothing fitted here could stand in the place of what was named.",
+        Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
+        Status::Effect => "None: no other effect explains these records as well as what was named.",
         Status::Unknown => {
             "None that these data suggest: what is missing has no name yet. A second release from another amplitude \
              tells whether it depends on amplitude or on time."

@@ -69,7 +69,8 @@ fn gap(result: &DiagnosisResult) -> String {
             share_with_interval(&gap.closure_of_recalibrated)
         ));
     }
-    table(&["held-out error", "RMS", "floors", ""], rows)
+    let told = "× noise: the RMS over that of the sensor's noise; 1 is as good as a simulator can get";
+    format!("{}\n{told}", table(&["held-out error", "RMS", "× noise", ""], rows))
 }
 
 fn effects(result: &DiagnosisResult) -> String {
@@ -112,17 +113,17 @@ fn apart(result: &DiagnosisResult) -> String {
         .verdict
         .equivalent
         .iter()
-        .map(|class| format!("cannot be told apart on these data: {}", class.join(" ~ ")))
+        .map(|class| format!("not distinguishable on these data: {}", class.join(" ~ ")))
         .collect();
     if lines.is_empty() {
         lines.push(match result.rivals.first() {
             Some(rival) if rival.distance.is_finite() => format!(
-                "told apart: closest to {} is {}, {} noise units away (one class below {DISTINCT_DISTANCE})",
-                rival.effect,
+                "distinguishable: {} is closest to {}, {} noise standard deviations away ({DISTINCT_DISTANCE} are enough)",
                 rival.rival,
+                rival.effect,
                 significant(rival.distance, 2)
             ),
-            _ => "nothing here that could not be told apart".to_owned(),
+            _ => "every effect that was found is distinguishable from the others".to_owned(),
         });
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {

@@ -58,8 +58,20 @@ pub(crate) fn prepare(
             id: problem.id.clone(),
             title: problem.title.clone(),
             origin: data.statements().origin.unwrap_or_default().name().to_owned(),
-            reason: format!("the record {} is not there; its row is left out", data.path),
+            reason: missing(&problem.id, data),
         })),
+    }
+}
+
+/// Why a record's row is left out, and what puts it in.
+fn missing(id: &str, data: &DataSettings) -> String {
+    let path = &data.path;
+    match &data.source {
+        Some(source) => format!(
+            "the record {path} is not there; its row is left out. Get it from {source}, and name it with \
+             problem.{id}.path=FILE"
+        ),
+        None => format!("the record {path} is not there; its row is left out"),
     }
 }
 

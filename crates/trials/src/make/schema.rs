@@ -66,11 +66,13 @@ const TRIALS: &[Field] = &[
     count("engine_cases", "Cases of a physics engine, at most; those of the folder, in order."),
     Field {
         key: "measured",
+        kind: Kind::Path,
         meaning: "Folder with residual-*.csv (columns time_s and residual, in rad) of measured records.",
         ..PLAIN
     },
     Field {
         key: "engine",
+        kind: Kind::Path,
         meaning: "Folder with the records of a physics engine, as experiments/physics-engine makes it.",
         ..PLAIN
     },
