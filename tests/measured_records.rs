@@ -51,13 +51,13 @@ fn every_measured_record_is_read_and_its_clock_decided() {
     let host_log = || ReadOptions { format: Format::HostLog, ..ReadOptions::default() };
     let columns = |columns| ReadOptions { columns, ..ReadOptions::default() };
     let drive = CsvColumns {
-        angle: Some("qm_m".to_owned()),
+        value: Some("qm_m".to_owned()),
         input: Some("vir_V".to_owned()),
         unit: Some(Unit::Meter),
         ..CsvColumns::default()
     };
     let circuit = CsvColumns {
-        angle: Some("output_v".to_owned()),
+        value: Some("output_v".to_owned()),
         input: Some("input_v".to_owned()),
         unit: Some(Unit::Volt),
         sample_rate_hz: Some(610.35),

@@ -73,7 +73,10 @@ pub(crate) fn csv(data: &[u8]) {
     };
     let rate = if first & 0x10 == 0 { None } else { Some(100.0) };
     let columns = CsvColumns { sample_rate_hz: rate, ..CsvColumns::default() };
-    record(rest, &ReadOptions { format: Format::Csv, columns, quantity });
+    record(
+        rest,
+        &ReadOptions { format: Format::Csv, columns, quantity: Some(quantity), ..ReadOptions::default() },
+    );
 }
 
 /// A record file of the other format.

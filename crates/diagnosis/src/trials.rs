@@ -91,7 +91,7 @@ fn measured(record: &str, nominal: &str, options: &ReadOptions) -> Option<(Obser
 
 fn columns(angle: &str, input: Option<&str>) -> ReadOptions {
     let columns = CsvColumns {
-        angle: Some(angle.to_owned()),
+        value: Some(angle.to_owned()),
         input: input.map(str::to_owned),
         ..CsvColumns::default()
     };

@@ -4,7 +4,8 @@ use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
 use envelope::{EnvelopeError, Extraction, PaperPipeline, RecommendedPipeline};
 use estimator::{Entry, Estimator};
 use record::{
-    Clock, ClockChoice, CsvColumns, Format, Origin, Quantity, ReadOptions, Record, Statements, TimeUnit, Unit,
+    Clock, ClockChoice, CsvColumns, Filter, Format, Missing, Origin, Quantity, ReadOptions, Record,
+    Statements, TimeUnit, Unit,
 };
 use serde::Deserialize;
 use settings::{Document, Field, Resolved, Section, SettingsError};
@@ -91,14 +92,19 @@ pub struct DataSettings {
     /// Where the record can be had, where the configuration says so.
     pub source: Option<String>,
     format: Format,
-    quantity: Quantity,
+    quantity: Option<Quantity>,
     /// Which clock to believe.
     pub clock: ClockChoice,
     time: Option<String>,
+    value: Option<String>,
     angle: Option<String>,
     input: Option<String>,
     unit: Option<Unit>,
-    time_unit: TimeUnit,
+    input_unit: Option<Unit>,
+    time_unit: Option<TimeUnit>,
+    #[serde(rename = "where")]
+    filter: Option<Filter>,
+    missing: Missing,
     sample_rate_hz: Option<f64>,
     origin: Option<Origin>,
     stated_rate_hz: Option<f64>,
@@ -113,13 +119,17 @@ impl DataSettings {
             format: self.format,
             columns: CsvColumns {
                 time: self.time.clone(),
-                angle: self.angle.clone(),
+                value: self.value.clone().or_else(|| self.angle.clone()),
                 input: self.input.clone(),
                 unit: self.unit,
+                input_unit: self.input_unit,
                 time_unit: self.time_unit,
                 sample_rate_hz: self.sample_rate_hz,
+                filter: self.filter.clone(),
+                missing: self.missing,
             },
             quantity: self.quantity,
+            ..ReadOptions::default()
         }
     }
 

@@ -1,6 +1,6 @@
 //! The configuration keys of an experiment, apart from the estimator's own.
 
-use record::{ClockChoice, Format, Origin, TimeUnit, Unit};
+use record::{ClockChoice, Format, Missing, Origin, TimeUnit, Unit};
 use settings::{Default, Field, Kind, Section};
 
 /// A field without unit and source, to be refined by struct update.
@@ -95,15 +95,14 @@ pub(crate) const DATA: &[Field] = &[
     Field {
         key: "format",
         kind: Kind::Choice(Format::NAMES),
-        default: Default::Text("csv"),
-        meaning: "Format of the file.",
+        default: Default::Text("auto"),
+        meaning: "Format of the file; auto tells it by the first line.",
         ..PLAIN
     },
     Field {
         key: "quantity",
         kind: Kind::Choice(&["position", "velocity", "acceleration"]),
-        default: Default::Text("position"),
-        meaning: "What the sensor observes.",
+        meaning: "What the sensor observes; left open, what the column's unit and name say, else position.",
         ..PLAIN
     },
     Field {
@@ -113,28 +112,51 @@ pub(crate) const DATA: &[Field] = &[
         meaning: "Which clock to believe: the stamps, an even one in the sample index, or whichever the stamps speak for.",
         ..PLAIN
     },
-    Field { key: "time", meaning: "csv: name of the time column; left open, time_s, time or t.", ..PLAIN },
     Field {
-        key: "angle",
-        meaning: "csv: name of the observed column; left open, angle_rad, angle or angle_deg.",
+        key: "time",
+        meaning: "csv: name of the time column; left open, found by name and unit.",
         ..PLAIN
     },
     Field {
+        key: "value",
+        meaning: "csv: name of the observed column; left open, found by name and unit.",
+        ..PLAIN
+    },
+    Field { key: "angle", meaning: "csv: the same as value, under its former name.", ..PLAIN },
+    Field {
         key: "input",
-        meaning: "csv: name of the measured input's column; left open, torque_nm if there is one.",
+        meaning: "csv: name of the measured input's column; left open, a torque or a force if there is one.",
         ..PLAIN
     },
     Field {
         key: "unit",
         kind: Kind::Choice(Unit::NAMES),
-        meaning: "csv: unit of the observed column; left open, what its name says, else rad.",
+        meaning: "csv: unit of the observed column; left open, what the header says, else rad or m.",
+        ..PLAIN
+    },
+    Field {
+        key: "input_unit",
+        kind: Kind::Choice(Unit::INPUT_NAMES),
+        meaning: "csv: unit of the input; left open, what the header says.",
         ..PLAIN
     },
     Field {
         key: "time_unit",
         kind: Kind::Choice(TimeUnit::NAMES),
-        default: Default::Text("s"),
-        meaning: "csv: unit of the time column.",
+        meaning: "csv: unit of the time column, iso for dates; left open, what the header or the numbers say, else s.",
+        ..PLAIN
+    },
+    Field {
+        key: "where",
+        meaning: "csv: the lines to read, as COLUMN=VALUE, where a file holds several series; left open, all.",
+        ..PLAIN
+    },
+    Field {
+        key: "missing",
+        kind: Kind::Choice(Missing::NAMES),
+        default: Default::Text("segment"),
+        meaning: "csv: cells without a number leave a gap (segment), are closed up where there is no time column (drop), or \
+                  are refused.",
         ..PLAIN
     },
     Field {

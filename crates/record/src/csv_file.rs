@@ -1,128 +1,488 @@
 //! The `csv` format: a header with column names, then numbers.
 
+use crate::dialect::{self, Layout, is_date, is_missing};
 use crate::error::Fault;
-use crate::file::Parsed;
-use crate::header::misread;
+use crate::file::{Parsed, ReadOptions};
+use crate::heading::{Heading, Measure};
+use crate::reading::{ColumnReading, Reading};
+use crate::roles::{Column, Kind, Pick, Roles, assumed_unit, quantity};
 use crate::statement::Statements;
+use crate::times::{Stamp, Times, Told, seconds};
 use crate::unit::{TimeUnit, Unit};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
-/// Which columns to read. Names left open are looked for under the usual ones.
+/// Which columns to read and how. What is left open is found from the file and kept in [`Reading`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvColumns {
-    /// The time column. Usual names: `time_s`, `time`, `t`.
+    /// The time column.
     pub time: Option<String>,
-    /// The observed column. Usual names: `angle_rad`, `angle`, `angle_deg`.
-    pub angle: Option<String>,
-    /// The measured input. Usual name: `torque_nm`; absent where there is none.
+    /// The observed column.
+    pub value: Option<String>,
+    /// The measured input; absent where there is none.
     pub input: Option<String>,
-    /// Unit of the observed column; left open, it is what the column's name says, else radian.
+    /// Unit of the observed column; left open, what the header says, else the SI unit of what moves.
     pub unit: Option<Unit>,
-    /// Unit of the time column.
-    pub time_unit: TimeUnit,
+    /// Unit of the input; left open, what the header says, else as it is.
+    pub input_unit: Option<Unit>,
+    /// Unit of the time column; left open, what the header or the numbers say, else seconds.
+    pub time_unit: Option<TimeUnit>,
     /// Rate at which to lay out a file without a time column, in hertz; a statement to be checked where there is one.
     pub sample_rate_hz: Option<f64>,
+    /// Lines to read; left open, all.
+    pub filter: Option<Filter>,
+    /// What cells without a number mean.
+    pub missing: Missing,
 }
 
-const TIME_NAMES: &[&str] = &["time_s", "time", "t"];
-const ANGLE_NAMES: &[&str] = &["angle_rad", "angle", "angle_deg"];
-const INPUT_NAMES: &[&str] = &["torque_nm"];
+/// Lines with a value in a column, written `COLUMN=VALUE`.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "String")]
+pub struct Filter {
+    /// The column.
+    pub column: String,
+    /// The value that its cells have.
+    pub value: String,
+}
 
-/// Reads the text of a CSV file.
-pub(crate) fn parse(text: &str, columns: &CsvColumns) -> Result<Parsed, Fault> {
-    let mut statements = Statements::default();
-    for comment in text.lines().filter_map(|line| line.trim_start().strip_prefix('#')) {
-        statements.read_comment(comment);
-    }
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .flexible(true)
-        .from_reader(text.as_bytes());
-    let unreadable = |error: csv::Error| Fault::Unreadable { problem: error.to_string() };
-    let header = reader.headers().map_err(unreadable)?.clone();
-    // The reader's own position lies before comments and empty lines.
-    let is_header = |line: &str| !line.is_empty() && !line.starts_with('#');
-    let line = text.lines().zip(1..).find(|(line, _)| is_header(line)).map_or(1, |(_, line)| line);
-    if header.is_empty() {
-        return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
-    }
-    let find = |wanted: Option<&str>, usual: &[&str], key: &'static str| {
-        let candidates = wanted.map_or_else(|| usual.to_vec(), |name| vec![name]);
-        candidates.iter().find_map(|name| header.iter().position(|title| title == *name)).ok_or_else(|| {
-            misread(text, &header, line).unwrap_or_else(|| Fault::MissingColumn {
-                line,
-                wanted: candidates.join("` or `"),
-                found: header.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", "),
-                key,
-            })
-        })
-    };
-    let time = match (find(columns.time.as_deref(), TIME_NAMES, "data.time"), columns.sample_rate_hz) {
-        // Stamps are measured and a rate is said: where they differ, that is told.
-        (Ok(at), rate) => {
-            statements.sample_rate_hz = rate.or(statements.sample_rate_hz);
-            TimeColumn::At(at)
-        }
-        (Err(_), Some(rate)) if columns.time.is_none() => TimeColumn::Rate(rate),
-        (Err(fault), _) => return Err(fault),
-    };
-    let angle = find(columns.angle.as_deref(), ANGLE_NAMES, "data.angle")?;
-    let input = match columns.input.as_deref() {
-        Some(name) => Some(find(Some(name), INPUT_NAMES, "data.input")?),
-        None => find(None, INPUT_NAMES, "data.input").ok(),
-    };
-    let title = |at: usize| header.get(at).unwrap_or_default();
-    let unit = columns.unit.unwrap_or(match title(angle) {
-        "angle_deg" => Unit::Degree,
-        _ => Unit::Radian,
-    });
-    let needed = [Some(angle), input, time.index()].into_iter().flatten().max().unwrap_or(0) + 1;
+impl TryFrom<String> for Filter {
+    type Error = String;
 
-    let mut parsed = Parsed::new(unit, statements);
-    let mut row = csv::StringRecord::new();
-    while reader.read_record(&mut row).map_err(unreadable)? {
-        let line = row.position().map_or(0, csv::Position::line);
-        if row.len() < needed {
-            return Err(Fault::MissingField { line, found: row.len(), expected: header.len() });
+    fn try_from(text: String) -> Result<Self, String> {
+        let (column, value) = text
+            .split_once('=')
+            .ok_or_else(|| format!("`{text}`; expected COLUMN=VALUE, such as joint=elbow"))?;
+        Ok(Self { column: column.trim().to_owned(), value: value.trim().to_owned() })
+    }
+}
+
+impl From<Filter> for String {
+    fn from(filter: Filter) -> Self {
+        format!("{}={}", filter.column, filter.value)
+    }
+}
+
+/// What a cell without a number (empty, `NaN`, `NA`, `null`, `-`, infinite) means in a column that is read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Missing {
+    /// A sample that is not there: the line is left out, and its place in time stays empty, also in a file that is laid
+    /// out at a rate.
+    #[default]
+    Segment,
+    /// A line that is not there: in a file that is laid out at a rate, the following samples move up. With a time column
+    /// the stamps tell where samples lie, and this is the same as [`Missing::Segment`].
+    Drop,
+    /// A fault.
+    Refuse,
+}
+
+impl Missing {
+    /// Every choice's name as configurations write it.
+    pub const NAMES: &'static [&'static str] = &["segment", "drop", "refuse"];
+
+    /// The name as configurations write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Segment => "segment",
+            Self::Drop => "drop",
+            Self::Refuse => "refuse",
         }
-        if row.iter().skip(header.len()).any(|field| !field.is_empty()) {
-            return Err(Fault::ExtraFields { line, found: row.len(), expected: header.len() });
-        }
-        let number = |at: usize| number(row.get(at).unwrap_or_default(), line, title(at));
-        let stamp = match time {
-            TimeColumn::At(at) => columns.time_unit.to_seconds(number(at)?),
-            TimeColumn::Rate(rate) => parsed.len() as f64 / rate,
+    }
+}
+
+/// Rows from which the kind of a column is told.
+const TOLD_FROM: usize = 200;
+/// Most values of a column that tells series apart.
+const MOST_SERIES: usize = 40;
+/// Names of columns that tell series apart.
+const SERIES: &[&str] =
+    &["joint", "axis", "motor", "channel", "sensor", "body", "link", "servo", "name", "id"];
+
+/// The table of a text with its columns told.
+pub(crate) struct Table<'a> {
+    layout: Layout<'a>,
+    pub(crate) columns: Vec<Column>,
+}
+
+impl<'a> Table<'a> {
+    /// Finds out how a text is written and what its columns hold.
+    pub(crate) fn new(text: &'a str) -> Result<Self, Fault> {
+        let layout = dialect::layout(text)?;
+        let below = |at: usize| layout.units.as_ref().and_then(|units| units.get(at)).copied();
+        let step = layout.rows.len().div_ceil(TOLD_FROM).max(1);
+        let rows: Vec<Vec<&str>> =
+            layout.rows.iter().step_by(step).map(|(_, row)| layout.dialect.split(row)).collect();
+        let kind = |at: usize| {
+            let count = |is: &dyn Fn(&str) -> bool| {
+                rows.iter().filter(|row| row.get(at).is_some_and(|cell| is(cell))).count()
+            };
+            let numbers = count(&|cell| layout.dialect.number(cell).is_some());
+            let dates = count(&|cell| is_date(cell) && layout.dialect.number(cell).is_none());
+            let texts = count(&|cell| !is_missing(cell)) - numbers - dates;
+            match () {
+                () if dates > numbers.max(texts) => Kind::Dates,
+                () if texts > numbers => Kind::Text,
+                () => Kind::Numbers,
+            }
         };
-        parsed.push(line, stamp, number(angle)? * unit.to_si())?;
-        if let Some(at) = input {
-            parsed.push_input(number(at)?);
-        }
+        let titles = layout.titles.iter().enumerate();
+        let columns = titles
+            .map(|(at, title)| Column { heading: Heading::parse(title, below(at)), kind: kind(at) })
+            .collect();
+        Ok(Self { layout, columns })
     }
+
+    fn title(&self, at: usize) -> &str {
+        self.columns.get(at).map_or("", |column| column.heading.title.as_str())
+    }
+
+    /// The values of a column in the order of their first line; none where there are too many to tell series apart.
+    fn values(&self, at: usize) -> Vec<&'a str> {
+        let (mut known, mut found) = (BTreeSet::new(), Vec::new());
+        for (_, row) in &self.layout.rows {
+            let value = self.layout.dialect.split(row).get(at).copied().unwrap_or_default();
+            if !value.is_empty() && known.insert(value) {
+                found.push(value);
+            }
+            if found.len() > MOST_SERIES {
+                return Vec::new();
+            }
+        }
+        found
+    }
+
+    /// The column whose values tell series apart and of which none was chosen. Where `any`, whatever text it holds.
+    fn series(&self, any: bool) -> Option<Fault> {
+        let tells = |column: &Column| {
+            let words = column.heading.words.iter();
+            let named =
+                words.clone().count() > 0 && words.clone().all(|word| SERIES.contains(&word.as_str()));
+            named || any && column.kind == Kind::Text
+        };
+        let at = (0..self.columns.len())
+            .filter(|at| self.columns.get(*at).is_some_and(tells))
+            .find(|at| self.values(*at).len() > 1)?;
+        let values = self.values(at);
+        Some(Fault::SeveralValues {
+            line: self.layout.line,
+            column: self.title(at).to_owned(),
+            count: values.len(),
+            values: values.join(", "),
+            example: values.first().copied().unwrap_or_default().to_owned(),
+        })
+    }
+
+    /// The lines that a filter leaves.
+    fn chosen(&self, filter: Option<&(usize, &Filter)>) -> Result<Vec<(u64, Vec<&'a str>)>, Fault> {
+        let rows = self.layout.rows.iter().map(|(line, row)| (*line, self.layout.dialect.split(row)));
+        let Some((at, filter)) = filter else { return Ok(rows.collect()) };
+        let chosen: Vec<_> =
+            rows.filter(|(_, row)| row.get(*at).is_some_and(|cell| *cell == filter.value)).collect();
+        if chosen.is_empty() {
+            return Err(Fault::NoSuchValue {
+                column: filter.column.clone(),
+                value: filter.value.clone(),
+                values: self.values(*at).join(", "),
+            });
+        }
+        Ok(chosen)
+    }
+}
+
+/// The samples of a table, before their stamps are in seconds.
+#[derive(Default)]
+struct Samples {
+    lines: Vec<u64>,
+    /// Numbers of the lines among those chosen.
+    numbers: Vec<usize>,
+    stamps: Vec<Stamp>,
+    values: Vec<f64>,
+    input: Vec<f64>,
+    missing_cells: usize,
+    missing_lines: usize,
+    first_missing: Option<(u64, usize)>,
+}
+
+/// Columns that are read.
+struct Chosen {
+    time: Option<Pick>,
+    /// The column of nanoseconds beside one of seconds.
+    nanoseconds: Option<usize>,
+    value: Pick,
+    input: Option<Pick>,
+}
+
+/// Reads the text of a file of columns.
+pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> {
+    let asked = &options.columns;
+    let mut statements = Statements::default();
+    dialect::statements(text).for_each(|comment| statements.read_comment(comment));
+    let table = Table::new(text)?;
+    let roles = Roles { line: table.layout.line, columns: &table.columns, options };
+    let filter = match &asked.filter {
+        Some(filter) => Some((roles.named(&filter.column, "data.where")?, filter)),
+        None => None,
+    };
+    let time = roles.time()?;
+    let value = roles.value(time)?;
+    let taken: Vec<usize> = [Some(value), time].into_iter().flatten().map(|pick| pick.at).collect();
+    let (input, note) = roles.input(&taken)?;
+    if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
+        return Err(fault);
+    }
+    let chosen = Chosen {
+        time,
+        nanoseconds: time.and_then(|time| nanoseconds(&table.columns, time.at)),
+        value,
+        input,
+    };
+    let rows = table.chosen(filter.as_ref())?;
+    let samples = read(&table, &chosen, &rows)?;
+    if let (Missing::Refuse, Some((line, at))) = (asked.missing, samples.first_missing) {
+        let column = table.title(at).to_owned();
+        return Err(Fault::MissingCells { line, column, count: samples.missing_cells });
+    }
+    if time.is_some() {
+        statements.sample_rate_hz = asked.sample_rate_hz.or(statements.sample_rate_hz);
+    }
+    let (heading, quantity) = (heading(&table, value.at), quantity(heading(&table, value.at), options));
+    let assumed = asked.unit.or(heading.unit()).is_none();
+    let unit =
+        asked.unit.or(heading.unit()).unwrap_or_else(|| assumed_unit(heading, quantity, options.coordinate));
+    let (stamps, time_reading, mut findings) = stamps(&table, &chosen, options, &samples);
+    findings.extend(note);
+    let (input_factor, input_reading) = input_scale(&table, input, unit, options, &mut findings);
+    let reading = Reading {
+        format: "csv".to_owned(),
+        separator: table.layout.dialect.name().to_owned(),
+        decimal: if table.layout.dialect.decimal_comma { "comma" } else { "point" }.to_owned(),
+        header_line: table.layout.line,
+        time: time_reading,
+        sample_rate_hz: if time.is_none() { asked.sample_rate_hz } else { None },
+        value: ColumnReading {
+            column: heading.title.clone(),
+            unit: Some(unit.symbol().to_owned()),
+            because: format!("{}; unit {}", value.because, told(asked.unit.is_some(), assumed)),
+        },
+        input: input_reading,
+        filter: asked.filter.clone().map(String::from),
+        missing_cells: samples.missing_cells,
+        missing_lines: samples.missing_lines,
+        missing: asked.missing,
+        quantity,
+        ..Reading::default()
+    };
+    let mut parsed = Parsed::new(unit, statements, reading);
+    for ((line, stamp), value) in samples.lines.iter().zip(&stamps).zip(&samples.values) {
+        let pushed = parsed.push(*line, *stamp, value * unit.to_si());
+        // Stamps that run backward may be those of several series.
+        pushed.map_err(|fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault))?;
+    }
+    samples.input.iter().for_each(|value| parsed.push_input(value * input_factor));
+    findings.extend(assumed.then(|| like_degrees(&samples.values, unit)).flatten());
+    parsed.findings = findings;
     Ok(parsed)
 }
 
-/// Where the stamps come from.
-enum TimeColumn {
-    At(usize),
-    Rate(f64),
+fn heading<'a>(table: &'a Table<'_>, at: usize) -> &'a Heading {
+    const NONE: &Heading = &Heading { title: String::new(), words: Vec::new(), measure: None };
+    table.columns.get(at).map_or(NONE, |column| &column.heading)
 }
 
-impl TimeColumn {
-    fn index(&self) -> Option<usize> {
-        match self {
-            Self::At(at) => Some(*at),
-            Self::Rate(_) => None,
-        }
+fn told(stated: bool, assumed: bool) -> &'static str {
+    match (stated, assumed) {
+        (true, _) => "from the options",
+        (false, true) => "assumed, none is stated",
+        (false, false) => "from the header",
     }
 }
 
-/// A field as a finite number.
-pub(crate) fn number(text: &str, line: u64, column: &str) -> Result<f64, Fault> {
-    let text = text.trim();
-    let number: f64 = text.parse().map_err(|_| Fault::NotANumber {
-        line,
-        column: column.to_owned(),
-        text: text.chars().take(40).collect(),
-    })?;
-    if number.is_finite() { Ok(number) } else { Err(Fault::NotFinite { line, column: column.to_owned() }) }
+/// The column of nanoseconds that belongs to one of seconds: `header.stamp.secs`, `header.stamp.nsecs`.
+fn nanoseconds(columns: &[Column], time: usize) -> Option<usize> {
+    let title = |column: &Column| column.heading.title.to_lowercase();
+    let own = title(columns.get(time)?);
+    let stem =
+        own.strip_suffix("secs").or_else(|| own.strip_suffix("sec")).filter(|stem| !stem.is_empty())?;
+    let pairs = ["nsecs", "nsec", "nanosec"].map(|ending| format!("{stem}{ending}"));
+    columns.iter().position(|column| pairs.contains(&title(column)))
+}
+
+/// Reads the cells of the chosen columns.
+fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result<Samples, Fault> {
+    let dialect = table.layout.dialect;
+    let width = table.columns.len();
+    let mut samples = Samples::default();
+    let columns: Vec<usize> = [
+        Some(chosen.value.at),
+        chosen.input.map(|pick| pick.at),
+        chosen.time.map(|pick| pick.at),
+        chosen.nanoseconds,
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    let needed = columns.iter().max().map_or(0, |at| at + 1);
+    for (number, (line, row)) in rows.iter().enumerate() {
+        if row.len() < needed {
+            return Err(Fault::MissingField { line: *line, found: row.len(), expected: width });
+        }
+        if row.iter().skip(width).any(|field| !field.is_empty()) {
+            return Err(Fault::ExtraFields { line: *line, found: row.len(), expected: width });
+        }
+        let cell = |at: usize| row.get(at).copied().unwrap_or_default();
+        let missing: Vec<usize> = columns.iter().copied().filter(|at| is_missing(cell(*at))).collect();
+        let read =
+            |at: usize| dialect.number(cell(at)).ok_or_else(|| not_a_number(table, *line, at, cell(at)));
+        if let Some(first) = missing.first() {
+            // A word in the other cells is a fault all the same.
+            columns.iter().filter(|at| !missing.contains(at)).try_for_each(|at| {
+                let known = Some(*at) == chosen.time.map(|pick| pick.at) || read(*at).is_ok();
+                if known { Ok(()) } else { Err(not_a_number(table, *line, *at, cell(*at))) }
+            })?;
+            samples.missing_cells += missing.len();
+            samples.missing_lines += 1;
+            samples.first_missing.get_or_insert((*line, *first));
+            continue;
+        }
+        if let Some(time) = chosen.time {
+            let stamp = |at: usize| {
+                Stamp::parse(cell(at), dialect).ok_or_else(|| not_a_number(table, *line, at, cell(at)))
+            };
+            let whole = stamp(time.at)?;
+            samples.stamps.push(match chosen.nanoseconds {
+                Some(at) => whole.with_nanoseconds(stamp(at)?),
+                None => whole,
+            });
+        }
+        samples.values.push(read(chosen.value.at)?);
+        if let Some(input) = chosen.input {
+            samples.input.push(read(input.at)?);
+        }
+        samples.lines.push(*line);
+        samples.numbers.push(number);
+    }
+    Ok(samples)
+}
+
+fn not_a_number(table: &Table<'_>, line: u64, at: usize, cell: &str) -> Fault {
+    Fault::NotANumber { line, column: table.title(at).to_owned(), text: cell.chars().take(40).collect() }
+}
+
+/// Stamps in seconds, how the time column was read, and what is odd about it.
+fn stamps(
+    table: &Table<'_>,
+    chosen: &Chosen,
+    options: &ReadOptions,
+    samples: &Samples,
+) -> (Vec<f64>, Option<ColumnReading>, Vec<String>) {
+    let asked = &options.columns;
+    let Some(time) = chosen.time else {
+        let rate = asked.sample_rate_hz.unwrap_or(1.0);
+        let place = |(index, number): (usize, &usize)| match asked.missing {
+            Missing::Drop => index as f64 / rate,
+            _ => *number as f64 / rate,
+        };
+        return (samples.numbers.iter().enumerate().map(place).collect(), None, Vec::new());
+    };
+    let heading = heading(table, time.at);
+    let named = match (chosen.nanoseconds, heading.measure) {
+        (Some(_), _) => Some(TimeUnit::Nanosecond),
+        (None, Some(Measure::Time(unit))) => Some(unit),
+        _ => None,
+    };
+    let dates = table.columns.get(time.at).is_some_and(|column| column.kind == Kind::Dates);
+    let Times { seconds, unit, told: how, from_first } =
+        seconds(&samples.stamps, asked.time_unit.or(named), dates);
+    let mut because = match (asked.time_unit, how) {
+        _ if dates => "dates or times of the day".to_owned(),
+        (Some(_), _) => "unit from the options".to_owned(),
+        (None, Told::Stated) => "unit from the header".to_owned(),
+        (None, Told::Magnitude) => "times since 1970 by their size".to_owned(),
+        (None, Told::Assumed) => "unit assumed, none is stated".to_owned(),
+    };
+    if from_first {
+        because.push_str(", counted from the first");
+    }
+    let findings = if how == Told::Assumed { odd_rate(&seconds) } else { None };
+    let reading = ColumnReading {
+        column: heading.title.clone(),
+        unit: Some(unit.name().to_owned()),
+        because: format!("{}; {because}", time.because),
+    };
+    (seconds, Some(reading), findings.into_iter().collect())
+}
+
+/// A sentence where stamps that are taken to be seconds make a rate that hardly any logger has.
+fn odd_rate(stamps: &[f64]) -> Option<String> {
+    let mut steps: Vec<f64> =
+        stamps.iter().zip(stamps.iter().skip(1)).map(|(one, next)| next - one).collect();
+    steps.retain(|step| *step > 0.0);
+    steps.sort_by(f64::total_cmp);
+    let step = *steps.get(steps.len() / 2)?;
+    let unit = match step {
+        step if (1.0..1000.0).contains(&step) => "ms",
+        step if (1e3..1e6).contains(&step) => "us",
+        step if step >= 1e6 => "ns",
+        step if step < 1e-6 => "another unit",
+        _ => return None,
+    };
+    Some(format!(
+        "the time column states no unit and was taken to be in seconds, which makes {:.3e} samples a second; if it is in \
+         {unit}, set `data.time_unit`",
+        1.0 / step
+    ))
+}
+
+/// Factor of the input to SI and how it was read.
+fn input_scale(
+    table: &Table<'_>,
+    input: Option<Pick>,
+    observed: Unit,
+    options: &ReadOptions,
+    findings: &mut Vec<String>,
+) -> (f64, Option<ColumnReading>) {
+    let Some(input) = input else { return (1.0, None) };
+    let heading = heading(table, input.at);
+    let stated = options.columns.input_unit.or(heading.unit());
+    // A commanded position is written in the unit of the position beside it.
+    let commands =
+        ["command", "cmd", "setpoint", "target", "desired", "action"].iter().any(|word| heading.has(word));
+    let unit = stated.or(Some(observed).filter(|_| commands));
+    if stated.is_none() && observed.to_si() != 1.0 {
+        let taken =
+            unit.map_or("left as it is".to_owned(), |unit| format!("taken to be in {}", unit.symbol()));
+        findings.push(format!(
+            "the input `{}` states no unit and was {taken}, beside values in {}; set `data.input_unit` if that is wrong",
+            heading.title,
+            observed.symbol()
+        ));
+    }
+    let how = match (options.columns.input_unit, heading.unit(), unit) {
+        (Some(_), ..) => "from the options",
+        (None, Some(_), _) => "from the header",
+        (None, None, Some(_)) => "assumed to be that of the values",
+        (None, None, None) => "not stated",
+    };
+    let reading = ColumnReading {
+        column: heading.title.clone(),
+        unit: unit.map(|unit| unit.symbol().to_owned()),
+        because: format!("{}; unit {how}", input.because),
+    };
+    (unit.map_or(1.0, Unit::to_si), Some(reading))
+}
+
+/// A sentence where angles without a unit would be more than a turn to either side.
+fn like_degrees(values: &[f64], unit: Unit) -> Option<String> {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let half = 0.5 * (highest - lowest);
+    (unit == Unit::Radian && half > std::f64::consts::TAU).then(|| {
+        format!(
+            "the values state no unit and were taken to be in rad, {:.1} turns to either side; if they are degrees (a factor of \
+             57.3), set `data.unit` to deg",
+            half / std::f64::consts::TAU
+        )
+    })
 }

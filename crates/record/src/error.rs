@@ -1,5 +1,6 @@
 //! What can be wrong with a record.
 
+use crate::words::counted;
 use thiserror::Error;
 
 /// A record that cannot be used, with the file it was read from.
@@ -31,7 +32,7 @@ pub enum Fault {
         needed: usize,
     },
     /// The text is not UTF-8.
-    #[error("is not UTF-8 text (byte {offset}); expected comma-separated text")]
+    #[error("is not UTF-8 text (byte {offset}); expected a text file with columns")]
     NotText {
         /// Offset of the first byte that is not text.
         offset: usize,
@@ -46,19 +47,6 @@ pub enum Fault {
         /// What the format prescribes.
         expected: String,
     },
-    /// The columns are not separated by commas.
-    #[error(
-        "the header `{found}` is separated by {separator}; expected commas between columns: replace them, and write \
-         decimal points"
-    )]
-    OtherSeparator {
-        /// Line of the header, from 1.
-        line: u64,
-        /// The header as written, its beginning.
-        found: String,
-        /// What stands between its names.
-        separator: &'static str,
-    },
     /// Numbers where the columns' names should be.
     #[error(
         "the first line holds numbers, `{found}`; expected a header with the columns' names above them, for example \
@@ -68,14 +56,6 @@ pub enum Fault {
         /// The first line's number, from 1.
         line: u64,
         /// The line as written, its beginning.
-        found: String,
-    },
-    /// A host log that is read as a `csv`.
-    #[error("the header `{found}` is that of a host log; set data.format = \"host-log\"")]
-    HostLogHeader {
-        /// Line of the header, from 1.
-        line: u64,
-        /// The header as written, its beginning.
         found: String,
     },
     /// A column is not there.
@@ -90,6 +70,57 @@ pub enum Fault {
         /// The configuration key that names the column.
         key: &'static str,
     },
+    /// Several columns could each be the one that is looked for.
+    #[error("{found} could each be {what}; set `{key}` to the name of one")]
+    Ambiguous {
+        /// Line of the header, from 1.
+        line: u64,
+        /// What is looked for.
+        what: &'static str,
+        /// The columns.
+        found: String,
+        /// The configuration key that names the column.
+        key: &'static str,
+    },
+    /// The samples of several series stand in one file.
+    #[error(
+        "column `{column}` tells {count} series apart: {values}; choose one: set `data.where` to {column}={example}"
+    )]
+    SeveralValues {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The column that tells them apart.
+        column: String,
+        /// Number of its values.
+        count: usize,
+        /// Its values.
+        values: String,
+        /// The first of them.
+        example: String,
+    },
+    /// No line has the value that is asked for.
+    #[error("no line has `{value}` in column `{column}`, which holds {values}; correct `data.where`")]
+    NoSuchValue {
+        /// The column.
+        column: String,
+        /// The value asked for.
+        value: String,
+        /// Values that the column has.
+        values: String,
+    },
+    /// Cells without a number, where these are refused.
+    #[error(
+        "{}, the first in column `{column}`; set `data.missing` to segment to leave them as gaps, or to drop to \
+         close up the lines around them", counted(*count, "missing cell")
+    )]
+    MissingCells {
+        /// Line of the first, from 1.
+        line: u64,
+        /// Its column.
+        column: String,
+        /// Number of them.
+        count: usize,
+    },
     /// A line has fewer fields than the header.
     #[error("the line has {found} field{}; expected {expected}", if *found == 1 { "" } else { "s" })]
     MissingField {
@@ -102,8 +133,8 @@ pub enum Fault {
     },
     /// A line has more fields than the header: decimal commas, which would be read as other numbers.
     #[error(
-        "{found} fields under a header of {expected}; expected a field for each column. Are there decimal commas? Write \
-         decimal points"
+        "{found} fields under a header of {expected}; expected a field for each column. Are there decimal commas between \
+         commas? Write decimal points, or semicolons between the columns"
     )]
     ExtraFields {
         /// Line, from 1.
@@ -175,9 +206,10 @@ impl Fault {
     fn place(&self) -> String {
         match self {
             Self::BadHeader { line, .. }
-            | Self::OtherSeparator { line, .. }
             | Self::NoHeader { line, .. }
-            | Self::HostLogHeader { line, .. }
+            | Self::Ambiguous { line, .. }
+            | Self::SeveralValues { line, .. }
+            | Self::MissingCells { line, .. }
             | Self::MissingColumn { line, .. }
             | Self::MissingField { line, .. }
             | Self::ExtraFields { line, .. }

@@ -3,9 +3,10 @@
 use crate::csv_file::{self, CsvColumns};
 use crate::error::{Fault, RecordError};
 use crate::host_log;
+use crate::reading::{Coordinate, Reading};
 use crate::record::{Quantity, Record};
 use crate::statement::Statements;
-use crate::unit::Unit;
+use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::Path;
@@ -14,9 +15,12 @@ use std::path::Path;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Format {
-    /// A header with column names, then comma-separated numbers; lines that start with `#` are
-    /// comments, of which `# origin: …`, `# sample_rate_hz: …` and `# samples: …` are statements.
+    /// By the first line.
     #[default]
+    Auto,
+    /// A header with column names, then numbers, with commas, semicolons, tabs or blanks between them; lines that
+    /// start with `#`, `%` or `//` are comments, of which `# origin: …`, `# sample_rate_hz: …` and `# samples: …` are
+    /// statements.
     Csv,
     /// Two header lines, then `wall clock, elapsed s, angle deg`.
     HostLog,
@@ -24,7 +28,7 @@ pub enum Format {
 
 impl Format {
     /// Every format's name as configurations write it.
-    pub const NAMES: &'static [&'static str] = &["csv", "host-log"];
+    pub const NAMES: &'static [&'static str] = &["auto", "csv", "host-log"];
 }
 
 /// How to read a file.
@@ -34,8 +38,13 @@ pub struct ReadOptions {
     pub format: Format,
     /// Columns and units of a `csv` file; a `host-log` has its own.
     pub columns: CsvColumns,
-    /// What the sensor observes.
-    pub quantity: Quantity,
+    /// What the sensor observes; left open, what the column's unit and name say, else a position.
+    pub quantity: Option<Quantity>,
+    /// What moves, where that is known: columns of that dimension are preferred, and what states no unit is in its SI
+    /// unit.
+    pub coordinate: Option<Coordinate>,
+    /// Whether an input is known to drive the system: a command or a voltage is then taken for it too.
+    pub driven: bool,
 }
 
 /// Where a record came from: what is shown to people and kept from estimators and diagnosis.
@@ -49,6 +58,8 @@ pub struct Source {
     pub statements: Statements,
     /// What was noticed while reading: sentences.
     pub findings: Vec<String>,
+    /// How the file was read.
+    pub reading: Reading,
 }
 
 /// Reads a record file.
@@ -73,14 +84,23 @@ pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Rec
             return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
         }
         match options.format {
-            Format::Csv => csv_file::parse(text, &options.columns),
             Format::HostLog => host_log::parse(text),
+            Format::Auto if is_host_log(text, options) => host_log::parse(text),
+            Format::Auto | Format::Csv => csv_file::parse(text, options),
         }?
-        .finish(options.quantity)
+        .finish(options)
     };
-    let (record, statements, findings) = parse().map_err(|fault| fault.in_file(name))?;
-    let source = Source { path: name.to_owned(), digest: digest(bytes), statements, findings };
+    let (record, statements, findings, reading) = parse().map_err(|fault| fault.in_file(name))?;
+    let source = Source { path: name.to_owned(), digest: digest(bytes), statements, findings, reading };
     Ok((record, source))
+}
+
+/// Whether the first line is that of a host log and the options name no column.
+fn is_host_log(text: &str, options: &ReadOptions) -> bool {
+    let columns = &options.columns;
+    columns.time.is_none()
+        && columns.value.is_none()
+        && text.lines().next().is_some_and(|line| host_log::is_header(line.split(',')))
 }
 
 /// The digest of a record file, as [`Source::digest`] has it, without reading what the file holds.
@@ -91,7 +111,7 @@ pub fn file_digest(path: &Path) -> Result<String, RecordError> {
     Ok(digest(&bytes_of(path)?))
 }
 
-fn bytes_of(path: &Path) -> Result<Vec<u8>, RecordError> {
+pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, RecordError> {
     let fault = match std::fs::read(path) {
         Ok(bytes) => return Ok(bytes),
         Err(_) if path.is_dir() => Fault::Folder,
@@ -112,10 +132,11 @@ pub(crate) struct Parsed {
     input: Vec<f64>,
     statements: Statements,
     pub(crate) findings: Vec<String>,
+    pub(crate) reading: Reading,
 }
 
 impl Parsed {
-    pub(crate) fn new(unit: Unit, statements: Statements) -> Self {
+    pub(crate) fn new(unit: Unit, statements: Statements, reading: Reading) -> Self {
         Self {
             unit,
             stamps_s: Vec::new(),
@@ -123,11 +144,8 @@ impl Parsed {
             input: Vec::new(),
             statements,
             findings: Vec::new(),
+            reading,
         }
-    }
-
-    pub(crate) fn len(&self) -> usize {
-        self.stamps_s.len()
     }
 
     /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
@@ -144,9 +162,17 @@ impl Parsed {
         self.input.push(value);
     }
 
-    fn finish(self, quantity: Quantity) -> Result<(Record, Statements, Vec<String>), Fault> {
+    fn finish(self, options: &ReadOptions) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
         let input = (!self.input.is_empty()).then_some(self.input);
+        let quantity = options.quantity.unwrap_or(self.reading.quantity);
+        let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
+        let rate_hz = (self.stamps_s.len().max(1) - 1) as f64 / span;
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
-        Ok((record, self.statements, self.findings))
+        let coordinate = match self.unit.dimension() {
+            Dimension::Angle => Coordinate::Angle,
+            _ => Coordinate::Displacement,
+        };
+        let reading = Reading { quantity, coordinate, ..self.reading }.worded(rate_hz);
+        Ok((record, self.statements, self.findings, reading))
     }
 }

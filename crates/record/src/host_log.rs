@@ -1,8 +1,8 @@
 //! The `host-log` format: two header lines, then `wall clock, elapsed s, angle deg`.
 
-use crate::csv_file::number;
 use crate::error::Fault;
 use crate::file::Parsed;
+use crate::reading::{ColumnReading, Reading};
 use crate::statement::Statements;
 use crate::unit::Unit;
 
@@ -22,7 +22,7 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
                 .to_owned(),
         });
     }
-    let mut parsed = Parsed::new(Unit::Degree, Statements::default());
+    let mut parsed = Parsed::new(Unit::Degree, Statements::default(), reading());
     let mut wall = WallClock::default();
     // The second line of the header is a rule of dashes.
     for (content, line) in lines.skip(1).filter(|(content, _)| !content.trim().is_empty()) {
@@ -42,6 +42,35 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
     }
     parsed.findings.extend(wall.finding());
     Ok(parsed)
+}
+
+/// What is known of a host log without reading it.
+fn reading() -> Reading {
+    let column = |column: &str, unit: &str| ColumnReading {
+        column: column.to_owned(),
+        unit: Some(unit.to_owned()),
+        because: "the format has it".to_owned(),
+    };
+    Reading {
+        format: "host-log".to_owned(),
+        separator: "comma".to_owned(),
+        decimal: "point".to_owned(),
+        header_line: 1,
+        time: Some(column("Time_Elapsed(s)", "s")),
+        value: column("Angle(deg)", "deg"),
+        ..Reading::default()
+    }
+}
+
+/// A field as a finite number.
+fn number(text: &str, line: u64, column: &str) -> Result<f64, Fault> {
+    let text = text.trim();
+    let number: f64 = text.parse().map_err(|_| Fault::NotANumber {
+        line,
+        column: column.to_owned(),
+        text: text.chars().take(40).collect(),
+    })?;
+    if number.is_finite() { Ok(number) } else { Err(Fault::NotFinite { line, column: column.to_owned() }) }
 }
 
 /// Whether these are the columns of a host log.

@@ -9,25 +9,34 @@
 
 mod clock;
 mod csv_file;
+mod dialect;
 mod error;
 mod file;
-mod header;
+mod heading;
 mod host_log;
 mod lattice;
 mod line;
+mod look;
 mod lost;
+mod reading;
 mod record;
+mod roles;
 mod roughness;
 mod stamps;
 mod statement;
+#[cfg(test)]
+mod tests;
+mod times;
 mod unit;
 mod words;
 
 pub use clock::{Clock, ClockChoice, ClockKind};
-pub use csv_file::CsvColumns;
+pub use csv_file::{CsvColumns, Filter, Missing};
 pub use error::{Fault, RecordError};
 pub use file::{Format, ReadOptions, Source, file_digest, read_file, read_text};
 pub use lattice::Lattice;
+pub use look::{ColumnLook, Look, look};
+pub use reading::{ColumnReading, Coordinate, Reading};
 pub use record::{Quantity, Record};
 pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};

@@ -2,68 +2,171 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Unit of the observed column.
+/// Unit of an observed column or of an input.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "String", into = "&'static str")]
+#[expect(missing_docs, reason = "each variant's symbol stands in the table below")]
 pub enum Unit {
-    /// Radian.
-    #[serde(rename = "rad")]
     Radian,
-    /// Degree of angle.
-    #[serde(rename = "deg")]
     Degree,
-    /// Meter.
-    #[serde(rename = "m")]
+    Milliradian,
+    Turn,
     Meter,
-    /// Millimeter.
-    #[serde(rename = "mm")]
+    Centimeter,
     Millimeter,
-    /// Volt: an analog whose displacement is a voltage.
-    #[serde(rename = "V")]
+    Micrometer,
+    Inch,
     Volt,
-    /// Radian per second.
-    #[serde(rename = "rad/s")]
     RadianPerSecond,
-    /// Degree per second.
-    #[serde(rename = "deg/s")]
     DegreePerSecond,
-    /// Meter per second.
-    #[serde(rename = "m/s")]
+    TurnPerMinute,
     MeterPerSecond,
-    /// Radian per second squared.
-    #[serde(rename = "rad/s^2")]
+    CentimeterPerSecond,
+    MillimeterPerSecond,
     RadianPerSecondSquared,
-    /// Meter per second squared.
-    #[serde(rename = "m/s^2")]
+    DegreePerSecondSquared,
     MeterPerSecondSquared,
+    StandardGravity,
+    NewtonMeter,
+    MillinewtonMeter,
+    Newton,
+    Millinewton,
+    Kilonewton,
+    Ampere,
+    Milliampere,
+    Millivolt,
 }
 
+/// Dimension of a quantity: what an observed column can be and what an input is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Dimension {
+    /// An angle or one of its derivatives.
+    Angle,
+    /// A length or one of its derivatives.
+    Length,
+    /// A voltage, which stands for a displacement or drives a system.
+    Voltage,
+    /// A torque, a force or a current: never observed, only an input.
+    Drive,
+}
+
+/// One unit: symbol, factor to SI, SI symbol, dimension, order of the derivative, other spellings in lower case
+/// without blanks.
+type Row = (Unit, &'static str, f64, &'static str, Dimension, usize, &'static [&'static str]);
+
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+const TURN: f64 = std::f64::consts::TAU;
+
+use Dimension::{Angle, Drive, Length, Voltage};
+
+/// Every unit; those up to `g` can be observed.
+#[rustfmt::skip]
+const TABLE: &[Row] = &[
+    (Unit::Radian, "rad", 1.0, "rad", Angle, 0, &["radian", "radians"]),
+    (Unit::Degree, "deg", DEGREE, "rad", Angle, 0, &["degree", "degrees", "°", "grad"]),
+    (Unit::Milliradian, "mrad", 1e-3, "rad", Angle, 0, &["milliradian", "milliradians"]),
+    (Unit::Turn, "turn", TURN, "rad", Angle, 0, &["turns", "rev", "revs", "revolutions"]),
+    (Unit::Meter, "m", 1.0, "m", Length, 0, &["meter", "meters", "metre", "metres"]),
+    (Unit::Centimeter, "cm", 1e-2, "m", Length, 0, &["centimeter", "centimeters"]),
+    (Unit::Millimeter, "mm", 1e-3, "m", Length, 0, &["millimeter", "millimeters", "millimetre"]),
+    (Unit::Micrometer, "um", 1e-6, "m", Length, 0, &["µm", "μm", "micrometer", "micrometers", "micron", "microns"]),
+    (Unit::Inch, "in", 0.0254, "m", Length, 0, &["inch", "inches"]),
+    (Unit::Volt, "V", 1.0, "V", Voltage, 0, &["volt", "volts"]),
+    (Unit::RadianPerSecond, "rad/s", 1.0, "rad/s", Angle, 1, &["rad_s", "rad/sec", "radps", "rad_per_s", "rads^-1"]),
+    (Unit::DegreePerSecond, "deg/s", DEGREE, "rad/s", Angle, 1, &["deg_s", "deg/sec", "degps", "dps", "°/s", "deg_per_s"]),
+    (Unit::TurnPerMinute, "rpm", TURN / 60.0, "rad/s", Angle, 1, &["1/min", "rev/min", "turn/min"]),
+    (Unit::MeterPerSecond, "m/s", 1.0, "m/s", Length, 1, &["m_s", "m/sec", "mps", "m_per_s", "ms^-1"]),
+    (Unit::CentimeterPerSecond, "cm/s", 1e-2, "m/s", Length, 1, &["cm_s", "cm/sec"]),
+    (Unit::MillimeterPerSecond, "mm/s", 1e-3, "m/s", Length, 1, &["mm_s", "mm/sec"]),
+    (Unit::RadianPerSecondSquared, "rad/s^2", 1.0, "rad/s^2", Angle, 2, &["rad_s2", "rad/s2", "rad/s²", "rad/s/s", "rad_per_s2"]),
+    (Unit::DegreePerSecondSquared, "deg/s^2", DEGREE, "rad/s^2", Angle, 2, &["deg_s2", "deg/s2", "deg/s²", "°/s²", "°/s^2"]),
+    (Unit::MeterPerSecondSquared, "m/s^2", 1.0, "m/s^2", Length, 2, &["m_s2", "m/s2", "m/s²", "m/s/s", "m/sec^2", "m/s**2", "m_per_s2"]),
+    (Unit::StandardGravity, "g", 9.806_65, "m/s^2", Length, 2, &["g0", "gn"]),
+    (Unit::NewtonMeter, "N m", 1.0, "N m", Drive, 0, &["nm", "n_m", "n*m", "n·m", "n-m", "newtonmeter", "newtonmeters"]),
+    (Unit::MillinewtonMeter, "mN m", 1e-3, "N m", Drive, 0, &["mnm", "mn_m", "mn*m", "mn·m"]),
+    (Unit::Newton, "N", 1.0, "N", Drive, 0, &["newton", "newtons"]),
+    (Unit::Millinewton, "mN", 1e-3, "N", Drive, 0, &["millinewton"]),
+    (Unit::Kilonewton, "kN", 1e3, "N", Drive, 0, &["kilonewton"]),
+    (Unit::Ampere, "A", 1.0, "A", Drive, 0, &["amp", "amps", "ampere", "amperes"]),
+    (Unit::Milliampere, "mA", 1e-3, "A", Drive, 0, &["milliamp", "milliamps"]),
+    (Unit::Millivolt, "mV", 1e-3, "V", Voltage, 0, &["millivolt", "millivolts"]),
+];
+
 impl Unit {
-    /// Every unit's name as configurations write it.
-    pub const NAMES: &'static [&'static str] =
-        &["rad", "deg", "m", "mm", "V", "rad/s", "deg/s", "m/s", "rad/s^2", "m/s^2"];
+    /// Symbol of every unit that can be observed, as configurations write it.
+    pub const NAMES: &'static [&'static str] = &[
+        "rad", "deg", "mrad", "turn", "m", "cm", "mm", "um", "in", "V", "rad/s", "deg/s", "rpm", "m/s",
+        "cm/s", "mm/s", "rad/s^2", "deg/s^2", "m/s^2", "g", "mV",
+    ];
+
+    /// Symbol of every unit that an input can have, as configurations write it.
+    pub const INPUT_NAMES: &'static [&'static str] = &[
+        "N m", "mN m", "N", "mN", "kN", "V", "mV", "A", "mA", "rad", "deg", "mrad", "turn", "m", "cm", "mm",
+        "um", "in", "rad/s", "deg/s", "rpm", "m/s", "cm/s", "mm/s",
+    ];
+
+    /// The unit with a symbol or another spelling, such as `deg`, `degrees` or `°`.
+    #[must_use]
+    pub fn parse(text: &str) -> Option<Self> {
+        let text: String = text.chars().filter(|sign| !sign.is_whitespace()).collect();
+        let lower = text.to_lowercase();
+        // Case tells mN from MN and nothing else that a log holds.
+        let row = TABLE.iter().find(|row| row.1.replace(' ', "") == text);
+        row.or_else(|| {
+            TABLE
+                .iter()
+                .find(|row| row.1.replace(' ', "").to_lowercase() == lower || row.6.contains(&lower.as_str()))
+        })
+        .map(|row| row.0)
+    }
+
+    fn row(self) -> &'static Row {
+        // The first row is radian; every unit has a row, which a test holds.
+        TABLE.iter().find(|row| row.0 == self).unwrap_or(&TABLE_FIRST)
+    }
+
+    /// Symbol as configurations write it.
+    #[must_use]
+    pub fn symbol(self) -> &'static str {
+        self.row().1
+    }
 
     /// Factor from this unit to the SI unit of [`Unit::si`].
     #[must_use]
     pub fn to_si(self) -> f64 {
-        match self {
-            Self::Degree | Self::DegreePerSecond => std::f64::consts::PI / 180.0,
-            Self::Millimeter => 1e-3,
-            _ => 1.0,
-        }
+        self.row().2
     }
 
     /// Symbol of the SI unit that values are kept in.
     #[must_use]
     pub fn si(self) -> &'static str {
-        match self {
-            Self::Radian | Self::Degree => "rad",
-            Self::Meter | Self::Millimeter => "m",
-            Self::Volt => "V",
-            Self::RadianPerSecond | Self::DegreePerSecond => "rad/s",
-            Self::MeterPerSecond => "m/s",
-            Self::RadianPerSecondSquared => "rad/s^2",
-            Self::MeterPerSecondSquared => "m/s^2",
-        }
+        self.row().3
+    }
+
+    pub(crate) fn dimension(self) -> Dimension {
+        self.row().4
+    }
+
+    /// Order of the time derivative: 0 for positions, 1 for velocities, 2 for accelerations.
+    pub(crate) fn order(self) -> usize {
+        self.row().5
+    }
+}
+
+const TABLE_FIRST: Row = (Unit::Radian, "rad", 1.0, "rad", Angle, 0, &[]);
+
+impl From<Unit> for &'static str {
+    fn from(unit: Unit) -> Self {
+        unit.symbol()
+    }
+}
+
+impl TryFrom<String> for Unit {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        Self::parse(&text)
+            .ok_or_else(|| format!("`{text}` is no unit; expected one of {}", Self::NAMES.join(", ")))
     }
 }
 
@@ -80,20 +183,76 @@ pub enum TimeUnit {
     /// Microsecond.
     #[serde(rename = "us")]
     Microsecond,
+    /// Nanosecond.
+    #[serde(rename = "ns")]
+    Nanosecond,
+    /// Dates and times of ISO 8601, or times of the day as `HH:MM:SS.mmm`.
+    #[serde(rename = "iso")]
+    Iso,
 }
 
 impl TimeUnit {
     /// Every unit's name as configurations write it.
-    pub const NAMES: &'static [&'static str] = &["s", "ms", "us"];
+    pub const NAMES: &'static [&'static str] = &["s", "ms", "us", "ns", "iso"];
+
+    /// Name as configurations write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Second => "s",
+            Self::Millisecond => "ms",
+            Self::Microsecond => "us",
+            Self::Nanosecond => "ns",
+            Self::Iso => "iso",
+        }
+    }
+
+    /// The unit with a name or another spelling, such as `ms`, `msec` or `milliseconds`.
+    pub(crate) fn parse(text: &str) -> Option<Self> {
+        match text.trim().to_lowercase().as_str() {
+            "s" | "sec" | "secs" | "second" | "seconds" => Some(Self::Second),
+            "ms" | "msec" | "msecs" | "millis" | "milliseconds" => Some(Self::Millisecond),
+            "us" | "µs" | "μs" | "usec" | "usecs" | "micros" | "microseconds" => Some(Self::Microsecond),
+            "ns" | "nsec" | "nsecs" | "nanos" | "nanoseconds" => Some(Self::Nanosecond),
+            "iso" | "iso8601" | "iso-8601" => Some(Self::Iso),
+            _ => None,
+        }
+    }
+
+    /// Units in a second.
+    pub(crate) fn per_second(self) -> f64 {
+        match self {
+            Self::Second | Self::Iso => 1.0,
+            Self::Millisecond => 1e3,
+            Self::Microsecond => 1e6,
+            Self::Nanosecond => 1e9,
+        }
+    }
 
     /// Stamp in seconds. Divides by a whole power of ten, which rounds once; multiplying by `1e-3`
     /// would round twice.
     #[must_use]
     pub fn to_seconds(self, stamp: f64) -> f64 {
-        match self {
-            Self::Second => stamp,
-            Self::Millisecond => stamp / 1e3,
-            Self::Microsecond => stamp / 1e6,
+        stamp / self.per_second()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{TABLE, Unit};
+
+    #[test]
+    fn every_unit_has_one_row_and_is_found_by_each_spelling() {
+        for (at, row) in TABLE.iter().enumerate() {
+            assert_eq!(row.0 as usize, at, "{}", row.1);
+            for text in row.6.iter().chain([&row.1]) {
+                assert_eq!(Unit::parse(text), Some(row.0), "{text}");
+            }
         }
+        for name in Unit::NAMES.iter().chain(Unit::INPUT_NAMES) {
+            assert_eq!(Unit::parse(name).unwrap().symbol(), *name);
+        }
+        assert_eq!(Unit::parse("N m").unwrap().si(), "N m");
+        assert_eq!(Unit::parse("furlong"), None);
     }
 }

@@ -155,6 +155,7 @@ fn result() -> EstimationResult {
                 "the angle moves in steps of 1.534 mrad: a 12-bit encoder".into(),
                 "the last 3.2 s lie within two steps of the rest position".into(),
             ],
+            reading: Default::default(),
         },
         envelope: EnvelopeSummary {
             pipeline: "paper".into(),

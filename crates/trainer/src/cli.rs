@@ -26,7 +26,7 @@ Examples:
   trainer configs/pinn.toml                       the shipped, simulated record
   trainer configs/paper.toml                      all of the paper's methods
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
-  trainer configs/pinn.toml data.path=log.csv data.angle=theta data.unit=deg
+  trainer configs/pinn.toml data.path=log.csv data.value=theta data.unit=deg
   trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
                                                   starts, or resumes after an interruption
   trainer configs/pinn.toml --json | jq .estimate.zeta

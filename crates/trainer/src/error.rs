@@ -79,7 +79,7 @@ pub(crate) enum TrainerError {
     MissingInput { file: String, columns: String },
     #[error(
         "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \
-         with --angle, its unit with --unit, or set `coordinate` in the nominal simulator's file"
+         with --value, its unit with --unit, or set `coordinate` in the nominal simulator's file"
     )]
     OtherUnit { file: String, found: &'static str, expected: &'static str },
     #[error(
@@ -165,17 +165,18 @@ impl TrainerError {
     }
 }
 
-/// A record's fault in terms of the command line: columns and formats are named by options there.
+/// A record's fault in terms of the command line: `data.time_unit` is --time-unit there.
 fn options_in(error: &RecordError) -> String {
-    let mut text = error.to_string();
-    for (key, option) in [
-        ("`data.time`", "--time"),
-        ("`data.angle`", "--angle"),
-        ("`data.input`", "--input"),
-        ("data.format = \"csv\"", "--format csv"),
-        ("data.format = \"host-log\"", "--format host-log"),
-    ] {
-        text = text.replace(key, option);
+    in_options(&error.to_string())
+}
+
+/// A sentence that names keys of the section `data`, with the options in their place.
+pub(crate) fn in_options(text: &str) -> String {
+    let mut parts = text.split("`data.");
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (key, rest) = part.split_once('`').unwrap_or((part, ""));
+        told.push_str(&format!("--{}{rest}", key.replace('_', "-")));
     }
-    text
+    told.replace("data.format = \"csv\"", "--format csv")
 }

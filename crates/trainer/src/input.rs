@@ -191,5 +191,6 @@ pub(crate) fn summarize(
         resolution: record.lattice().map(|lattice| lattice.step),
         unit: record.unit().to_owned(),
         findings,
+        reading: source.reading.clone(),
     }
 }

@@ -271,6 +271,7 @@ fn ending(folder: &Path) -> String {
 /// Which clock, the sensor's rate, and what was noticed about the file.
 fn clock(data: &DataSummary) -> Vec<String> {
     let mut remarks = vec![
+        data.reading.sentence.clone(),
         format!("clock in force: {} ({})", data.clock, data.clock_reason),
         format!(
             "sensor: one sample every {:.6} ms, {:.2} ± {:.2} Hz",

@@ -230,7 +230,8 @@ pub(super) struct RecordView<'a> {
 
 pub(super) fn records(result: &DiagnosisResult) -> Vec<RecordView<'_>> {
     fn view(record: &RecordRow) -> RecordView<'_> {
-        let RecordRow { path, digest, origin, samples, duration_s, clock, clock_reason, findings } = record;
+        let RecordRow { path, digest, origin, samples, duration_s, clock, clock_reason, findings, .. } =
+            record;
         RecordView {
             path,
             facts: vec![

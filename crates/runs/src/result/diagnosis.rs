@@ -316,6 +316,9 @@ pub struct RecordRow {
     pub clock_reason: String,
     /// What was noticed while reading: sentences.
     pub findings: Vec<String>,
+    /// How the file was read; empty in answers of earlier versions.
+    #[serde(default)]
+    pub reading: record::Reading,
 }
 
 /// A pair of explanations on these data.

@@ -138,6 +138,9 @@ pub struct DataSummary {
     pub unit: String,
     /// What was noticed about the file: sentences for the reader.
     pub findings: Vec<String>,
+    /// How the file was read; empty in results of earlier versions.
+    #[serde(default)]
+    pub reading: record::Reading,
 }
 
 /// The envelope that every method was given.

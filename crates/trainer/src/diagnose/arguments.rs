@@ -3,7 +3,7 @@
 use crate::cli::Output;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use record::{Quantity, TimeUnit, Unit};
+use record::{Missing, Quantity, TimeUnit, Unit};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -15,16 +15,17 @@ Examples:
   trainer diagnose near.csv far.csv --nominal nominal.toml --out DIR
                                    several records of one system, diagnosed together
   trainer diagnose log.txt --nominal nominal.toml        a host log (wall clock, elapsed s, angle deg)
-  trainer diagnose log.csv --time t --angle theta --unit deg --nominal nominal.toml
-  trainer diagnose drive.csv --angle qm_m --input vir_V --unit m --nominal drive.toml
-  trainer diagnose box.csv --angle output_v --input input_v --unit V --sample-rate 610.35 \\
+  trainer diagnose log.csv --time t --value theta --unit deg --nominal nominal.toml
+  trainer diagnose drive.csv --value qm_m --input vir_V --unit m --nominal drive.toml
+  trainer diagnose box.csv --value output_v --input input_v --unit V --sample-rate 610.35 \\
       --remove-mean --nominal box.toml                   no time column: laid out at that rate
-  trainer diagnose gyro.csv --angle rate --unit deg/s --quantity velocity --nominal nominal.toml
+  trainer diagnose gyro.csv --value rate --unit deg/s --quantity velocity --nominal nominal.toml
   trainer diagnose --batch CASES --out ANSWERS --threads 8
                                    every CASES/<id>/ with record-*.csv and nominal.toml
 
-Columns found without being named: time_s, time or t; angle_rad, angle, angle_deg, position_m,
-velocity_rad_s, velocity_m_s, acceleration_rad_s2 or acceleration_m_s2; torque_nm.
+Separator, decimal sign, columns and units are found from the file and printed: names such as time,
+timestamp_ms, angle [deg], theta, displacement_m, position, velocity_rad_s, gyro (deg/s), torque_nm;
+times in s, ms, us, ns, since 1970 or as dates. What is ambiguous is refused with the option to set.
 
 nominal.toml holds inertia, damping, stiffness and rest_angle in SI units, or all divided by the
 inertia with inertia = 1.0; and, where they apply, coordinate = \"displacement\", input_gain (torque
@@ -86,18 +87,27 @@ pub(crate) struct Reading {
     #[arg(long, value_name = "COLUMN")]
     pub(crate) time: Option<String>,
     /// The observed column, whatever it holds
-    #[arg(long, value_name = "COLUMN")]
-    pub(crate) angle: Option<String>,
+    #[arg(long, value_name = "COLUMN", alias = "angle")]
+    pub(crate) value: Option<String>,
     /// The column of the measured input
     #[arg(long, value_name = "COLUMN")]
     pub(crate) input: Option<String>,
     /// Unit of the observed column [default: by its name, else of the nominal's coordinate]
     #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::NAMES))]
     pub(crate) unit: Option<String>,
-    /// Unit of the time column
-    #[arg(long, value_name = "UNIT", default_value = "s",
-          value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
-    pub(crate) time_unit: String,
+    /// Unit of the input [default: by its header]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::INPUT_NAMES))]
+    pub(crate) input_unit: Option<String>,
+    /// Unit of the time column, iso for dates [default: by its header or its numbers, else s]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
+    pub(crate) time_unit: Option<String>,
+    /// Lines to read, where a file holds several series: --where joint=elbow
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
+    pub(crate) filter: Option<String>,
+    /// Cells without a number: leave a gap (segment), close up a file without a time column (drop), or refuse
+    #[arg(long, value_name = "CHOICE", default_value = "segment",
+          value_parser = PossibleValuesParser::new(Missing::NAMES))]
+    pub(crate) missing: String,
     /// What the sensor observes [default: by the column's name, else position]
     #[arg(long, value_enum)]
     pub(crate) quantity: Option<QuantityChoice>,
@@ -119,10 +129,13 @@ impl Default for Reading {
             format: FormatChoice::Auto,
             clock: "auto".to_owned(),
             time: None,
-            angle: None,
+            value: None,
             input: None,
             unit: None,
-            time_unit: "s".to_owned(),
+            input_unit: None,
+            time_unit: None,
+            filter: None,
+            missing: "segment".to_owned(),
             quantity: None,
             sample_rate: None,
             origin: None,
@@ -161,6 +174,10 @@ impl QuantityChoice {
             Self::Acceleration => Quantity::Acceleration,
         }
     }
+}
+
+fn filter(text: &str) -> Result<String, String> {
+    record::Filter::try_from(text.to_owned()).map(String::from)
 }
 
 fn rate(text: &str) -> Result<f64, String> {

@@ -1,7 +1,7 @@
 //! From files to what a diagnosis may see: no name and no path among it.
 
 use super::arguments::{FormatChoice, Reading};
-use crate::error::TrainerError;
+use crate::error::{TrainerError, in_options};
 use crate::input::summarize;
 use diagnosis::Observations;
 use dynamics::Coordinate;
@@ -25,18 +25,6 @@ pub(crate) struct Given {
     pub(crate) rate_hz: f64,
 }
 
-/// Columns that are found without being named: what they hold is in their name. `angle` alone leaves it open.
-const NAMED: &[(&str, Option<(Unit, Quantity)>)] = &[
-    ("angle_rad", Some((Unit::Radian, Quantity::Position))),
-    ("angle", None),
-    ("angle_deg", Some((Unit::Degree, Quantity::Position))),
-    ("position_m", Some((Unit::Meter, Quantity::Position))),
-    ("velocity_rad_s", Some((Unit::RadianPerSecond, Quantity::Velocity))),
-    ("velocity_m_s", Some((Unit::MeterPerSecond, Quantity::Velocity))),
-    ("acceleration_rad_s2", Some((Unit::RadianPerSecondSquared, Quantity::Acceleration))),
-    ("acceleration_m_s2", Some((Unit::MeterPerSecondSquared, Quantity::Acceleration))),
-];
-
 /// Reads a record by the options and, where these are silent, by its header and the nominal simulator.
 pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Result<Given, TrainerError> {
     let name = path.display().to_string();
@@ -46,13 +34,12 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Re
     }
     let bytes =
         std::fs::read(path).map_err(|error| fault(Fault::Unreadable { problem: error.to_string() }))?;
-    let header = header(&bytes);
-    let options = options(reading, stated.nominal.coordinate(), &header);
+    let options = options(reading, stated);
     let (record, source) =
         record::read_text(&name, &bytes, &options).map_err(TrainerError::DiagnosedRecord)?;
     check_unit(&name, &record, stated.nominal.coordinate())?;
     if stated.driven && record.input().is_none() {
-        return Err(TrainerError::MissingInput { file: name, columns: header.join(", ") });
+        return Err(TrainerError::MissingInput { file: name, columns: header(&bytes) });
     }
     let record = if reading.remove_mean { centered(&record).map_err(fault)? } else { record };
     let choice = word(&reading.clock).unwrap_or_default();
@@ -71,7 +58,8 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Re
             duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
             clock: summary.clock,
             clock_reason: summary.clock_reason,
-            findings: summary.findings,
+            findings: summary.findings.iter().map(|finding| in_options(finding)).collect(),
+            reading: summary.reading,
         },
         quantity: record.quantity(),
         driven: record.input().is_some(),
@@ -79,69 +67,56 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Re
     })
 }
 
-/// The names in the first line that is neither empty nor a comment.
-fn header(bytes: &[u8]) -> Vec<String> {
+/// The first line that is neither empty nor a comment.
+fn header(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
-    let line = lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default();
-    line.split(',').map(|name| name.trim().to_owned()).collect()
+    lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default().to_owned()
 }
 
-fn options(reading: &Reading, coordinate: Coordinate, header: &[String]) -> ReadOptions {
-    let format = match reading.format {
-        FormatChoice::Csv => Format::Csv,
-        FormatChoice::HostLog => Format::HostLog,
-        FormatChoice::Auto if is_host_log(header) => Format::HostLog,
-        FormatChoice::Auto => Format::Csv,
-    };
-    let found = NAMED.iter().find(|(name, _)| header.iter().any(|title| title == name));
-    let angle = reading.angle.clone().or_else(|| found.map(|(name, _)| (*name).to_owned()));
-    let own = angle.as_ref().and_then(|angle| NAMED.iter().find(|(name, _)| name == angle)?.1);
-    let quantity = reading
-        .quantity
-        .map(super::arguments::QuantityChoice::quantity)
-        .or(own.map(|(_, quantity)| quantity))
-        .unwrap_or_default();
-    let unit = reading
-        .unit
-        .as_deref()
-        .and_then(word)
-        .or(own.map(|(unit, _)| unit))
-        .unwrap_or_else(|| usual_unit(coordinate, quantity));
+fn options(reading: &Reading, stated: &StatedNominal) -> ReadOptions {
     ReadOptions {
-        format,
+        format: match reading.format {
+            FormatChoice::Auto => Format::Auto,
+            FormatChoice::Csv => Format::Csv,
+            FormatChoice::HostLog => Format::HostLog,
+        },
         columns: CsvColumns {
             time: reading.time.clone(),
-            angle,
+            value: reading.value.clone(),
             input: reading.input.clone(),
-            unit: Some(unit),
-            time_unit: word(&reading.time_unit).unwrap_or_default(),
+            unit: reading.unit.as_deref().and_then(word),
+            input_unit: reading.input_unit.as_deref().and_then(word),
+            time_unit: reading.time_unit.as_deref().and_then(word),
             sample_rate_hz: reading.sample_rate,
+            filter: reading.filter.as_deref().and_then(word),
+            missing: word(&reading.missing).unwrap_or_default(),
         },
-        quantity,
+        quantity: reading.quantity.map(super::arguments::QuantityChoice::quantity),
+        coordinate: Some(match stated.nominal.coordinate() {
+            Coordinate::Angle => record::Coordinate::Angle,
+            Coordinate::Displacement => record::Coordinate::Displacement,
+        }),
+        driven: stated.driven,
     }
 }
 
-fn is_host_log(header: &[String]) -> bool {
-    let lower: Vec<String> = header.iter().map(|name| name.to_lowercase()).collect();
-    matches!(lower.as_slice(), [_, elapsed, angle] if elapsed.contains("elapsed") && angle.contains("angle"))
-}
-
-fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> Unit {
+/// Symbol of the unit that records of a coordinate are in.
+fn usual_unit(coordinate: Coordinate, quantity: Quantity) -> &'static str {
     match (coordinate, quantity) {
-        (Coordinate::Angle, Quantity::Position) => Unit::Radian,
-        (Coordinate::Angle, Quantity::Velocity) => Unit::RadianPerSecond,
-        (Coordinate::Angle, Quantity::Acceleration) => Unit::RadianPerSecondSquared,
-        (Coordinate::Displacement, Quantity::Position) => Unit::Meter,
-        (Coordinate::Displacement, Quantity::Velocity) => Unit::MeterPerSecond,
-        (Coordinate::Displacement, Quantity::Acceleration) => Unit::MeterPerSecondSquared,
+        (Coordinate::Angle, Quantity::Position) => "rad",
+        (Coordinate::Angle, Quantity::Velocity) => "rad/s",
+        (Coordinate::Angle, Quantity::Acceleration) => "rad/s^2",
+        (Coordinate::Displacement, Quantity::Position) => "m",
+        (Coordinate::Displacement, Quantity::Velocity) => "m/s",
+        (Coordinate::Displacement, Quantity::Acceleration) => "m/s^2",
     }
 }
 
 /// A record whose unit cannot be that of the nominal coordinate is of another system, or mislabeled. A voltage stands
 /// for a displacement, whatever its derivative.
 fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(), TrainerError> {
-    let expected = usual_unit(coordinate, record.quantity()).si();
+    let expected = usual_unit(coordinate, record.quantity());
     let voltage = record.unit() == Unit::Volt.si() && coordinate == Coordinate::Displacement;
     if record.unit() == expected || voltage {
         return Ok(());

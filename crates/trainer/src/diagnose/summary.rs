@@ -230,6 +230,7 @@ fn chain(result: &DiagnosisResult) -> String {
         None => format!("  {}", finding.text),
     }));
     for record in &result.records {
+        lines.push(format!("  {}: {}", record.path, record.reading.sentence));
         lines.extend(record.findings.iter().map(|finding| format!("  {}: {finding}", record.path)));
     }
     if result.samples_used < 0.9999 {

@@ -77,7 +77,7 @@ struct Residual {
 
 impl Residual {
     fn read(path: &Path) -> Result<Self, TrialError> {
-        let columns = CsvColumns { angle: Some("residual".to_owned()), ..CsvColumns::default() };
+        let columns = CsvColumns { value: Some("residual".to_owned()), ..CsvColumns::default() };
         let (record, _) = read_file(path, &ReadOptions { columns, ..ReadOptions::default() })?;
         let (stamps, values) = (record.stamps_s().to_vec(), record.values().to_vec());
         let refused = |problem: String, remedy| TrialError::Outside {

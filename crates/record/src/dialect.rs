@@ -1,0 +1,298 @@
+//! How a file of columns is written: separator, decimal sign, comments, header, line of units.
+
+use crate::error::Fault;
+use crate::heading::measure_of;
+
+/// How a file of columns is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Dialect {
+    /// Sign between cells; a blank stands for any number of blanks and tabs.
+    pub(crate) separator: char,
+    /// Whether numbers have a decimal comma.
+    pub(crate) decimal_comma: bool,
+}
+
+/// Where in a file things are.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Layout<'a> {
+    pub(crate) dialect: Dialect,
+    /// Line of the header, from 1.
+    pub(crate) line: u64,
+    /// Titles of the columns.
+    pub(crate) titles: Vec<&'a str>,
+    /// Cells of the line of units.
+    pub(crate) units: Option<Vec<&'a str>>,
+    /// Lines of text above the header that are neither empty nor comments.
+    pub(crate) preamble: usize,
+    /// Lines with samples.
+    pub(crate) rows: Vec<(u64, &'a str)>,
+}
+
+/// Ways of writing, in the order of trial: of two that read as many numbers the first is taken.
+const TRIED: [(char, bool); 8] = [
+    (';', false),
+    (';', true),
+    ('\t', false),
+    ('\t', true),
+    (',', false),
+    (',', true),
+    (' ', false),
+    (' ', true),
+];
+
+/// Lines from which the way of writing is told.
+const TOLD_FROM: usize = 60;
+
+/// Letters of a line that a message shows.
+const SHOWN: usize = 60;
+
+impl Dialect {
+    /// The cells of a line, trimmed, without their quotes.
+    pub(crate) fn split<'a>(&self, line: &'a str) -> Vec<&'a str> {
+        if self.separator == ' ' {
+            return blanks(line);
+        }
+        let (mut cells, mut start, mut quoted) = (Vec::new(), 0, false);
+        for (at, sign) in line.char_indices() {
+            if sign == '"' {
+                quoted = !quoted;
+            } else if sign == self.separator && !quoted {
+                cells.push(cell(line.get(start..at)));
+                start = at + sign.len_utf8();
+            }
+        }
+        cells.push(cell(line.get(start..)));
+        cells
+    }
+
+    /// A cell as a finite number.
+    pub(crate) fn number(&self, text: &str) -> Option<f64> {
+        let number = match self.decimal_comma {
+            true if text.contains(',') && !text.contains('.') => text.replacen(',', ".", 1).parse().ok(),
+            _ => text.parse().ok(),
+        };
+        number.filter(|number: &f64| number.is_finite())
+    }
+
+    /// How many cells are numbers, dates or times.
+    fn numbers(&self, cells: &[&str]) -> usize {
+        cells.iter().filter(|cell| self.number(cell).is_some() || is_date(cell)).count()
+    }
+
+    /// The separator in words.
+    pub(crate) fn name(&self) -> &'static str {
+        match self.separator {
+            ';' => "semicolon",
+            '\t' => "tab",
+            ' ' => "blank",
+            _ => "comma",
+        }
+    }
+}
+
+fn cell(text: Option<&str>) -> &str {
+    let text = text.unwrap_or_default().trim();
+    text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).map_or(text, str::trim)
+}
+
+/// Cells with blanks between them; a unit in brackets belongs to the name before it.
+fn blanks(line: &str) -> Vec<&str> {
+    let (mut cells, mut start, mut depth) = (Vec::new(), None::<usize>, 0_i32);
+    let mut end = 0;
+    for (at, sign) in line.char_indices().chain([(line.len(), ' ')]) {
+        if sign.is_whitespace() && depth <= 0 {
+            let rest = line.get(at..).unwrap_or_default().trim_start();
+            if let Some(from) = start.filter(|_| !rest.starts_with(['[', '('])) {
+                cells.push(cell(line.get(from..end)));
+                start = None;
+            }
+            continue;
+        }
+        depth += i32::from(matches!(sign, '[' | '(')) - i32::from(matches!(sign, ']' | ')'));
+        start.get_or_insert(at);
+        end = at + sign.len_utf8();
+    }
+    cells.extend(start.map(|from| cell(line.get(from..end))));
+    cells
+}
+
+/// Whether a cell says that there is no number: empty, `NaN`, `NA`, `null`, `-`, infinite.
+pub(crate) fn is_missing(text: &str) -> bool {
+    const WORDS: [&str; 8] = ["nan", "na", "n/a", "null", "none", "inf", "infinity", "nil"];
+    let bare = text.trim_start_matches(['-', '+']);
+    bare.is_empty() || WORDS.iter().any(|word| bare.eq_ignore_ascii_case(word))
+}
+
+/// Whether a cell is a date or a time of the day.
+pub(crate) fn is_date(text: &str) -> bool {
+    let digits = text.chars().filter(char::is_ascii_digit).count();
+    let colons = text.matches(':').count();
+    text.starts_with(|sign: char| sign.is_ascii_digit())
+        && digits >= 4
+        && (colons >= 1 || text.matches('-').count() == 2)
+        && text.chars().all(|sign| sign.is_ascii_digit() || " :-+.,TtZz[]/".contains(sign))
+}
+
+/// The comment in a line, if it is one.
+fn comment(line: &str) -> Option<&str> {
+    let line = line.trim_start();
+    ["#", "%", "//"].iter().find_map(|mark| line.strip_prefix(mark))
+}
+
+/// Comments of a text that begin with `#`.
+pub(crate) fn statements(text: &str) -> impl Iterator<Item = &str> {
+    text.lines().filter_map(|line| line.trim_start().strip_prefix('#'))
+}
+
+/// Finds out how a text is written.
+///
+/// # Errors
+/// [`Fault::Empty`] and [`Fault::NoHeader`].
+pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
+    let all = || text.lines().zip(1_u64..).map(|(line, number)| (number, line));
+    let lines: Vec<(u64, &str)> =
+        all().filter(|(_, line)| !line.trim().is_empty() && comment(line).is_none()).collect();
+    let last = lines.get(lines.len().saturating_sub(TOLD_FROM).max(usize::from(lines.len() > 1))..);
+    let dialect = tell(last.unwrap_or_default());
+    let width = usual_width(dialect, last.unwrap_or_default());
+    let usual = usual_numbers(dialect, last.unwrap_or_default());
+    let is_data = |line: &str| {
+        let count = dialect.numbers(&dialect.split(line));
+        count > 0 && 2 * count > usual
+    };
+    let first = lines.iter().position(|(_, line)| is_data(line)).unwrap_or(lines.len());
+    let above = lines.get(..first).unwrap_or_default();
+    let is_title = |line: &str, width: usize| {
+        let cells = dialect.split(line);
+        dialect.numbers(&cells) == 0
+            && filled(&cells) >= width
+            && cells.iter().any(|cell| cell.chars().any(char::is_alphabetic))
+    };
+    let find = |width: usize| above.iter().rposition(|(_, line)| is_title(line, width));
+    let Some(mut at) = find(width).or_else(|| find(2)).or_else(|| find(1)) else {
+        return in_comment(text, dialect, &lines, width);
+    };
+    let mut units = None;
+    let row = |at: usize| above.get(at).map_or((1, ""), |row| *row);
+    let cells = dialect.split(row(at).1);
+    let before = at.checked_sub(1).filter(|before| is_title(row(*before).1, width));
+    if let Some(before) = before.filter(|_| cells.iter().all(|cell| is_unit(cell))) {
+        units = Some(cells);
+        at = before;
+    }
+    let (line, header) = row(at);
+    let after = at + 1 + usize::from(units.is_some());
+    let rows = lines.get(after..).unwrap_or_default();
+    // A rule of dashes below the header.
+    let is_rule =
+        |line: &str| line.trim().chars().all(|sign| "-=_+|".contains(sign)) && line.trim().len() > 2;
+    let rows =
+        rows.get(usize::from(rows.first().is_some_and(|(_, line)| is_rule(line)))..).unwrap_or_default();
+    Ok(Layout { dialect, line, titles: dialect.split(header), units, preamble: at, rows: rows.to_vec() })
+}
+
+fn is_unit(cell: &str) -> bool {
+    let bare = cell.trim_matches(['[', ']', '(', ')']);
+    bare.is_empty() || bare == "-" || measure_of(bare).is_some()
+}
+
+/// Cells up to the last that is not empty.
+fn filled(cells: &[&str]) -> usize {
+    cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
+}
+
+/// The header in the last comment above the samples: `# time angle`, or `%time,field.data` as ROS writes it.
+fn in_comment<'a>(
+    text: &'a str,
+    dialect: Dialect,
+    lines: &[(u64, &'a str)],
+    width: usize,
+) -> Result<Layout<'a>, Fault> {
+    let Some(&(first, written)) = lines.first() else {
+        return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
+    };
+    let before = text.lines().zip(1_u64..).take_while(|(_, line)| *line < first);
+    let found = before.filter_map(|(content, line)| comment(content).map(|content| (content, line)));
+    let titles = |(content, line): (&'a str, u64)| (dialect.split(content.trim()), line);
+    let is_header = |(cells, _): &(Vec<&str>, u64)| {
+        cells.len() == width
+            && cells.iter().all(|cell| cell.contains(char::is_alphabetic) && !cell.contains(": "))
+    };
+    let Some((titles, line)) = found.map(titles).filter(is_header).last() else {
+        return Err(Fault::NoHeader { line: first, found: written.trim().chars().take(SHOWN).collect() });
+    };
+    Ok(Layout { dialect, line, titles, units: None, preamble: 0, rows: lines.to_vec() })
+}
+
+/// The way of writing that reads most of the lines' cells as numbers in as many cells a line.
+fn tell(lines: &[(u64, &str)]) -> Dialect {
+    let mut best = (-1.0, None);
+    let mut lone = (0, Dialect { separator: ';', decimal_comma: false });
+    for (separator, decimal_comma) in TRIED {
+        let dialect = Dialect { separator, decimal_comma };
+        let width = usual_width(dialect, lines);
+        let (mut cells, mut numbers) = (0, 0);
+        for (_, line) in lines {
+            let found = dialect.split(line);
+            let is_number =
+                |cell: &&&str| dialect.number(cell).is_some() || is_missing(cell) || is_date(cell);
+            // A line of another width tells against this way with all its cells.
+            cells += found.len().max(width);
+            numbers += if filled(&found) <= width { found.iter().filter(is_number).count() } else { 0 };
+        }
+        let share = numbers as f64 / cells.max(1) as f64;
+        if width >= 2 && share > best.0 + 1e-9 {
+            best = (share, Some(dialect));
+        }
+        if width == 1 && numbers > lone.0 && separator == ';' {
+            lone = (numbers, dialect);
+        }
+    }
+    best.1.unwrap_or(lone.1)
+}
+
+/// Number that most lines agree on; the larger where as many agree.
+fn most_common(counts: impl Iterator<Item = usize>) -> usize {
+    let mut tally = std::collections::BTreeMap::new();
+    for count in counts {
+        *tally.entry(count).or_insert(0_usize) += 1;
+    }
+    tally.into_iter().max_by_key(|(count, lines)| (*lines, *count)).map_or(0, |(count, _)| count)
+}
+
+/// Cells that most lines have.
+fn usual_width(dialect: Dialect, lines: &[(u64, &str)]) -> usize {
+    most_common(lines.iter().map(|(_, line)| filled(&dialect.split(line))))
+}
+
+/// Numbers that most lines have.
+fn usual_numbers(dialect: Dialect, lines: &[(u64, &str)]) -> usize {
+    most_common(lines.iter().map(|(_, line)| dialect.numbers(&dialect.split(line))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Dialect, layout};
+
+    #[test]
+    fn separators_decimal_signs_and_headers_are_told() {
+        for (text, separator, decimal_comma, line, titles) in [
+            ("t;w\n0,1;0,5\n0,2;0,4\n", ';', true, 1, "t|w"),
+            ("t\tw\n0.1\t0.5\n", '\t', false, 1, "t|w"),
+            ("# text\nt   w\n0.1   0.5\n 0.2 -1\n", ' ', false, 2, "t|w"),
+            ("t,w\n\"0,1\",\"0,5\"\n", ',', true, 1, "t|w"),
+            ("time [s] angle [deg]\n0.1 0.5\n0.2 0.5\n", ' ', false, 1, "time [s]|angle [deg]"),
+            ("Log of a swing\nRate,100\nt,w\n1,2\n2,3\n", ',', false, 3, "t|w"),
+            ("# t w\n0.1 0.5\n0.2 0.4\n", ' ', false, 1, "t|w"),
+            ("%time,field.data\n1,2\n2,3\n", ',', false, 1, "time|field.data"),
+            ("// rig 4\nt,joint,w\n1,a,2\n2,b,3\n", ',', false, 2, "t|joint|w"),
+            ("t;w\ns;deg\n0,1;3\n0,2;4\n", ';', true, 1, "t|w"),
+            ("stamp,w\n2024-05-01 12:00:00.1,3\n2024-05-01 12:00:00.2,3\n", ',', false, 1, "stamp|w"),
+        ] {
+            let found = layout(text).unwrap();
+            assert_eq!(found.dialect, Dialect { separator, decimal_comma }, "{text}");
+            assert_eq!((found.line, found.titles.join("|").as_str()), (line, titles), "{text}");
+        }
+        assert_eq!(layout("t;w\ns;deg\n0,1;3\n0,2;4\n").unwrap().units, Some(vec!["s", "deg"]));
+    }
+}

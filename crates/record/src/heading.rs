@@ -1,0 +1,163 @@
+//! Name and unit in a column's title.
+
+use crate::unit::{TimeUnit, Unit};
+
+/// A unit of time, or any other.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Measure {
+    Time(TimeUnit),
+    Value(Unit),
+}
+
+/// A column's title taken apart.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Heading {
+    /// The title as written.
+    pub(crate) title: String,
+    /// Words of the name in lower case, without numbers behind them: `field.position0` has `field` and `position`.
+    pub(crate) words: Vec<String>,
+    /// The unit that the title, or the line of units below it, states.
+    pub(crate) measure: Option<Measure>,
+}
+
+/// Endings that are units behind such a name only: `swing_a` is not in amperes.
+const DOUBTFUL: &[(&str, &[&str])] = &[
+    ("a", &["current"]),
+    ("n", &["force", "load"]),
+    ("g", &["acc", "accel", "acceleration"]),
+    ("in", &["displacement", "position", "pos", "travel"]),
+];
+
+impl Heading {
+    /// Takes a title apart: `angle [deg]`, `time (ms)`, `angle / deg`, `velocity_rad_s`; `below` is the cell of a line of
+    /// units, which counts where the title states none.
+    pub(crate) fn parse(title: &str, below: Option<&str>) -> Self {
+        let title = title.trim();
+        let (name, measure) = bracketed(title).unwrap_or_else(|| suffixed(title));
+        let measure =
+            measure.or_else(|| below.and_then(|unit| measure_of(unit.trim_matches(['[', ']', '(', ')']))));
+        Self { title: title.to_owned(), words: words(name), measure }
+    }
+
+    pub(crate) fn unit(&self) -> Option<Unit> {
+        match self.measure {
+            Some(Measure::Value(unit)) => Some(unit),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn time_unit(&self) -> Option<TimeUnit> {
+        match self.measure {
+            Some(Measure::Time(unit)) => Some(unit),
+            _ => None,
+        }
+    }
+
+    pub(crate) fn has(&self, word: &str) -> bool {
+        self.words.iter().any(|own| own == word)
+    }
+}
+
+/// The unit that a text names.
+pub(crate) fn measure_of(text: &str) -> Option<Measure> {
+    TimeUnit::parse(text).map(Measure::Time).or_else(|| Unit::parse(text).map(Measure::Value))
+}
+
+/// `name [unit]`, `name (unit)`, `name / unit` or `name in unit`.
+fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
+    for (open, close) in [('[', ']'), ('(', ')')] {
+        if let Some((name, rest)) = title.rsplit_once(open)
+            && let Some((unit, _)) = rest.split_once(close)
+            && !name.trim().is_empty()
+        {
+            return Some((name, measure_of(unit)));
+        }
+    }
+    [" / ", " in ", ", "].iter().find_map(|between| {
+        let (name, unit) = title.rsplit_once(between)?;
+        measure_of(unit).map(|measure| (name, Some(measure)))
+    })
+}
+
+/// `name_unit`, with the longest ending that is a unit; a name that is a unit of time is a time.
+fn suffixed(title: &str) -> (&str, Option<Measure>) {
+    if let Some(unit) = TimeUnit::parse(title).filter(|unit| *unit != TimeUnit::Iso) {
+        return (title, Some(Measure::Time(unit)));
+    }
+    let breaks = title.match_indices(['_', ' ', '.', '-']).map(|(at, sign)| (at, at + sign.len()));
+    for (end, start) in breaks {
+        let (Some(name), Some(ending)) = (title.get(..end), title.get(start..)) else { continue };
+        let Some(measure) = measure_of(ending).filter(|_| !name.is_empty()) else { continue };
+        let doubtful = DOUBTFUL.iter().find(|(unit, _)| ending.eq_ignore_ascii_case(unit));
+        if doubtful.is_none_or(|(_, names)| words(name).iter().any(|word| names.contains(&word.as_str()))) {
+            return (name, Some(measure));
+        }
+    }
+    (title, None)
+}
+
+/// Words of a name: parted at signs and where a capital follows a small letter, numbers behind them cut off.
+fn words(name: &str) -> Vec<String> {
+    let mut found = vec![String::new()];
+    let mut small = false;
+    for sign in name.chars() {
+        if !sign.is_alphanumeric() || (sign.is_uppercase() && small) {
+            found.push(String::new());
+        }
+        small = sign.is_lowercase();
+        if let Some(last) = found.last_mut().filter(|_| sign.is_alphanumeric()) {
+            last.extend(sign.to_lowercase());
+        }
+    }
+    let cut = |word: String| word.trim_end_matches(|sign: char| sign.is_ascii_digit()).to_owned();
+    found.into_iter().map(cut).filter(|word| !word.is_empty()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Heading, Measure};
+    use crate::unit::{TimeUnit, Unit};
+
+    #[test]
+    fn names_and_units_are_taken_apart() {
+        let time = |unit| Some(Measure::Time(unit));
+        let value = |unit| Some(Measure::Value(unit));
+        for (title, words, measure) in [
+            ("angle [deg]", "angle", value(Unit::Degree)),
+            ("angle (rad)", "angle", value(Unit::Radian)),
+            ("angle_deg", "angle", value(Unit::Degree)),
+            ("theta_rad", "theta", value(Unit::Radian)),
+            ("pos_mm", "pos", value(Unit::Millimeter)),
+            ("Winkel / °", "winkel", value(Unit::Degree)),
+            ("time (ms)", "time", time(TimeUnit::Millisecond)),
+            ("timestamp_ms", "timestamp", time(TimeUnit::Millisecond)),
+            ("t_us", "t", time(TimeUnit::Microsecond)),
+            ("Time [s]", "time", time(TimeUnit::Second)),
+            ("Time_Elapsed(s)", "time elapsed", time(TimeUnit::Second)),
+            ("millis", "millis", time(TimeUnit::Millisecond)),
+            ("displacement_m", "displacement", value(Unit::Meter)),
+            ("velocity_rad_s", "velocity", value(Unit::RadianPerSecond)),
+            ("gyro_z (deg/s)", "gyro z", value(Unit::DegreePerSecond)),
+            ("acceleration_m_s2", "acceleration", value(Unit::MeterPerSecondSquared)),
+            ("accel [g]", "accel", value(Unit::StandardGravity)),
+            ("torque [N m]", "torque", value(Unit::NewtonMeter)),
+            ("torque_nm", "torque", value(Unit::NewtonMeter)),
+            ("torque_mNm", "torque", value(Unit::MillinewtonMeter)),
+            ("force_n", "force", value(Unit::Newton)),
+            ("vir_V", "vir", value(Unit::Volt)),
+            ("current_a", "current", value(Unit::Ampere)),
+            ("swing_a", "swing a", None),
+            ("signal_in", "signal in", None),
+            ("field.position0", "field position", None),
+            ("%time", "time", None),
+            ("jointAngle", "joint angle", None),
+            ("", "", None),
+        ] {
+            let found = Heading::parse(title, None);
+            assert_eq!((found.words.join(" ").as_str(), found.measure), (words, measure), "{title}");
+        }
+        let below = Heading::parse("Weg", Some("[mm]"));
+        assert_eq!(below.unit(), Some(Unit::Millimeter));
+        assert_eq!(Heading::parse("angle_deg", Some("rad")).unit(), Some(Unit::Degree));
+    }
+}

@@ -1,0 +1,79 @@
+//! A first look at a log: all that a reader finds out without being told.
+
+use crate::clock::{Clock, ClockChoice};
+use crate::csv_file::Table;
+use crate::error::RecordError;
+use crate::file::{ReadOptions, Source, bytes_of, read_text};
+use crate::record::Record;
+use crate::roles::Kind;
+use std::path::Path;
+
+/// What a file was found to be.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Look {
+    /// The record.
+    pub record: Record,
+    /// Where it came from, with [`Source::reading`]: dialect, columns, units, quantity, coordinate, missing cells, and
+    /// [`crate::Reading::options`], which read the file in the same way.
+    pub source: Source,
+    /// Every column; none for a host log.
+    pub columns: Vec<ColumnLook>,
+    /// The clock to believe, with the sampling rate.
+    pub clock: Clock,
+}
+
+/// A column of the file.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct ColumnLook {
+    /// Its title as written.
+    pub title: String,
+    /// Symbol of the unit that its title states.
+    pub unit: Option<String>,
+    /// `time`, `value`, `input`, or nothing where it is not read.
+    pub role: Option<&'static str>,
+    /// `numbers`, `dates` or `text`.
+    pub holds: &'static str,
+    /// Why it has its role: a phrase.
+    pub because: Option<String>,
+}
+
+/// Looks at a file.
+///
+/// # Errors
+/// As [`crate::read_file`]: where the file does not say enough, the message names the option to set.
+pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
+    let name = path.display().to_string();
+    let bytes = bytes_of(path)?;
+    let (record, source) = read_text(&name, &bytes, options)?;
+    let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(&name))?;
+    let text = String::from_utf8_lossy(&bytes);
+    let columns = match source.reading.format.as_str() {
+        "csv" => columns(text.trim_start_matches('\u{feff}'), &source),
+        _ => Vec::new(),
+    };
+    Ok(Look { record, source, columns, clock })
+}
+
+fn columns(text: &str, source: &Source) -> Vec<ColumnLook> {
+    let reading = &source.reading;
+    let roles =
+        [("time", reading.time.as_ref()), ("value", Some(&reading.value)), ("input", reading.input.as_ref())];
+    let columns = Table::new(text).map(|table| table.columns).unwrap_or_default();
+    let look = |column: crate::roles::Column| {
+        let role =
+            roles.iter().find(|(_, read)| read.is_some_and(|read| read.column == column.heading.title));
+        let time = column.heading.time_unit().map(|unit| unit.name().to_owned());
+        ColumnLook {
+            unit: time.or(column.heading.unit().map(|unit| unit.symbol().to_owned())),
+            role: role.map(|(role, _)| *role),
+            holds: match column.kind {
+                Kind::Numbers => "numbers",
+                Kind::Dates => "dates",
+                Kind::Text => "text",
+            },
+            because: role.and_then(|(_, read)| read.map(|read| read.because.clone())),
+            title: column.heading.title,
+        }
+    };
+    columns.into_iter().map(look).collect()
+}

@@ -1,0 +1,323 @@
+//! Which column is the time, the observed quantity, the input: by what the options name, else by names and units.
+
+use crate::csv_file::CsvColumns;
+use crate::error::Fault;
+use crate::file::ReadOptions;
+use crate::heading::Heading;
+use crate::reading::Coordinate;
+use crate::record::Quantity;
+use crate::unit::{Dimension, Unit};
+
+/// What the cells of a column are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Numbers,
+    Dates,
+    Text,
+}
+
+/// A column before it is read.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Column {
+    pub(crate) heading: Heading,
+    pub(crate) kind: Kind,
+}
+
+/// A column with the reason why it was taken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) struct Pick {
+    pub(crate) at: usize,
+    pub(crate) because: &'static str,
+}
+
+const NAMED: &str = "named in the options";
+const BY_NAME: &str = "by its name";
+const BY_UNIT: &str = "by its unit";
+const ONLY: &str = "the only other column of numbers";
+
+/// Names of times, those that are surest first.
+const TIMES: &[&str] = &[
+    "time",
+    "t",
+    "timestamp",
+    "stamp",
+    "elapsed",
+    "seconds",
+    "second",
+    "secs",
+    "sec",
+    "millis",
+    "milliseconds",
+    "ms",
+    "micros",
+    "microseconds",
+    "us",
+    "nanos",
+    "ns",
+    "zeit",
+    "datetime",
+    "date",
+    "clock",
+];
+/// Names of positions, those that are surest first; of those a file's first group is taken.
+const POSITIONS: &[&str] = &[
+    "angle",
+    "theta",
+    "displacement",
+    "position",
+    "pos",
+    "phi",
+    "winkel",
+    "weg",
+    "auslenkung",
+    "deflection",
+    "travel",
+    "roll",
+    "pitch",
+    "yaw",
+    "q",
+    "encoder",
+    "enc",
+    "y",
+    "x",
+    "z",
+    "state",
+];
+const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
+const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
+const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
+const INPUTS: &[&str] =
+    &["command", "cmd", "u", "input", "voltage", "setpoint", "target", "action", "desired", "current"];
+/// Words of names that are lengths, where no unit says so.
+const LENGTHS: &[&str] = &["displacement", "deflection", "travel", "weg", "auslenkung"];
+
+/// The first of a list's words that is in a name, as its place in the list.
+fn rank(heading: &Heading, list: &[&str]) -> Option<usize> {
+    list.iter().position(|word| heading.has(word))
+}
+
+fn drives(heading: &Heading) -> bool {
+    rank(heading, TORQUES).or_else(|| rank(heading, INPUTS)).is_some()
+        || heading.unit().is_some_and(|unit| unit.dimension() == Dimension::Drive)
+}
+
+/// What a name says of the quantity, with its rank.
+fn observed(heading: &Heading) -> Option<(Quantity, usize)> {
+    let of = |quantity, list| rank(heading, list).map(|rank| (quantity, rank));
+    let by_unit = heading.unit().map(|unit| quantity_of(unit.order()));
+    of(Quantity::Acceleration, ACCELERATIONS)
+        .or_else(|| of(Quantity::Velocity, VELOCITIES))
+        .or_else(|| of(Quantity::Position, POSITIONS))
+        .map(|(quantity, rank)| (by_unit.unwrap_or(quantity), rank))
+}
+
+pub(crate) fn quantity_of(order: usize) -> Quantity {
+    match order {
+        0 => Quantity::Position,
+        1 => Quantity::Velocity,
+        _ => Quantity::Acceleration,
+    }
+}
+
+/// What a column holds: what is asked for, else what its unit or its name says, else a position.
+pub(crate) fn quantity(heading: &Heading, options: &ReadOptions) -> Quantity {
+    let unit = options.columns.unit.or(heading.unit());
+    options
+        .quantity
+        .or(unit.map(|unit| quantity_of(unit.order())))
+        .or(observed(heading).map(|(quantity, _)| quantity))
+        .unwrap_or_default()
+}
+
+/// The unit of a column that states none.
+pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Option<Coordinate>) -> Unit {
+    let length = rank(heading, LENGTHS).is_some()
+        || quantity == Quantity::Acceleration && rank(heading, ACCELERATIONS).is_some();
+    let coordinate = coordinate.unwrap_or(if length { Coordinate::Displacement } else { Coordinate::Angle });
+    match (coordinate, quantity) {
+        (Coordinate::Angle, Quantity::Position) => Unit::Radian,
+        (Coordinate::Angle, Quantity::Velocity) => Unit::RadianPerSecond,
+        (Coordinate::Angle, Quantity::Acceleration) => Unit::RadianPerSecondSquared,
+        (Coordinate::Displacement, Quantity::Position) => Unit::Meter,
+        (Coordinate::Displacement, Quantity::Velocity) => Unit::MeterPerSecond,
+        (Coordinate::Displacement, Quantity::Acceleration) => Unit::MeterPerSecondSquared,
+    }
+}
+
+/// Columns of a table and what is asked of them.
+pub(crate) struct Roles<'a> {
+    pub(crate) line: u64,
+    pub(crate) columns: &'a [Column],
+    pub(crate) options: &'a ReadOptions,
+}
+
+impl Roles<'_> {
+    fn asked(&self) -> &CsvColumns {
+        &self.options.columns
+    }
+
+    /// The column of a name: as written, else whatever the case, else without its unit.
+    pub(crate) fn named(&self, name: &str, key: &'static str) -> Result<usize, Fault> {
+        let find =
+            |same: &dyn Fn(&Heading) -> bool| self.columns.iter().position(|column| same(&column.heading));
+        find(&|heading| heading.title == name)
+            .or_else(|| find(&|heading| heading.title.eq_ignore_ascii_case(name)))
+            .or_else(|| find(&|heading| heading.words.join("_").eq_ignore_ascii_case(name)))
+            .ok_or_else(|| self.missing(name.to_owned(), key))
+    }
+
+    fn missing(&self, wanted: String, key: &'static str) -> Fault {
+        Fault::MissingColumn { line: self.line, wanted, found: self.titles(|_| true), key }
+    }
+
+    fn titles(&self, shown: impl Fn(&Column) -> bool) -> String {
+        let titles = self.columns.iter().filter(|column| shown(column) && !column.heading.title.is_empty());
+        titles.map(|column| format!("`{}`", column.heading.title)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The time column; none where the options give a rate and the file has no stamps.
+    pub(crate) fn time(&self) -> Result<Option<Pick>, Fault> {
+        if let Some(name) = &self.asked().time {
+            return Ok(Some(Pick { at: self.named(name, "data.time")?, because: NAMED }));
+        }
+        let usable = |column: &&(usize, &Column)| column.1.kind != Kind::Text;
+        let score = |&(_, column): &(usize, &Column)| {
+            let word = rank(&column.heading, TIMES).filter(|_| column.heading.unit().is_none());
+            let has_unit = column.heading.time_unit().is_some();
+            // A date stands after elapsed times: it says when a line was written.
+            let kind = if column.kind == Kind::Dates { 200 } else { 0 };
+            match (word, has_unit) {
+                _ if column.heading.has("elapsed") => Some(kind),
+                (Some(word), _) => Some(kind + 1 + word),
+                (None, true) => Some(kind + 100),
+                (None, false) => (column.kind == Kind::Dates).then_some(kind + 100),
+            }
+        };
+        let columns: Vec<(usize, &Column)> = self.columns.iter().enumerate().collect();
+        let best = columns
+            .iter()
+            .filter(usable)
+            .filter_map(|column| score(column).map(|score| (score, column.0)))
+            .min();
+        match best {
+            Some((score, at)) if score % 200 < 100 => Ok(Some(Pick { at, because: BY_NAME })),
+            Some((_, at)) => Ok(Some(Pick { at, because: BY_UNIT })),
+            None if self.asked().sample_rate_hz.is_some() => Ok(None),
+            None => Err(self.missing("time` or `t".to_owned(), "data.time")),
+        }
+    }
+
+    /// The observed column.
+    pub(crate) fn value(&self, time: Option<Pick>) -> Result<Pick, Fault> {
+        if let Some(name) = &self.asked().value {
+            return Ok(Pick { at: self.named(name, "data.value")?, because: NAMED });
+        }
+        let left: Vec<(usize, &Column)> = self
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(at, column)| {
+                time.is_none_or(|time| time.at != *at)
+                    && column.kind == Kind::Numbers
+                    && column.heading.time_unit().is_none()
+                    && !column.heading.title.is_empty()
+            })
+            .collect();
+        let mut found: Vec<((bool, usize, usize, bool), usize)> =
+            left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
+        found.sort_unstable();
+        match found.as_slice() {
+            [(best, _), (next, _), ..] if best == next => {
+                let tied = |column: &Column| self.score(&column.heading).as_ref() == Some(best);
+                Err(Fault::Ambiguous {
+                    line: self.line,
+                    what: "the observed column",
+                    found: self.titles(tied),
+                    key: "data.value",
+                })
+            }
+            [(_, at), ..] => Ok(Pick { at: *at, because: BY_NAME }),
+            [] => {
+                let other: Vec<usize> =
+                    left.iter().filter(|(_, column)| !drives(&column.heading)).map(|(at, _)| *at).collect();
+                match other.as_slice() {
+                    [at] => Ok(Pick { at: *at, because: ONLY }),
+                    _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
+                }
+            }
+        }
+    }
+
+    /// How well a column suits as the observed one, the best least: first of the nominal's dimension, then positions
+    /// before their derivatives, then by name, then SI units before others.
+    fn score(&self, heading: &Heading) -> Option<(bool, usize, usize, bool)> {
+        if drives(heading) {
+            return None;
+        }
+        let (quantity, rank) = observed(heading).or_else(|| {
+            heading
+                .unit()
+                .filter(|unit| unit.dimension() != Dimension::Voltage)
+                .map(|unit| (quantity_of(unit.order()), 50))
+        })?;
+        if self.options.quantity.is_some_and(|asked| asked != quantity && heading.unit().is_some()) {
+            return None;
+        }
+        let other = match (self.options.coordinate, heading.unit().map(Unit::dimension)) {
+            (Some(Coordinate::Angle), Some(dimension)) => dimension != Dimension::Angle,
+            (Some(Coordinate::Displacement), Some(dimension)) => dimension == Dimension::Angle,
+            (Some(Coordinate::Displacement), None) => heading.has("angle"),
+            (Some(Coordinate::Angle), None) => self::rank(heading, LENGTHS).is_some(),
+            (None, _) => false,
+        };
+        let order = match quantity {
+            Quantity::Position => 0,
+            Quantity::Velocity => 1,
+            Quantity::Acceleration => 2,
+        };
+        Some((other, order, rank, heading.unit().is_some_and(|unit| unit.to_si() != 1.0)))
+    }
+
+    /// The input, where there is one, and a sentence where there could be several. Torques and forces are taken; a
+    /// command or a voltage only where an input is asked for.
+    pub(crate) fn input(&self, taken: &[usize]) -> Result<(Option<Pick>, Option<String>), Fault> {
+        if let Some(name) = &self.asked().input {
+            return Ok((Some(Pick { at: self.named(name, "data.input")?, because: NAMED }), None));
+        }
+        let score = |heading: &Heading| {
+            let torque = rank(heading, TORQUES).map(|_| 0);
+            let by_unit = heading.unit().filter(|unit| matches!(unit.si(), "N m" | "N")).map(|_| 1);
+            let other = rank(heading, INPUTS).map(|rank| 2 + rank).filter(|_| self.options.driven);
+            torque.or(by_unit).or(other)
+        };
+        let mut found: Vec<(usize, usize)> = self
+            .columns
+            .iter()
+            .enumerate()
+            .filter(|(at, column)| column.kind == Kind::Numbers && !taken.contains(at))
+            .filter_map(|(at, column)| Some((score(&column.heading)?, at)))
+            .collect();
+        found.sort_unstable();
+        match found.as_slice() {
+            [] => Ok((None, None)),
+            [(best, _), (next, _), ..] if best == next => {
+                let titles = self.titles(|column| score(&column.heading) == Some(*best));
+                if self.options.driven {
+                    return Err(Fault::Ambiguous {
+                        line: self.line,
+                        what: "the input",
+                        found: titles,
+                        key: "data.input",
+                    });
+                }
+                Ok((
+                    None,
+                    Some(format!(
+                        "{titles} could each be the input and none was taken; name one with `data.input`"
+                    )),
+                ))
+            }
+            [(_, at), ..] => Ok((Some(Pick { at: *at, because: BY_NAME }), None)),
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Files as other programs write them, of one swing.
+
+use crate::{CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit, look, read_text};
+
+/// Time in seconds and angle in radians of a sample.
+fn swing(index: usize) -> (f64, f64) {
+    let time = index as f64 * 0.01;
+    (time, 0.6 * (-0.2 * time).exp() * (9.0 * time).cos())
+}
+
+fn read_with(text: &str, columns: CsvColumns) -> (Record, Source) {
+    let options = ReadOptions { columns, ..ReadOptions::default() };
+    read_text("r.csv", text.as_bytes(), &options).unwrap_or_else(|error| panic!("{error}\n{text:.300}"))
+}
+
+fn read(text: &str) -> (Record, Source) {
+    read_with(text, CsvColumns::default())
+}
+
+fn refusal(text: &str) -> String {
+    read_text("r.csv", text.as_bytes(), &ReadOptions::default()).unwrap_err().to_string()
+}
+
+/// A text of 200 samples below a header.
+fn file(header: &str, row: impl Fn(usize, f64, f64) -> String) -> String {
+    (0..200).fold(format!("{header}\n"), |text, index| {
+        let (time, angle) = swing(index);
+        text + &row(index, time, angle) + "\n"
+    })
+}
+
+fn comma(number: f64, decimals: usize) -> String {
+    format!("{number:.decimals$}").replace('.', ",")
+}
+
+/// Expects the swing, with stamps from zero on.
+fn holds_the_swing((record, source): &(Record, Source), tolerance: f64) {
+    assert_eq!(record.len(), 200, "{}", source.reading.sentence);
+    let first = record.stamps_s()[0];
+    for (index, (stamp, value)) in record.stamps_s().iter().zip(record.values()).enumerate() {
+        let (time, angle) = swing(index);
+        assert!((stamp - first - time).abs() < 1e-6, "{index}: {stamp}; {}", source.reading.sentence);
+        assert!((value - angle).abs() < tolerance, "{index}: {value} {angle}; {}", source.reading.sentence);
+    }
+}
+
+#[test]
+fn files_of_other_programs_are_read_without_options() {
+    let deg = |angle: f64| angle.to_degrees();
+    let epoch = |index: usize| 1_714_564_800_000_000_000_u64 + 10_000_000 * index as u64;
+    let files = [
+        file("Zeit [ms];Winkel [deg]", |_, t, a| format!("{};{}", comma(1e3 * t, 1), comma(deg(a), 5))),
+        file("t\tangle", |_, t, a| format!("{t:.2}\t{a:.7}")),
+        file("time   angle", |_, t, a| format!("  {t:.2}   {a:.7}")),
+        file("# t angle", |_, t, a| format!("{t:.2} {a:.7}")),
+        file("t,theta", |_, t, a| format!("\"{}\",\"{}\"", comma(t, 2), comma(a, 7))),
+        file("%time,field.position0", |i, _, a| format!("{},{a:.7}", epoch(i))),
+        file("header.stamp.secs,header.stamp.nsecs,position", |i, _, a| {
+            format!("{},{},{a:.7}", epoch(i) / 1_000_000_000, epoch(i) % 1_000_000_000)
+        }),
+        file("stamp,angle (deg)", |i, _, a| {
+            format!("2024-05-01T12:00:{:02}.{:03}Z,{:.6}", i / 100, i % 100 * 10, deg(a))
+        }),
+        file("time,position", |i, _, a| format!("16:04:{:02}.{:03},{a:.7}", 58 + i / 100, i % 100 * 10)),
+        file("millis,angle_deg", |_, t, a| format!("{:.0},{:.6}", 1e3 * t, deg(a))),
+        file("timestamp_us,theta_mrad", |_, t, a| format!("{:.0},{:.5}", 1e6 * t, 1e3 * a)),
+        file("Elapsed;Angle\ns;deg", |_, t, a| format!("{t:.2};{:.6}", deg(a))),
+        file("Pendulum log\nOperator: nobody\n\n// units are SI\ntime,q", |_, t, a| format!("{t:.2},{a:.7}")),
+        file("\u{feff}Time [s],angle [°]\r", |_, t, a| format!("{t:.2},{:.6}\r", deg(a))),
+        file("t,y", |_, t, a| format!("{t:.2},{a:.7}")),
+        file("timestamp,observation.state,frame", |i, t, a| format!("{t:.2},{a:.7},{i}")),
+        file("time_s,residual", |_, t, a| format!("{t:.2},{a:.7}")),
+    ];
+    for text in files {
+        let text = text.replace("16:04:60", "16:05:00").replace("16:04:59", "16:04:59");
+        holds_the_swing(&read(&text), 1e-6);
+    }
+}
+
+#[test]
+fn what_was_decided_is_said_in_one_line() {
+    let text = file("Zeit [ms];Winkel [deg]", |i, t, a| {
+        let angle = if i % 70 == 3 { String::new() } else { comma(a.to_degrees(), 5) };
+        format!("{};{angle}", comma(1e3 * t, 1))
+    });
+    let (record, source) = read(&text);
+    assert_eq!(record.len(), 197);
+    assert_eq!(
+        source.reading.sentence,
+        "read as: semicolon-separated, decimal comma; time = \"Zeit [ms]\" in ms; value = \"Winkel [deg]\" in deg; no input; \
+         3 missing cells left as gaps; rate 98.5 Hz"
+    );
+    let options: Vec<String> =
+        source.reading.options().iter().map(|(key, value)| format!("{key}={value}")).collect();
+    assert_eq!(
+        options.join(" "),
+        "format=csv time=Zeit [ms] time_unit=ms value=Winkel [deg] unit=deg missing=segment quantity=position"
+    );
+}
+
+#[test]
+fn a_missing_cell_is_a_gap_or_closed_up_or_refused() {
+    for word in ["", "NaN", "nan", "NA", "null", "-", "inf", "-Inf"] {
+        let text = file("angle_rad,note", |i, _, a| match i {
+            50..60 => format!("{word},x"),
+            _ => format!("{a:.7},x"),
+        });
+        let with = |missing| {
+            let columns = CsvColumns { sample_rate_hz: Some(100.0), missing, ..CsvColumns::default() };
+            let options = ReadOptions { columns, ..ReadOptions::default() };
+            read_text("r.csv", text.as_bytes(), &options)
+        };
+        let (record, source) = with(Missing::Segment).unwrap();
+        assert_eq!((record.len(), source.reading.missing_lines), (190, 10), "{word}");
+        assert!((record.stamps_s()[50] - 0.6).abs() < 1e-9, "the gap stays");
+        let (record, _) = with(Missing::Drop).unwrap();
+        assert!((record.stamps_s()[50] - 0.5).abs() < 1e-9, "the lines close up");
+        let refused = with(Missing::Refuse).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("r.csv:52: 10 missing cells, the first in column `angle_rad`"),
+            "{refused}"
+        );
+        assert!(refused.contains("data.missing"), "{refused}");
+    }
+}
+
+#[test]
+fn one_series_of_several_is_chosen() {
+    let text = (0..200).fold("time_s,joint,angle_rad\n".to_owned(), |text, index| {
+        let (time, angle) = swing(index);
+        text + &format!("{time:.2},Rotation,{angle:.7}\n{time:.2},Pitch,{:.7}\n", 2.0 * angle)
+    });
+    let message = refusal(&text);
+    assert!(message.contains("column `joint` tells 2 series apart: Rotation, Pitch"), "{message}");
+    assert!(message.ends_with("set `data.where` to joint=Rotation"), "{message}");
+    let chosen = |value: &str| CsvColumns {
+        filter: Some(Filter { column: "joint".to_owned(), value: value.to_owned() }),
+        ..CsvColumns::default()
+    };
+    holds_the_swing(&read_with(&text, chosen("Rotation")), 1e-6);
+    let options = ReadOptions { columns: chosen("Elbow"), ..ReadOptions::default() };
+    let message = read_text("r.csv", text.as_bytes(), &options).unwrap_err().to_string();
+    assert!(
+        message.contains("no line has `Elbow` in column `joint`, which holds Rotation, Pitch"),
+        "{message}"
+    );
+    let after = text.replace("joint", "run");
+    assert!(
+        read_text("r.csv", after.as_bytes(), &ReadOptions::default()).is_ok(),
+        "equal stamps are no series"
+    );
+}
+
+#[test]
+fn columns_that_tie_are_listed() {
+    let message = refusal(&file("time_s,q1,q2,tau1", |_, t, a| format!("{t},{a},{a},0")));
+    assert!(
+        message
+            .ends_with("`q1`, `q2` could each be the observed column; set `data.value` to the name of one")
+    );
+    let (_, source) = read_with(
+        &file("time_s,q1,tau1,tau2", |_, t, a| format!("{t},{a},1,2")),
+        CsvColumns { value: Some("q1".to_owned()), ..CsvColumns::default() },
+    );
+    assert_eq!(source.reading.input, None);
+    assert!(source.findings[0].contains("`tau1`, `tau2` could each be the input"), "{:?}", source.findings);
+}
+
+#[test]
+fn the_nominal_coordinate_chooses_among_columns() {
+    let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| format!("{t},{a},{},{a}", 2e3 * a));
+    let options =
+        |coordinate| ReadOptions { coordinate: Some(coordinate), driven: true, ..ReadOptions::default() };
+    let (record, source) =
+        read_text("r", text.as_bytes(), &options(crate::Coordinate::Displacement)).unwrap();
+    assert_eq!((record.unit(), record.values()[0]), ("m", 1.2));
+    // A command without a unit is in that of the position beside it.
+    assert!((record.input().unwrap()[0] - 0.6e-3).abs() < 1e-12);
+    assert!(source.findings[0].contains("taken to be in mm"), "{:?}", source.findings);
+    let (record, _) = read_text("r", text.as_bytes(), &options(crate::Coordinate::Angle)).unwrap();
+    assert_eq!((record.unit(), record.values()[0]), ("rad", 0.6));
+}
+
+#[test]
+fn inputs_are_converted_by_their_header_or_the_option() {
+    let text = file("t,angle_deg,torque [mN m]", |_, t, a| format!("{t},{},250", a.to_degrees()));
+    assert!((read(&text).0.input().unwrap()[0] - 0.25).abs() < 1e-12);
+    let text = file("t,angle_deg,u", |_, t, a| format!("{t},{},90", a.to_degrees()));
+    let columns =
+        CsvColumns { input: Some("u".to_owned()), input_unit: Some(Unit::Degree), ..CsvColumns::default() };
+    let (record, source) = read_with(&text, columns);
+    assert!((record.input().unwrap()[0] - std::f64::consts::FRAC_PI_2).abs() < 1e-12);
+    assert!(source.findings.is_empty(), "{:?}", source.findings);
+}
+
+#[test]
+fn odd_rates_and_angles_are_remarked() {
+    let text = file("time,angle", |_, t, a| format!("{:.0},{}", 1e3 * t, a.to_degrees()));
+    let (_, source) = read(&text);
+    assert!(source.findings[0].contains("if it is in ms, set `data.time_unit`"), "{:?}", source.findings);
+    let (_, source) =
+        read_with(&text, CsvColumns { time_unit: Some(TimeUnit::Millisecond), ..CsvColumns::default() });
+    assert!(source.findings[0].contains("a factor of 57.3"), "{:?}", source.findings);
+    let (_, source) = read_with(
+        &text,
+        CsvColumns {
+            time_unit: Some(TimeUnit::Millisecond),
+            unit: Some(Unit::Degree),
+            ..CsvColumns::default()
+        },
+    );
+    assert!(source.findings.is_empty(), "{:?}", source.findings);
+}
+
+#[test]
+fn files_that_do_not_say_enough_get_the_key_to_set() {
+    for text in ["0.0,0.5\n0.1,0.4\n", "0.0;0.5\n", "0,0;0,5\n", "0.0 0.5\n", "-1e-3\t2\n"] {
+        let message = refusal(text);
+        assert!(message.starts_with("r.csv:1: the first line holds numbers, `"), "{message}");
+    }
+    for (text, expected) in [
+        ("my angle\n0.5\n", "there is no column `time` or `t`; the header has `my angle`. Set `data.time`"),
+        ("t,foo,bar\n0,1,2\n1,2,3\n", "the header has `t`, `foo`, `bar`. Set `data.value`"),
+        ("time_s,angle_deg\n0,01,29,20\n", "r.csv:2: 4 fields under a header of 2; "),
+        ("time_s,angle_deg\n0,1\n1,x\n2,2\n", "r.csv:3: `x` in column `angle_deg` is not a number"),
+    ] {
+        let message = refusal(text);
+        assert!(message.contains(expected), "{message}");
+    }
+}
+
+#[test]
+fn a_separator_at_the_end_of_each_line_is_no_field() {
+    holds_the_swing(&read(&file("time_s,angle_rad", |_, t, a| format!("{t:.2},{a:.7},"))), 1e-6);
+}
+
+#[test]
+fn a_look_tells_columns_and_rate() {
+    let folder = std::env::temp_dir().join(format!("ringdown-look-{}", std::process::id()));
+    #[expect(clippy::disallowed_methods, reason = "a scratch file")]
+    std::fs::write(
+        &folder,
+        file("t_ms;joint;angle [deg]", |_, t, a| format!("{};a;{}", 1e3 * t, a.to_degrees())),
+    )
+    .unwrap();
+    let found = look(&folder, &ReadOptions::default()).unwrap();
+    let columns: Vec<_> =
+        found.columns.iter().map(|column| (column.role, column.unit.as_deref(), column.holds)).collect();
+    assert_eq!(
+        columns,
+        [
+            (Some("time"), Some("ms"), "numbers"),
+            (None, None, "text"),
+            (Some("value"), Some("deg"), "numbers")
+        ]
+    );
+    assert!((found.clock.sample_rate_hz - 100.0).abs() < 1e-6);
+    std::fs::remove_file(&folder).unwrap();
+}

@@ -1,0 +1,163 @@
+//! Stamps from a file's time column, whatever they are written in.
+
+use crate::dialect::{Dialect, is_date};
+use crate::unit::TimeUnit;
+use jiff::Timestamp;
+use jiff::civil::{DateTime, Time};
+use jiff::tz::TimeZone;
+
+/// A stamp as written: whole units and the fraction of one, so that nanoseconds since 1970 keep their differences.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Stamp {
+    whole: i128,
+    fraction: f64,
+}
+
+const DAY_NS: i128 = 86_400_000_000_000;
+
+/// Largest first stamp, in seconds, that is kept as written: eleven days since a start.
+const LARGEST_KEPT_S: f64 = 1e6;
+
+impl Stamp {
+    /// Reads a cell; dates and times of the day in nanoseconds.
+    pub(crate) fn parse(text: &str, dialect: Dialect) -> Option<Self> {
+        if is_date(text) {
+            return date(text).map(|whole| Self { whole, fraction: 0.0 });
+        }
+        let value = dialect.number(text)?;
+        let point = if dialect.decimal_comma { ',' } else { '.' };
+        let (whole, fraction) = text.split_once(point).unwrap_or((text, ""));
+        // With an exponent, or beyond 128 bits, the double is what there is.
+        let exact = whole.parse::<i128>().ok().filter(|_| fraction.bytes().all(|byte| byte.is_ascii_digit()));
+        let Some(exact) = exact.filter(|_| value.abs() >= 1e6) else {
+            return Some(Self { whole: 0, fraction: value });
+        };
+        let part = format!("0.{fraction}0").parse().unwrap_or(0.0);
+        Some(Self { whole: exact, fraction: if value < 0.0 { -part } else { part } })
+    }
+
+    pub(crate) fn value(self) -> f64 {
+        self.whole as f64 + self.fraction
+    }
+
+    fn since(self, first: Self) -> f64 {
+        (self.whole - first.whole) as f64 + (self.fraction - first.fraction)
+    }
+
+    /// Adds seconds and nanoseconds as ROS keeps them.
+    pub(crate) fn with_nanoseconds(self, nanoseconds: Self) -> Self {
+        let whole = (self.value() as i128).saturating_mul(1_000_000_000);
+        Self { whole: whole.saturating_add(nanoseconds.value() as i128), fraction: 0.0 }
+    }
+}
+
+/// ISO 8601 with or without an offset, a blank in place of the T, or a time of the day, in nanoseconds.
+fn date(text: &str) -> Option<i128> {
+    let text = text.trim().replace(',', ".").replace('/', "-");
+    if let Ok(stamp) = text.replacen(' ', "T", 1).parse::<Timestamp>() {
+        return Some(stamp.as_nanosecond());
+    }
+    if let Ok(date) = text.replacen(' ', "T", 1).parse::<DateTime>() {
+        return Some(date.to_zoned(TimeZone::UTC).ok()?.timestamp().as_nanosecond());
+    }
+    let time: Time = text.parse().ok()?;
+    let seconds = i128::from(time.hour()) * 3600 + i128::from(time.minute()) * 60 + i128::from(time.second());
+    Some(seconds * 1_000_000_000 + i128::from(time.subsec_nanosecond()))
+}
+
+/// Stamps in seconds, the unit they were taken to be in, and how that was told.
+pub(crate) struct Times {
+    pub(crate) seconds: Vec<f64>,
+    pub(crate) unit: TimeUnit,
+    pub(crate) told: Told,
+    /// Whether stamps are counted from the first.
+    pub(crate) from_first: bool,
+}
+
+/// How the unit of time was told.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Told {
+    Stated,
+    Magnitude,
+    Assumed,
+}
+
+/// Stamps in seconds: as written where they are elapsed times, from the first one where they are dates or times since
+/// 1970.
+pub(crate) fn seconds(stamps: &[Stamp], stated: Option<TimeUnit>, dates: bool) -> Times {
+    let first = stamps.first().copied().unwrap_or(Stamp { whole: 0, fraction: 0.0 });
+    if dates {
+        // Past midnight a time of the day begins anew.
+        let (mut days, mut previous) = (0, first.whole);
+        let of_day = stamps.iter().all(|stamp| (0..DAY_NS).contains(&stamp.whole));
+        let seconds = stamps.iter().map(|stamp| {
+            if of_day && stamp.whole + days < previous - DAY_NS / 2 {
+                days += DAY_NS;
+            }
+            previous = stamp.whole + days;
+            (previous - first.whole) as f64 / 1e9
+        });
+        return Times {
+            seconds: seconds.collect(),
+            unit: TimeUnit::Iso,
+            told: Told::Stated,
+            from_first: true,
+        };
+    }
+    let (unit, told) = match stated.filter(|unit| *unit != TimeUnit::Iso) {
+        Some(unit) => (unit, Told::Stated),
+        None => since_1970(first.value())
+            .map_or((TimeUnit::Second, Told::Assumed), |unit| (unit, Told::Magnitude)),
+    };
+    let from_first = unit.to_seconds(first.value()).abs() > LARGEST_KEPT_S;
+    let origin = if from_first { first } else { Stamp { whole: 0, fraction: 0.0 } };
+    let seconds = stamps.iter().map(|stamp| unit.to_seconds(stamp.since(origin))).collect();
+    Times { seconds, unit, told, from_first }
+}
+
+/// The unit in which a number is a time between 1980 and 2100.
+fn since_1970(stamp: f64) -> Option<TimeUnit> {
+    let units = [TimeUnit::Second, TimeUnit::Millisecond, TimeUnit::Microsecond, TimeUnit::Nanosecond];
+    units.into_iter().find(|unit| (3.15e8..4.1e9).contains(&unit.to_seconds(stamp)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Stamp, seconds};
+    use crate::dialect::Dialect;
+    use crate::unit::TimeUnit;
+
+    fn read(cells: &[&str], unit: Option<TimeUnit>) -> (Vec<f64>, TimeUnit) {
+        let dialect = Dialect { separator: ',', decimal_comma: false };
+        let stamps: Vec<Stamp> = cells.iter().map(|cell| Stamp::parse(cell, dialect).unwrap()).collect();
+        let times = seconds(&stamps, unit, cells[0].contains(':'));
+        (times.seconds, times.unit)
+    }
+
+    #[test]
+    fn times_since_1970_keep_their_differences() {
+        let (ns, unit) = read(&["1714564800000000001", "1714564800010000004"], None);
+        assert_eq!((ns, unit), (vec![0.0, 0.010000003], TimeUnit::Nanosecond));
+        let (us, unit) = read(&["1714564800000001", "1714564800010001"], None);
+        assert_eq!((us, unit), (vec![0.0, 0.01], TimeUnit::Microsecond));
+        let (ms, unit) = read(&["1714564800000", "1714564800010"], None);
+        assert_eq!((ms, unit), (vec![0.0, 0.01], TimeUnit::Millisecond));
+        let (s, unit) = read(&["1714564800.125", "1714564800.250"], None);
+        assert_eq!((s, unit), (vec![0.0, 0.125], TimeUnit::Second));
+        assert_eq!(read(&["1488.998", "1489.008"], None).0, [1488.998, 1489.008]);
+        assert_eq!(read(&["5", "15"], Some(TimeUnit::Millisecond)).0, [0.005, 0.015]);
+    }
+
+    #[test]
+    fn dates_and_times_of_the_day() {
+        for cells in [
+            ["2024-05-01T12:00:00.125Z", "2024-05-01T12:00:00.250Z"],
+            ["2024-05-01 12:00:00.125", "2024-05-01 12:00:00.250"],
+            ["2024-05-01T12:00:00.125+02:00", "2024-05-01T12:00:00.250+02:00"],
+            ["16:04:31.125", "16:04:31.250"],
+            ["23:59:59.950", "00:00:00.075"],
+        ] {
+            assert_eq!(read(&cells, None), (vec![0.0, 0.125], TimeUnit::Iso), "{cells:?}");
+        }
+    }
+}
