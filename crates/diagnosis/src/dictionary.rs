@@ -180,9 +180,10 @@ fn law(candidate: Candidate, values: &[f64], path: &Path, nominal: &Coefficients
 /// −z along a path, for Dahl's law: exact between samples of a motion in one direction.
 fn bending(displacement: f64, path: &Path, data: &Data, nominal: &Coefficients<f64>) -> Vec<f64> {
     let position = &path.motion.position;
+    let rest = nominal.rest_angle + data.facts.rest_moved;
     let mut z = match (position.first(), path.motion.velocity.first()) {
         (Some(position), Some(velocity)) if !path.first => {
-            bent(position - nominal.rest_angle, velocity / data.facts.frequency, displacement).z
+            bent(position - rest, velocity / data.facts.frequency, displacement).z
         }
         _ => 0.0,
     };

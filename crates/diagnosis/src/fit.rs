@@ -68,9 +68,13 @@ pub(crate) fn first_starts(data: &Data, hypothesis: &Hypothesis) -> Vec<Vec<f64>
     data.segments.iter().map(|segment| extended(&segment.guess, hypothesis)).collect()
 }
 
-/// A start state with as many entries as a hypothesis has: hidden bodies move along.
+/// A start state with as many entries as a hypothesis has: that of known hidden bodies stays where there is one, others
+/// move along.
 pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
-    start.iter().copied().take(2).cycle().take(hypothesis.start_length()).collect()
+    let known = start.iter().copied().take(hypothesis.least_start_length());
+    let along = start.iter().copied().take(2).cycle();
+    let missing = hypothesis.start_length().saturating_sub(known.len());
+    known.chain(along.take(missing)).collect()
 }
 
 impl Fit {

@@ -271,7 +271,7 @@ mod tests {
     }
 
     fn data(observations: &Observations) -> Data {
-        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &nominal()).unwrap()
+        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &(&nominal()).into()).unwrap()
     }
 
     #[test]
@@ -312,7 +312,7 @@ mod tests {
     #[test]
     fn a_record_without_effects_is_followed_as_a_whole() {
         let data = data(&observed(&[]));
-        let base = baseline(&data, &nominal()).unwrap().calibrated;
+        let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
         let horizon = Horizon::longest(&data, &base);
         assert_eq!(horizon.data.segments.len(), 1);
         let noise = (horizon.calibrated.squares / horizon.calibrated.freedom()).sqrt();

@@ -3,7 +3,7 @@
 use crate::prediction::{KINDS, PREDICT_SECTIONS, fields_of};
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
 use crate::{
-    NOMINAL, Pipeline, ProblemSource, Single, Task, is_prediction, resolve, resolve_nominal,
+    KNOWN_EFFECT, NOMINAL, Pipeline, ProblemSource, Single, Task, is_prediction, resolve, resolve_nominal,
     resolve_prediction,
 };
 use envelope::Envelope;
@@ -46,7 +46,7 @@ fn document(text: &str) -> Document {
 
 /// Every declared key with the name of its section.
 fn declared() -> Vec<(String, Field)> {
-    let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL]);
+    let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL, &KNOWN_EFFECT]);
     let fixed =
         sections.flat_map(|section| section.fields.iter().map(|field| (section.name.to_owned(), *field)));
     let problems = KINDS.iter().map(Some).chain([None]).flat_map(|kind| {
