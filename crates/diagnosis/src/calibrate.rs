@@ -5,6 +5,8 @@ use crate::error::DiagnosisError;
 use crate::fit::{Effort, Fit, Moving, Point, first_starts, fit};
 use crate::hypothesis::{Calibrated, Hypothesis, Known};
 use crate::segments::Data;
+use crate::verdict::significant;
+use crate::work::OFF_BY_CHANCE;
 use dynamics::{Hold, Nominal, NominalSimulator, SystemEffect};
 
 /// The given simulator and the recalibrated one.
@@ -14,6 +16,14 @@ pub(crate) struct Baseline {
     pub(crate) nominal: Fit,
     /// Coefficients fitted too.
     pub(crate) calibrated: Fit,
+}
+
+impl Baseline {
+    /// Whether coefficients are off by more than chance.
+    pub(crate) fn is_off(&self) -> bool {
+        let time = self.calibrated.autocorrelation_time();
+        significant(&self.calibrated, &self.nominal, time, self.calibrated.globals(), OFF_BY_CHANCE)
+    }
 }
 
 /// What calibration may move: damping always, stiffness and rest angle where there is a spring, the inertia where
@@ -93,9 +103,13 @@ pub(crate) fn better_hold(
     }
     let zero_data = data.holding(Hold::Zero)?;
     let zero = baseline(&zero_data, simulator)?;
-    if zero.calibrated.squares < linear.calibrated.squares {
-        Ok((zero_data, zero))
-    } else {
-        Ok((data.clone(), linear))
-    }
+    // A delay that is known was found with one of the two beliefs, and half an interval lies between them: the belief with
+    // which the simulator needs no calibration stays.
+    let is_right = |own: &Baseline| !simulator.effects().is_empty() && !own.is_off();
+    let is_better = match (is_right(&zero), is_right(&linear)) {
+        (true, false) => true,
+        (false, true) => false,
+        _ => zero.calibrated.squares < linear.calibrated.squares,
+    };
+    if is_better { Ok((zero_data, zero)) } else { Ok((data.clone(), linear)) }
 }

@@ -280,7 +280,11 @@ impl Candidate {
             Self::System(effect) => match effect {
                 SystemEffect::CoulombFriction => vec![positive("torque")],
                 SystemEffect::StribeckFriction => vec![
-                    Parameter { strength: false, ..positive("torque") },
+                    Parameter {
+                        strength: false,
+                        upper: if facts.friction_known { 0.0 } else { f64::INFINITY },
+                        ..positive("torque")
+                    },
                     positive("static_torque"),
                     Parameter { simpler: true, ..between("velocity", 1e-3 * facts.speed, 0.5 * facts.speed) },
                 ],

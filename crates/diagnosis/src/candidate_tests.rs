@@ -15,6 +15,7 @@ const FACTS: Facts = Facts {
     duration: 25.0,
     interval: 1.0 / 260.0,
     rest_moved: 0.0,
+    friction_known: false,
     inertia: 1.0,
     stiffness: 484.0,
     resolution: 1e-3,

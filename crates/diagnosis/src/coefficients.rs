@@ -3,7 +3,7 @@
 use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
 use crate::candidate::{Candidate, Distortion};
 use crate::determined::says_something;
-use crate::fit::Fit;
+use crate::fit::{Fit, UNBOUNDED};
 use crate::hypothesis::{Calibrated as Coefficient, Known};
 use crate::matrices::{entry, set};
 use crate::statistics::normal_above;
@@ -19,6 +19,8 @@ pub(crate) fn variance(fit: &Fit) -> f64 {
 }
 
 pub(crate) fn around(value: f64, error: f64) -> Interval {
+    // An error without bounds, whatever the variance that it was multiplied by.
+    let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
     let reach = normal_above(0.025) * error;
     Interval { value, interval_95: [value - reach, value + reach] }
 }

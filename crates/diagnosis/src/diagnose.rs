@@ -22,8 +22,8 @@ use crate::stand_ins::Question;
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
 use crate::unnamed::unnamed;
-use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
-use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
+use crate::verdict::{acts, by_members, unknown, weigh, without_passed_over};
+use crate::work::{Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release, stand_ins};
 use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
@@ -199,13 +199,7 @@ pub fn diagnose(
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
     let shares = work.shares(repaired);
-    let calibrated_off = significant(
-        &base.calibrated,
-        &base.nominal,
-        base.calibrated.autocorrelation_time(),
-        base.calibrated.globals(),
-        OFF_BY_CHANCE,
-    );
+    let calibrated_off = base.is_off();
 
     let (rivals, closest) = work.rivals(repaired);
     let detectability = work.detectability(repaired);
@@ -256,6 +250,11 @@ pub fn diagnose(
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
     let calibration = calibration(&work, complete);
+    let is_rounded = measuring_chain.findings.iter().any(|own| own.effect == Some("sensor_quantization"));
+    let own = Horizon { by: horizon.by, data: data.clone(), calibrated: complete.clone() };
+    // Parts that were left out of long records have nothing to go on through.
+    let followed = if is_whole { segments.data } else { data };
+    let repaired = repaired_simulator(own, followed, simulator, is_rounded)?;
     let series = series(segments.data, [&held.nominal, &held.recalibrated, after], &paths);
     let sets = weighed
         .iter()
@@ -277,7 +276,7 @@ pub fn diagnose(
         measuring_chain,
         calibration,
         known: known(&work, simulator, complete),
-        repaired: repaired_simulator(&work, simulator, complete)?,
+        repaired,
         rivals,
         detectability,
         next_experiment,

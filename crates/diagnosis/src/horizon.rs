@@ -188,6 +188,19 @@ impl Horizon {
         horizon
     }
 
+    /// The longest on which the fit follows the motion as well as on this one.
+    pub(crate) fn farthest(self, segments: &Data) -> Self {
+        let mut horizon = self;
+        let each = |own: &Self| own.calibrated.squares / own.calibrated.freedom();
+        while let Some(longer) = horizon.doubled(segments) {
+            if each(&longer) > JUDGED * JUDGED * each(&horizon) {
+                break;
+            }
+            horizon = longer;
+        }
+        horizon
+    }
+
     /// Whether the best set of a pool on this horizon follows the motion as well as it does segment by segment.
     pub(crate) fn is_followed(&self, segments: &Data, pool: &Pool) -> bool {
         let time = pool.autocorrelation_time();
@@ -271,7 +284,8 @@ mod tests {
     }
 
     fn data(observations: &Observations) -> Data {
-        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &(&nominal()).into()).unwrap()
+        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &(&nominal()).into())
+            .unwrap()
     }
 
     #[test]

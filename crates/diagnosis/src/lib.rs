@@ -58,6 +58,8 @@ mod reading;
 mod refine;
 mod release;
 mod repaired;
+#[cfg(test)]
+mod repaired_tests;
 mod response;
 mod rounding;
 mod score;

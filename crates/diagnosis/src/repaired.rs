@@ -5,28 +5,37 @@ use crate::candidate::{Candidate, Distortion};
 use crate::coefficients::{around, interval, quantity, spread, variance};
 use crate::determined::{reach, says_something};
 use crate::error::DiagnosisError;
-use crate::fit::{Effort, Fit, Moving, Point, fit};
+use crate::fit::{Effort, Fit, Moving, Point, first_starts, fit};
+use crate::horizon::Horizon;
 use crate::hypothesis::{Calibrated, Hypothesis};
 use crate::matrices::{entry, set};
+use crate::segments::Data;
 use crate::verdict::significant;
-use crate::work::{OFF_BY_CHANCE, Work};
+use crate::work::OFF_BY_CHANCE;
 use dynamics::{Active, DynamicsError, Effect, Nominal, NominalSimulator};
 use nalgebra::DMatrix;
 
 /// Digits kept behind the first one of a standard error.
 const GUARD: i32 = 2;
 
-/// Puts the repaired simulator together.
+/// Puts the repaired simulator together from a fit on a horizon. Where values are found to be rounded to the sensor's steps,
+/// these are part of it.
+///
+/// Numbers are those of the longest horizon that the fit follows: what adds up over a record shows there, and whoever runs
+/// the repaired simulator over a record sees it.
 ///
 /// # Errors
 /// What the dynamics refuse.
 pub(crate) fn repaired(
-    work: &Work<'_>,
+    horizon: Horizon,
+    segments: &Data,
     simulator: &NominalSimulator,
-    complete: &Fit,
+    is_rounded: bool,
 ) -> Result<RepairedSimulator, DiagnosisError> {
-    let (fit, undetermined) = without_undetermined(work, complete);
-    let errors = given_all_others(work, &fit);
+    let Horizon { data, calibrated: complete, .. } = farthest(horizon, segments);
+    let data = &data;
+    let (fit, undetermined) = without_undetermined(data, &complete);
+    let errors = given_all_others(data, &fit);
     let nominal = rounded_nominal(&fit, &errors)?;
     let mut left_out = Vec::new();
     let mut effects = Vec::new();
@@ -35,16 +44,47 @@ pub(crate) fn repaired(
         let own = Candidate::of(&stated.active).map(|(candidate, _)| candidate);
         // What no fit follows stays as it is stated.
         let place = known.iter().position(|known| Some(known.candidate) == own);
-        let moved = place.map(|place| active(work, &fit, &errors, place, Some(&stated.active)));
+        let moved = place.map(|place| active(data, &fit, &errors, place, Some(&stated.active)));
         effects.push(moved.transpose()?.unwrap_or(stated.active));
     }
     for (index, candidate) in fit.hypothesis.candidates.iter().enumerate() {
-        match active(work, &fit, &errors, known.len() + index, None) {
+        match active(data, &fit, &errors, known.len() + index, None) {
             Ok(found) => effects.push(found),
             Err(error) => left_out.push((candidate.id(), error.to_string())),
         }
     }
+    let quantization = Effect::find("sensor_quantization")?;
+    // Stated by the simulator or fitted, it is there already.
+    if is_rounded && !effects.iter().any(|active| active.effect() == quantization) {
+        effects.extend(Active::of(quantization, &[step(data)]));
+    }
     Ok(RepairedSimulator { nominal, effects, undetermined, left_out })
+}
+
+/// The fit on the longest horizon that it follows; where it is uneven, begun anew as well, as whoever diagnoses the system
+/// with the repaired simulator will: what ends closer to the data stands.
+fn farthest(horizon: Horizon, segments: &Data) -> Horizon {
+    let anew = restarted(&horizon, segments).map(|fit| Horizon::shortest(segments, &fit).farthest(segments));
+    let own = horizon.farthest(segments);
+    match anew {
+        Some(anew) if anew.by > own.by => anew,
+        Some(anew) if anew.by == own.by && anew.calibrated.squares < own.calibrated.squares => anew,
+        _ => own,
+    }
+}
+
+/// The best fit to the segments as they were cut from start states that nothing is known of.
+fn restarted(horizon: &Horizon, segments: &Data) -> Option<Fit> {
+    let from = &horizon.calibrated;
+    let hypothesis = &from.hypothesis;
+    if hypothesis.smooth() {
+        return None;
+    }
+    let guess = Point { globals: from.point.globals.clone(), starts: first_starts(segments, hypothesis) };
+    let settled = fit(segments, hypothesis, guess.clone(), Moving::Starts, Effort::FINAL).ok();
+    let begun = settled.map(|settled| settled.point).into_iter().chain([guess]);
+    let fits = begun.filter_map(|point| fit(segments, hypothesis, point, Moving::All, Effort::FINAL).ok());
+    fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
 }
 
 /// A number of a fit that calibration moves, or an effect's: what it is called, and how far its interval reaches.
@@ -56,8 +96,8 @@ struct Number {
     determined: bool,
 }
 
-fn numbers(work: &Work<'_>, fit: &Fit) -> Vec<Number> {
-    let facts = &work.data.facts;
+fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
+    let facts = &data.facts;
     let number = |name: String, held, quantity, estimate: &Interval| Number {
         name,
         held,
@@ -89,19 +129,19 @@ fn numbers(work: &Work<'_>, fit: &Fit) -> Vec<Number> {
 /// The fit with what the data do not determine held as the nominal simulator states it, one after the other, the widest
 /// first: once one is held, another may be determined. What the data refuse to have there stays as it was fitted. Gives
 /// all numbers that are not determined.
-fn without_undetermined(work: &Work<'_>, complete: &Fit) -> (Fit, Vec<Undetermined>) {
+fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>) {
     let time = complete.autocorrelation_time();
     let mut fit = complete.clone();
     let mut found: Vec<Undetermined> = Vec::new();
     loop {
-        let mut open: Vec<Number> = numbers(work, &fit)
+        let mut open: Vec<Number> = numbers(data, &fit)
             .into_iter()
             .filter(|number| !number.determined && !found.iter().any(|known| known.name == number.name))
             .collect();
         open.sort_by(|a, b| b.reach.total_cmp(&a.reach));
         let Some(widest) = open.into_iter().next() else { return (fit, found) };
         let held = |which: &Calibrated| widest.held.contains(which);
-        let with = holding(work, &fit, &held);
+        let with = holding(data, &fit, &held);
         let is_free = |with: &Fit| {
             !significant(complete, with, time, complete.globals() - with.globals(), OFF_BY_CHANCE)
         };
@@ -112,7 +152,7 @@ fn without_undetermined(work: &Work<'_>, complete: &Fit) -> (Fit, Vec<Undetermin
 }
 
 /// The fit with some of what calibration moves held at the nominal value.
-fn holding(work: &Work<'_>, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> Option<Fit> {
+fn holding(data: &Data, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> Option<Fit> {
     let own = &from.hypothesis;
     let calibrated: Vec<Calibrated> = own.calibrated.iter().copied().filter(|which| !held(which)).collect();
     if calibrated.len() == own.calibrated.len() {
@@ -123,15 +163,15 @@ fn holding(work: &Work<'_>, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> O
         moved.filter(|(place, _)| !own.calibrated.get(*place).is_some_and(held)).map(|(_, value)| *value);
     let point = Point { globals: globals.collect(), starts: from.point.starts.clone() };
     let hypothesis = Hypothesis { calibrated, ..own.clone() };
-    fit(work.data, &hypothesis, point, Moving::All, Effort::FINAL).ok()
+    fit(data, &hypothesis, point, Moving::All, Effort::FINAL).ok()
 }
 
 /// The standard error of each number with all others given, laws' parameters in place of fitted ones: what rounding a
 /// number may be held against, since the others do not move along.
-fn given_all_others(work: &Work<'_>, fit: &Fit) -> Vec<f64> {
+fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
     let count = fit.globals();
     let mut change = DMatrix::identity(count, count);
-    for (effect, place, fitted) in fit.hypothesis.all_parts(&work.data.facts, &fit.point.globals) {
+    for (effect, place, fitted) in fit.hypothesis.all_parts(&data.facts, &fit.point.globals) {
         let Some(place) = place else { continue };
         for (row, column, slope) in effect.slopes(fitted) {
             set(&mut change, place + row, place + column, slope);
@@ -183,13 +223,13 @@ fn rounded_nominal(fit: &Fit, errors: &[f64]) -> Result<Nominal, DynamicsError> 
 
 /// An effect of a fit by its number among all, on the ground of what the nominal simulator states of it.
 fn active(
-    work: &Work<'_>,
+    data: &Data,
     fit: &Fit,
     errors: &[f64],
     index: usize,
     stated: Option<&Active>,
 ) -> Result<Active, DynamicsError> {
-    let facts = &work.data.facts;
+    let facts = &data.facts;
     let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
     let Some(&(effect, place, fitted)) = parts.get(index) else {
         return Err(DynamicsError::UnknownEffect { id: index.to_string(), known: Vec::new() });
@@ -209,7 +249,7 @@ fn active(
     let parameters = kind.description().parameters.iter().map(|parameter| {
         let stated = || stated.and_then(|stated| stated.value(parameter.name));
         own(parameter.name).or_else(stated).unwrap_or(match (effect, parameter.name) {
-            (Candidate::Chain(Distortion::ReadingHysteresis), "step") => step(work),
+            (Candidate::Chain(Distortion::ReadingHysteresis), "step") => step(data),
             _ => 0.0,
         })
     });
@@ -217,10 +257,10 @@ fn active(
 }
 
 /// The sensor's step, to the digits that counting steps over the whole motion tells.
-fn step(work: &Work<'_>) -> f64 {
-    let facts = &work.data.facts;
-    let span = facts.highest - facts.lowest;
-    rounded(facts.resolution, facts.resolution * facts.resolution / span)
+fn step(data: &Data) -> f64 {
+    let facts = &data.facts;
+    let step = data.resolution.unwrap_or(facts.resolution);
+    rounded(step, step * step / (facts.highest - facts.lowest))
 }
 
 #[cfg(test)]

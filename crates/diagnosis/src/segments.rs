@@ -409,6 +409,10 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
         interval,
         rest_moved: rest - nominal.rest_angle(),
+        friction_known: simulator
+            .effects()
+            .iter()
+            .any(|known| known.recalibrate && known.active.id() == "coulomb_friction"),
         inertia,
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
