@@ -188,12 +188,15 @@ impl Horizon {
         horizon
     }
 
-    /// The longest on which the fit follows the motion as well as on this one.
+    /// The longest on which the fit follows the motion as well as on this one, but for chance.
     pub(crate) fn farthest(self, segments: &Data) -> Self {
         let mut horizon = self;
         let each = |own: &Self| own.calibrated.squares / own.calibrated.freedom();
         while let Some(longer) = horizon.doubled(segments) {
-            if each(&longer) > JUDGED * JUDGED * each(&horizon) {
+            // Two standard errors of a mean square of so many samples that say something new.
+            let worth = horizon.calibrated.freedom() / horizon.calibrated.autocorrelation_time();
+            let by_chance = 1.0 + 2.0 * (2.0 / worth).sqrt();
+            if each(&longer) > by_chance * each(&horizon) {
                 break;
             }
             horizon = longer;
