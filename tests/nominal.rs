@@ -49,8 +49,8 @@ fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
     assert_eq!(first["verdict"]["effects"], serde_json::json!(["quadratic_drag", "sensor_quantization"]));
     let repaired = folder.path().join("repaired.toml");
     let stated = text(folder.path(), "repaired.toml");
-    // The digits that the errors leave, and of the step those of the encoder.
-    assert!(stated.contains("parameters.step = 0.001534 "), "{stated}");
+    // The digits that the errors leave, and two more.
+    assert!(stated.contains("parameters.step = 0.00153398 "), "{stated}");
     let longest = stated.lines().filter_map(|line| line.split_once('=')?.1.split('#').next());
     assert!(longest.clone().all(|number| number.trim().len() <= 12), "{stated}");
     let (code, again, second) = result(&["diagnose", &record, "--nominal", repaired.to_str().unwrap()]);
@@ -74,7 +74,7 @@ fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
 
 /// A carriage without a spring, whose owner believes in one.
 #[test]
-fn a_rest_angle_without_a_spring_is_not_determined() {
+fn a_spring_where_there_is_none_is_not_determined() {
     let Some(record) = measured("positioning-drive/record.csv") else { return };
     let Some(nominal) = measured("positioning-drive/nominal.toml") else { return };
     let scratch = tempfile::tempdir().unwrap();
@@ -92,12 +92,14 @@ fn a_rest_angle_without_a_spring_is_not_determined() {
     assert_eq!(row["determined"], false, "{row}");
     assert!(row["repaired"]["value"].is_number(), "{row}");
     assert_eq!(found["calibration"]["damping"]["determined"], true);
-    let said = "a number for rest_angle that these data determine; the one here is the nominal simulator's";
+    assert_eq!(found["calibration"]["stiffness"]["determined"], false);
+    // A stiffness that is next to nothing stays as it was believed; the rest angle beside it is what preloads the drive.
+    let said = "a number for stiffness that these data determine; the one here is the nominal simulator's";
     for (name, number) in [
-        ("repaired.toml", "rest_angle = 0.125 "),
-        ("repaired.mjcf.xml", "springref=\"0.125\""),
-        ("repaired.py", "rest_angle = 0.125 "),
-        ("repaired.mo", "rest_angle = 0.125;"),
+        ("repaired.toml", "stiffness = 0.5 "),
+        ("repaired.mjcf.xml", "stiffness=\"0.5\""),
+        ("repaired.py", "stiffness = 0.5 "),
+        ("repaired.mo", "stiffness = 0.5;"),
     ] {
         let text = text(folder.path(), name);
         assert!(text.contains(said) && text.contains(number), "{name}: {text}");

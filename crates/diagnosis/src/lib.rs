@@ -59,6 +59,7 @@ mod refine;
 mod release;
 mod repaired;
 #[cfg(test)]
+#[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod repaired_tests;
 mod response;
 mod rounding;

@@ -139,7 +139,13 @@ fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>)
             .filter(|number| !number.determined && !found.iter().any(|known| known.name == number.name))
             .collect();
         open.sort_by(|a, b| b.reach.total_cmp(&a.reach));
-        let Some(widest) = open.into_iter().next() else { return (fit, found) };
+        let Some(widest) = open.into_iter().next() else {
+            // What stayed as it was fitted may be determined beside those that are held.
+            let still = numbers(data, &fit);
+            let is_open = |name: &str| still.iter().any(|number| number.name == name && !number.determined);
+            found.retain(|own| own.is_nominal || is_open(&own.name));
+            return (fit, found);
+        };
         let held = |which: &Calibrated| widest.held.contains(which);
         let with = holding(data, &fit, &held);
         let is_free = |with: &Fit| {

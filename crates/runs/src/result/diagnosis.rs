@@ -283,13 +283,10 @@ impl Calibration {
             ("stiffness", &self.stiffness),
             ("rest_angle", &self.rest_angle),
         ];
-        let mut rows: Vec<(String, &CalibratedRow)> =
-            plain.into_iter().map(|(name, row)| (name.to_owned(), row)).collect();
-        for effect in &self.effects {
-            let own = effect.parameters.iter();
-            rows.extend(own.map(|(name, row)| (format!("{}.{name}", effect.id), row)));
-        }
-        rows
+        let own = self.effects.iter().flat_map(|effect| {
+            effect.parameters.iter().map(|(name, row)| (format!("{}.{name}", effect.id), row))
+        });
+        plain.into_iter().map(|(name, row)| (name.to_owned(), row)).chain(own).collect()
     }
 }
 

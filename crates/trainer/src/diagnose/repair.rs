@@ -24,7 +24,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     }
     left_out.extend(own.left_out.iter().map(|(id, reason)| format!("{}: {reason}", title(id))));
     for id in &found.verdict.effects {
-        if !found.effects.iter().any(|row| row.id == *id && row.gap_share.is_some()) {
+        if !own.effects.iter().any(|active| active.id() == *id) {
             left_out.push(match Effect::find(id).map(|effect| effect.description().kind) {
                 Ok(dynamics::Kind::System) => format!("{}: the rest angle has it already", title(id)),
                 _ => format!("{}: seen in stamps or values directly, no coefficient was fitted", title(id)),
