@@ -74,6 +74,7 @@ fn check(root: &Value, schema: &Value, value: &Value, place: &str, found: &mut V
                 true
             }
             "anyOf" => of.as_array().unwrap().iter().any(|one| is_valid(root, one, value)),
+            "oneOf" => of.as_array().unwrap().iter().filter(|one| is_valid(root, one, value)).count() == 1,
             "not" => !is_valid(root, of, value),
             "if" => {
                 let branch = if is_valid(root, of, value) { "then" } else { "else" };
@@ -145,6 +146,11 @@ fn keywords_mean_what_the_standard_says() {
             json!({ "anyOf": [{ "type": "boolean" }, { "type": "array" }] }),
             vec![json!(true), json!([])],
             vec![json!({})],
+        ),
+        (
+            json!({ "oneOf": [{ "required": ["a"] }, { "required": ["b"] }] }),
+            vec![json!({ "a": 1 }), json!({ "b": 1 })],
+            vec![json!({}), json!({ "a": 1, "b": 1 })],
         ),
     ];
     for (schema, valid, invalid) in cases {

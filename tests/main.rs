@@ -29,6 +29,7 @@ mod json_schema;
 mod listing;
 mod measured_records;
 mod nist;
+mod nominal;
 mod prediction;
 mod recipe;
 mod resuming;

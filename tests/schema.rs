@@ -126,6 +126,14 @@ fn the_nominal_simulator_of_a_diagnosis_has_a_schema() {
     for key in keys(&shipped) {
         assert!(!is_valid(&schema, &misspelled(&shipped, &key)), "{key:?}");
     }
+    let valid = |text: &str| is_valid(&schema, &value(text));
+    let effect = "[[effects]]\nid = \"coulomb_friction\"\nrecalibrate = false\nparameters.torque = 1e-5\n";
+    assert!(valid(&format!("natural_frequency = 3.5\ndamping_ratio = 0.01\n{effect}")));
+    assert!(valid(&format!("[start]\nposition = 0.7\n[nominal]\nperiod = 2\ndamping = 0.1\n{effect}")));
+    assert!(!valid("natural_frequency = 3.5\nperiod = 2\ndamping_ratio = 0.01\n"));
+    assert!(!valid("natural_frequency = 3.5\n"));
+    assert!(!valid("stiffness = 8\ndamping = 0.1\n"));
+    assert!(!valid(&format!("period = 2\ndamping = 0.1\n{}", effect.replace("torque", "torqe"))));
 }
 
 /// Each default of the schema is what the program takes where a file is silent.

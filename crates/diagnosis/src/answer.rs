@@ -1,7 +1,7 @@
 //! The answer of a diagnosis, as plain data.
 
 use crate::noise::NoiseFloor;
-use dynamics::Nominal;
+use dynamics::{Active, Nominal};
 use serde::Serialize;
 
 /// A number with its 95 % interval.
@@ -52,6 +52,8 @@ pub struct ParameterEstimate {
     /// Value and interval; the interval is widened for the residual's autocorrelation.
     #[serde(flatten)]
     pub estimate: Interval,
+    /// Whether the interval says anything.
+    pub determined: bool,
 }
 
 /// A member of the list of probabilities.
@@ -180,6 +182,49 @@ pub struct Calibrated {
     pub recalibrated: Option<Interval>,
     /// With the named effects.
     pub repaired: Option<Interval>,
+    /// Whether the interval with the named effects says anything; `None` where it was held.
+    pub determined: Option<bool>,
+}
+
+/// An effect that the nominal simulator has, before and after.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct KnownRow {
+    /// Its id.
+    pub id: &'static str,
+    /// Whether recalibration may move its parameters.
+    pub recalibrate: bool,
+    /// As the nominal simulator has it.
+    pub nominal: Option<Active>,
+    /// Recalibrated without further effects; empty where it is held.
+    pub recalibrated: Vec<ParameterEstimate>,
+    /// With the named effects; empty where it is held.
+    pub repaired: Vec<ParameterEstimate>,
+}
+
+/// A number that the data do not determine.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Undetermined {
+    /// Its name, as `rest_angle` or `gravity.angle`.
+    pub name: String,
+    /// Whether the nominal simulator's number stands in its place; otherwise it is as it was fitted.
+    pub is_nominal: bool,
+}
+
+/// The repaired simulator: the recalibrated nominal one with the effects that it lacked.
+///
+/// A number that the data do not determine is the nominal one, the others fitted beside it. Every fitted number is
+/// written to the digits that matter: rounding moves it by less than a hundredth of its standard error with all others
+/// given.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RepairedSimulator {
+    /// The oscillator.
+    pub nominal: Nominal,
+    /// The effects that the nominal simulator has, then those that it lacked.
+    pub effects: Vec<Active>,
+    /// Numbers that the data do not determine.
+    pub undetermined: Vec<Undetermined>,
+    /// Effects that cannot be part of it, each with the reason.
+    pub left_out: Vec<(&'static str, String)>,
 }
 
 /// A pair of explanations on these data.
@@ -279,8 +324,10 @@ pub struct Diagnosis {
     pub measuring_chain: MeasuringChain,
     /// Nominal coefficients.
     pub calibration: Vec<Calibrated>,
-    /// The nominal part of the repaired simulator.
-    pub repaired_nominal: Nominal,
+    /// The effects that the nominal simulator has.
+    pub known: Vec<KnownRow>,
+    /// The repaired simulator.
+    pub repaired: RepairedSimulator,
     /// Rivals on these data, closest first.
     pub rivals: Vec<Rivalry>,
     /// Detectability of the verdict's effects.

@@ -1,7 +1,7 @@
 //! What can be missing from a simulator and be fitted: effects of the system and smooth effects of the sensor.
 
 use crate::facts::Facts;
-use dynamics::{Class, Coordinate, Nominal, SystemEffect};
+use dynamics::{Active, ChainEffect, Class, Coordinate, Effect, NominalSimulator, SystemEffect};
 use record::Quantity;
 use std::f64::consts::PI;
 
@@ -162,13 +162,52 @@ impl Candidate {
         }
     }
 
-    /// Every candidate that can act on these records.
-    pub(crate) fn that_apply(facts: &Facts, quantity: Quantity, nominal: &Nominal) -> Vec<Self> {
-        Self::ALL.iter().copied().filter(|candidate| candidate.applies(facts, quantity, nominal)).collect()
+    /// What an effect is to a fit, with the law's parameters that a fit can move; none for effects of the measuring chain
+    /// that change no value smoothly.
+    pub(crate) fn of(active: &Active) -> Option<(Self, Vec<f64>)> {
+        let value = |name: &str| active.value(name).unwrap_or_default();
+        let whole = |distortion: Distortion| Some((Self::Chain(distortion), active.values().to_vec()));
+        match active.effect() {
+            Effect::System(effect) => Some((Self::System(effect), active.values().to_vec())),
+            Effect::MeasuringChain(effect) => match effect {
+                ChainEffect::SensorLag => whole(Distortion::Lag),
+                ChainEffect::SensorNonlinearity => whole(Distortion::Nonlinearity),
+                ChainEffect::SensorDrift => whole(Distortion::Drift),
+                ChainEffect::SensorSaturation => whole(Distortion::Saturation),
+                ChainEffect::ClockDrift => Some((Self::Chain(Distortion::Clock), vec![value("change")])),
+                ChainEffect::SensorQuantization if value("hysteresis") > 0.0 => {
+                    Some((Self::Chain(Distortion::ReadingHysteresis), vec![value("hysteresis")]))
+                }
+                _ => None,
+            },
+        }
+    }
+
+    /// Every candidate that can act on these records and that the nominal simulator does not have already.
+    pub(crate) fn that_apply(facts: &Facts, quantity: Quantity, simulator: &NominalSimulator) -> Vec<Self> {
+        let known: Vec<Self> =
+            simulator.effects().iter().filter_map(|own| Some(Self::of(&own.active)?.0)).collect();
+        let is_known =
+            |own: &Self| known.iter().any(|known| known == own || known.generalizes() == Some(*own));
+        let all = Self::ALL.iter().copied().filter(|own| !is_known(own));
+        all.filter(|candidate| candidate.applies(facts, quantity, simulator)).collect()
+    }
+
+    /// Whether a fit of records of a quantity can follow it: a lag and a clock move what is observed by its time
+    /// derivative, which an acceleration has not.
+    pub(crate) fn is_observed_in(self, quantity: Quantity) -> bool {
+        match self {
+            Self::Chain(Distortion::Lag | Distortion::Clock) => quantity != Quantity::Acceleration,
+            Self::Chain(Distortion::ReadingHysteresis | Distortion::Nonlinearity) => {
+                quantity == Quantity::Position
+            }
+            _ => true,
+        }
     }
 
     /// Whether it can act on these records at all.
-    fn applies(self, facts: &Facts, quantity: Quantity, nominal: &Nominal) -> bool {
+    fn applies(self, facts: &Facts, quantity: Quantity, simulator: &NominalSimulator) -> bool {
+        let nominal = simulator.nominal();
         let spring = nominal.stiffness() > 0.0;
         let is_angle = nominal.coordinate() == Coordinate::Angle;
         match self {
@@ -180,17 +219,15 @@ impl Candidate {
             ) => spring,
             // On a spring it is a shift of the rest angle, which is part of the calibration.
             Self::System(SystemEffect::ConstantTorque) => !spring,
-            // A lag and a clock move what is observed by its time derivative, which an acceleration has not.
             // A lag of one frequency is an amplitude and a phase besides: inside the start state.
-            Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && quantity != Quantity::Acceleration,
-            Self::Chain(Distortion::Clock) => quantity != Quantity::Acceleration,
+            Self::Chain(Distortion::Lag) => facts.input_torque > 0.0 && self.is_observed_in(quantity),
             Self::Chain(Distortion::ReadingHysteresis) => {
-                facts.resolution > 0.0 && quantity == Quantity::Position
+                facts.resolution > 0.0 && self.is_observed_in(quantity)
             }
             // Sines of the coordinate: a length is not the argument of one.
             Self::System(SystemEffect::Gravity) => is_angle,
-            Self::Chain(Distortion::Nonlinearity) => is_angle && quantity == Quantity::Position,
-            _ => true,
+            Self::Chain(Distortion::Nonlinearity) => is_angle && self.is_observed_in(quantity),
+            _ => self.is_observed_in(quantity),
         }
     }
 
@@ -243,7 +280,11 @@ impl Candidate {
             Self::System(effect) => match effect {
                 SystemEffect::CoulombFriction => vec![positive("torque")],
                 SystemEffect::StribeckFriction => vec![
-                    Parameter { strength: false, ..positive("torque") },
+                    Parameter {
+                        strength: false,
+                        upper: if facts.friction_known { 0.0 } else { f64::INFINITY },
+                        ..positive("torque")
+                    },
                     positive("static_torque"),
                     Parameter { simpler: true, ..between("velocity", 1e-3 * facts.speed, 0.5 * facts.speed) },
                 ],
@@ -364,6 +405,30 @@ impl Candidate {
             *damping *= 2.0 * *inertia;
         }
         values
+    }
+
+    /// A fit's parameters from the law's: the inverse of [`Self::values`].
+    pub(crate) fn fitted(self, values: &[f64]) -> Vec<f64> {
+        let mut fitted = values.to_vec();
+        if let Some(Polar { size, angle }) = self.polar()
+            && let (Some(&length), Some(&turned)) = (values.get(size), values.get(angle))
+        {
+            let (sine, cosine) = turned.sin_cos();
+            for (place, value) in [(size, length * cosine), (angle, length * sine)] {
+                if let Some(slot) = fitted.get_mut(place) {
+                    *slot = value;
+                }
+            }
+        }
+        match (self, fitted.as_mut_slice()) {
+            (Self::System(SystemEffect::StribeckFriction), [torque, excess, _]) => *excess -= *torque,
+            (Self::System(SystemEffect::FlexibleCoupling), [inertia, stiffness, damping]) => {
+                *stiffness = (*stiffness / *inertia).sqrt();
+                *damping /= 2.0 * *inertia;
+            }
+            _ => {}
+        }
+        fitted
     }
 
     /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.

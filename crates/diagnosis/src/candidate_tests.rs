@@ -14,6 +14,8 @@ const FACTS: Facts = Facts {
     input_torque: 1.0,
     duration: 25.0,
     interval: 1.0 / 260.0,
+    rest_moved: 0.0,
+    friction_known: false,
     inertia: 1.0,
     stiffness: 484.0,
     resolution: 1e-3,
@@ -26,7 +28,7 @@ fn no_sine_is_taken_of_a_length() {
     let angle = Nominal::new(1.0, 0.2, 484.0, 0.0).unwrap();
     let length = angle.with_coordinate(Coordinate::Displacement);
     let ids = |nominal: &Nominal| -> Vec<&str> {
-        let those = Candidate::that_apply(&FACTS, Quantity::Position, nominal);
+        let those = Candidate::that_apply(&FACTS, Quantity::Position, &nominal.into());
         those.into_iter().map(Candidate::id).collect()
     };
     let mut of_angles = ids(&angle);

@@ -83,6 +83,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
                 name: "torque",
                 unit: dynamics::Quantity::Torque.unit(units).to_owned(),
                 estimate: shift.torque,
+                determined: true,
             }],
             ..plain("constant_torque", beside * SHIFTED)
         });

@@ -4,7 +4,7 @@ use crate::answer::{Budget, Cell, Diagnosis, Finding, MeasuringChain, Series, Se
 use crate::budget::budget;
 use crate::calibrate::{Baseline, better_hold};
 use crate::candidate::Candidate;
-use crate::coefficients::calibration;
+use crate::coefficients::{calibration, known};
 use crate::conclusion::{Parts, probabilities, verdict};
 use crate::dictionary::Dictionary;
 use crate::error::DiagnosisError;
@@ -15,17 +15,18 @@ use crate::horizon::Horizon;
 use crate::observations::Observations;
 use crate::pool::Pool;
 use crate::refine::refine;
+use crate::repaired::repaired as repaired_simulator;
 use crate::search::{Breadth, search};
 use crate::segments::{Data, MOST_SEARCHED, cut};
 use crate::stand_ins::Question;
 use crate::tangent::Path;
 use crate::unexplained::unexplained;
 use crate::unnamed::unnamed;
-use crate::verdict::{acts, by_members, significant, unknown, weigh, without_passed_over};
-use crate::work::{OFF_BY_CHANCE, Thin, Unjoined, Work};
+use crate::verdict::{acts, by_members, unknown, weigh, without_passed_over};
+use crate::work::{Thin, Unjoined, Work};
 use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release, stand_ins};
-use dynamics::Nominal;
-use record::ClockKind;
+use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
+use record::{ClockKind, Quantity};
 use seed::Seed;
 
 /// How to diagnose.
@@ -70,14 +71,18 @@ const MOST_HORIZONS: usize = 3;
 /// 20,000; of more, every so many are taken or whole segments are left out, and the answer states the share used. The
 /// same input gives the same bits with any number of threads (times apart).
 ///
+/// `simulator` is the nominal oscillator, alone or with effects that it has already: these are part of every hypothesis
+/// and no candidates.
+///
 /// # Errors
 /// [`DiagnosisError`] for records that say nothing, or that are not of this system.
 pub fn diagnose(
     records: &[Observations],
-    nominal: &Nominal,
+    simulator: impl Into<NominalSimulator>,
     settings: &Settings,
     seconds: &dyn Fn() -> f64,
 ) -> Result<Diagnosis, DiagnosisError> {
+    let simulator = &simulator.into();
     let mut stages = Vec::new();
     let mut last = seconds();
     let mut lap = |name: &'static str| {
@@ -87,18 +92,18 @@ pub fn diagnose(
     };
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
     let (free, unreleased) = free(records, &kept);
-    let all = cut(records, &free, nominal)?;
+    let all = cut(records, &free, simulator)?;
     let unseen = chain_statistics::without_motion(&free, all.samples());
     let sparser = all.sparser(MOST_SEARCHED);
     let data = sparser.thinned(MOST_SEARCHED);
     let is_whole = data.samples() == sparser.samples();
     let samples_used = data.samples() as f64 / all.samples().max(1) as f64;
     lap("measuring chain");
-    let (data, base) = better_hold(&data, nominal)?;
+    let (data, base) = better_hold(&data, simulator)?;
     let data = data.for_noise(noise::floor(&data, &base.calibrated.residuals).value);
     lap("calibration");
 
-    let mut candidates = Candidate::that_apply(&data.facts, data.quantity, nominal);
+    let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
     candidates.retain(|candidate| settings.considers(candidate.id()));
     let coarse = data.strided();
     let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
@@ -194,13 +199,7 @@ pub fn diagnose(
 
     let named: Vec<Candidate> = repaired.hypothesis.candidates.clone();
     let shares = work.shares(repaired);
-    let calibrated_off = significant(
-        &base.calibrated,
-        &base.nominal,
-        base.calibrated.autocorrelation_time(),
-        base.calibrated.globals(),
-        OFF_BY_CHANCE,
-    );
+    let calibrated_off = base.is_off();
 
     let (rivals, closest) = work.rivals(repaired);
     let detectability = work.detectability(repaired);
@@ -226,12 +225,14 @@ pub fn diagnose(
         maps::maps(segments.data, &paths, rest, &held.recalibrated.residuals, &after.residuals, floor.value);
     lap("maps");
 
-    let mut measuring_chain = chain(records, &kept, nominal, segments.data, fitted, floor.value);
+    let mut measuring_chain = chain(records, &kept, &seen(simulator)?, segments.data, fitted, floor.value);
     let behind = reading::finding(data, complete);
     measuring_chain.findings.extend(unreleased.into_iter().chain(unseen).chain(behind));
+    let is_known = |id: &str| simulator.effects().iter().any(|known| known.active.id() == id);
     for finding in &mut measuring_chain.findings {
-        finding.effect = finding.effect.filter(|id| settings.considers(id));
+        finding.effect = finding.effect.filter(|id| settings.considers(id) && !is_known(id));
     }
+    measuring_chain.findings.extend(not_followed(simulator, data.quantity));
     let parts = Parts {
         work: &work,
         candidates: &candidates,
@@ -248,7 +249,12 @@ pub fn diagnose(
         findings: &measuring_chain.findings,
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
-    let calibration = calibration(&work, complete)?;
+    let calibration = calibration(&work, complete);
+    let is_rounded = measuring_chain.findings.iter().any(|own| own.effect == Some("sensor_quantization"));
+    let own = Horizon { by: horizon.by, data: data.clone(), calibrated: complete.clone() };
+    // Parts that were left out of long records have nothing to go on through.
+    let followed = if is_whole { segments.data } else { data };
+    let repaired = repaired_simulator(own, followed, simulator, is_rounded)?;
     let series = series(segments.data, [&held.nominal, &held.recalibrated, after], &paths);
     let sets = weighed
         .iter()
@@ -269,7 +275,8 @@ pub fn diagnose(
         place: Where { budget, time: over_time, amplitude, phase, frequency },
         measuring_chain,
         calibration,
-        repaired_nominal: complete.hypothesis.calibrated_nominal(&complete.point.globals)?,
+        known: known(&work, simulator, complete),
+        repaired,
         rivals,
         detectability,
         next_experiment,
@@ -342,6 +349,33 @@ fn free(records: &[Observations], kept: &[Vec<bool>]) -> (Vec<Vec<bool>>, Vec<Fi
 
 fn refit(data: &Data, found: &Fit) -> Result<Fit, DiagnosisError> {
     Ok(fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::HELD_OUT)?)
+}
+
+/// The nominal oscillator with the sensor's step, also where the simulator states that as an effect.
+fn seen(simulator: &NominalSimulator) -> Result<Nominal, DynamicsError> {
+    let nominal = *simulator.nominal();
+    let steps = simulator.effects().iter().filter(|known| known.active.id() == "sensor_quantization");
+    match steps.filter_map(|known| known.active.value("step")).next() {
+        Some(step) if nominal.sensor_resolution().is_none() => nominal.with_sensor_resolution(step),
+        _ => Ok(nominal),
+    }
+}
+
+/// Words on effects of the nominal simulator that no fit follows.
+fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Finding> {
+    let followed = |known: &&KnownEffect| {
+        Candidate::of(&known.active).is_some_and(|(own, _)| own.is_observed_in(quantity))
+    };
+    let others = simulator.effects().iter().filter(|known| !followed(known));
+    others
+        .map(|known| Finding {
+            effect: None,
+            text: format!(
+                "the nominal simulator has {}: it is taken as known, and shows in stamps and values as they are",
+                known.active.id()
+            ),
+        })
+        .collect()
 }
 
 fn chain(

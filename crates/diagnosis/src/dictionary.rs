@@ -121,7 +121,8 @@ fn columns(
     };
     match (candidate, shape) {
         (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v]) => {
-            respond(vec![torque(&[1.0, 1.0, v]), torque(&[0.0, 1.0, v])])
+            let sizes = [torque(&[1.0, 1.0, v]), torque(&[0.0, 1.0, v])];
+            respond(sizes.into_iter().skip(usize::from(data.facts.friction_known)).collect())
         }
         (Candidate::System(SystemEffect::Gravity), _) => {
             respond(vec![torque(&[1.0, 0.0]), torque(&[1.0, std::f64::consts::FRAC_PI_2])])
@@ -180,9 +181,10 @@ fn law(candidate: Candidate, values: &[f64], path: &Path, nominal: &Coefficients
 /// −z along a path, for Dahl's law: exact between samples of a motion in one direction.
 fn bending(displacement: f64, path: &Path, data: &Data, nominal: &Coefficients<f64>) -> Vec<f64> {
     let position = &path.motion.position;
+    let rest = nominal.rest_angle + data.facts.rest_moved;
     let mut z = match (position.first(), path.motion.velocity.first()) {
         (Some(position), Some(velocity)) if !path.first => {
-            bent(position - nominal.rest_angle, velocity / data.facts.frequency, displacement).z
+            bent(position - rest, velocity / data.facts.frequency, displacement).z
         }
         _ => 0.0,
     };
@@ -359,6 +361,7 @@ impl Dictionary {
         let Some(entry) = self.entries.get(entry) else { return Vec::new() };
         match (entry.candidate, entry.shape.as_slice(), coefficients) {
             (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v], &[p, q]) => vec![p, q, v],
+            (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v], &[q]) => vec![0.0, q, v],
             (Candidate::System(SystemEffect::PeriodicForcing), &[_, frequency, _], &[p, q]) => {
                 vec![p, frequency, q]
             }

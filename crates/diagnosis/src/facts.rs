@@ -24,6 +24,11 @@ pub(crate) struct Facts {
     pub(crate) duration: f64,
     /// Median time between samples in seconds.
     pub(crate) interval: f64,
+    /// By how much a weight that the nominal simulator has moves the middle of the swing from where the spring is relaxed.
+    pub(crate) rest_moved: f64,
+    /// Whether the nominal simulator has Coulomb friction whose torque is recalibrated: that of further dry friction would
+    /// be the same number once more.
+    pub(crate) friction_known: bool,
     /// Nominal inertia, and the stiffness that gives the frequency with it.
     pub(crate) inertia: f64,
     pub(crate) stiffness: f64,

@@ -14,7 +14,7 @@ use crate::candidate::Parameter;
 pub(crate) use crate::ending::Effort;
 use crate::ending::{Ending, SHORT};
 use crate::hypothesis::Hypothesis;
-use crate::matrices::{element, entry, raised};
+use crate::matrices::{element, entry, raised, set};
 use crate::response::{Derivatives, Prediction, Simulator};
 use crate::segments::{Data, Segment};
 use crate::settle::settle;
@@ -68,9 +68,13 @@ pub(crate) fn first_starts(data: &Data, hypothesis: &Hypothesis) -> Vec<Vec<f64>
     data.segments.iter().map(|segment| extended(&segment.guess, hypothesis)).collect()
 }
 
-/// A start state with as many entries as a hypothesis has: hidden bodies move along.
+/// A start state with as many entries as a hypothesis has: that of known hidden bodies stays where there is one, others
+/// move along.
 pub(crate) fn extended(start: &[f64], hypothesis: &Hypothesis) -> Vec<f64> {
-    start.iter().copied().take(2).cycle().take(hypothesis.start_length()).collect()
+    let known = start.iter().copied().take(hypothesis.least_start_length());
+    let along = start.iter().copied().take(2).cycle();
+    let missing = hypothesis.start_length().saturating_sub(known.len());
+    known.chain(along.take(missing)).collect()
 }
 
 impl Fit {
@@ -229,6 +233,31 @@ pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatr
     let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(right, i, j) * at(i));
     let solution = scaled.cholesky()?.solve(&scaled_right);
     Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(&solution, i, j) * at(i)))
+}
+
+/// What stands in an inverse for a parameter that changes nothing: its error is without bounds, and no number is spoiled
+/// by an infinite one.
+pub(crate) const UNBOUNDED: f64 = 1e150;
+
+/// The inverse of the normal equations of the parameters that can move; `plain` is their matrix before start states were
+/// eliminated.
+fn inverse(matrix: &DMatrix<f64>, plain: &DMatrix<f64>, parameters: &[Parameter]) -> Option<DMatrix<f64>> {
+    let count = matrix.nrows();
+    let is_open = |index: &usize| parameters.get(*index).is_none_or(|own| own.lower < own.upper);
+    let acts = |index: &usize| entry(plain, *index, *index) > 0.0;
+    let free: Vec<usize> = (0..count).filter(|index| is_open(index) && acts(index)).collect();
+    let part = matrix.select_rows(&free).select_columns(&free);
+    let inverse = solve(&part, &DMatrix::identity(free.len(), free.len()))?;
+    let mut all = DMatrix::zeros(count, count);
+    for (row, &i) in free.iter().enumerate() {
+        for (column, &j) in free.iter().enumerate() {
+            set(&mut all, i, j, entry(&inverse, row, column));
+        }
+    }
+    for index in (0..count).filter(|index| is_open(index) && !acts(index)) {
+        set(&mut all, index, index, UNBOUNDED);
+    }
+    Some(all)
 }
 
 impl Equations {
@@ -421,7 +450,7 @@ pub(crate) fn fit(
     let system = equations(&at, &vec![1.0; data.segments.len()], starts, globals);
     let inverse = system
         .reduced(0.0)
-        .and_then(|(matrix, _)| solve(&matrix, &DMatrix::identity(globals, globals)))
+        .and_then(|(matrix, _)| inverse(&matrix, &system.globals, &parameters))
         .unwrap_or_else(|| DMatrix::from_element(globals, globals, f64::INFINITY));
     let at_bound = point
         .globals

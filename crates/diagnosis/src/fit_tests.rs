@@ -40,8 +40,8 @@ fn squares_are_those_of_the_fits_own_point() {
     for seed in 0..4 {
         let observations = observed(1.0 + 0.5 * seed as f64, seed);
         let kept = [vec![true; observations.len()]];
-        let data = cut(&[observations], &kept, &nominal()).unwrap();
-        let base = baseline(&data, &nominal()).unwrap().calibrated;
+        let data = cut(&[observations], &kept, &(&nominal()).into()).unwrap();
+        let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
         for own in [SystemEffect::CoulombFriction, SystemEffect::Hysteresis, SystemEffect::Backlash] {
             let candidate = Candidate::System(own);
             let hypothesis = base.hypothesis.with(&[candidate]);

@@ -188,6 +188,22 @@ impl Horizon {
         horizon
     }
 
+    /// The longest on which the fit follows the motion as well as on this one, but for chance.
+    pub(crate) fn farthest(self, segments: &Data) -> Self {
+        let mut horizon = self;
+        let each = |own: &Self| own.calibrated.squares / own.calibrated.freedom();
+        while let Some(longer) = horizon.doubled(segments) {
+            // Two standard errors of a mean square of so many samples that say something new.
+            let worth = horizon.calibrated.freedom() / horizon.calibrated.autocorrelation_time();
+            let by_chance = 1.0 + 2.0 * (2.0 / worth).sqrt();
+            if each(&longer) > by_chance * each(&horizon) {
+                break;
+            }
+            horizon = longer;
+        }
+        horizon
+    }
+
     /// Whether the best set of a pool on this horizon follows the motion as well as it does segment by segment.
     pub(crate) fn is_followed(&self, segments: &Data, pool: &Pool) -> bool {
         let time = pool.autocorrelation_time();
@@ -271,7 +287,8 @@ mod tests {
     }
 
     fn data(observations: &Observations) -> Data {
-        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &nominal()).unwrap()
+        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &(&nominal()).into())
+            .unwrap()
     }
 
     #[test]
@@ -312,7 +329,7 @@ mod tests {
     #[test]
     fn a_record_without_effects_is_followed_as_a_whole() {
         let data = data(&observed(&[]));
-        let base = baseline(&data, &nominal()).unwrap().calibrated;
+        let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
         let horizon = Horizon::longest(&data, &base);
         assert_eq!(horizon.data.segments.len(), 1);
         let noise = (horizon.calibrated.squares / horizon.calibrated.freedom()).sqrt();

@@ -3,7 +3,10 @@
 use crate::candidate::{Candidate, Distortion, Parameter};
 use crate::facts::Facts;
 use dynamics::sensitivity::Free;
-use dynamics::{Active, Coefficients, DynamicsError, Nominal, System};
+use dynamics::{
+    Active, Coefficients, DynamicsError, Effect, KnownEffect, Nominal, NominalSimulator, System, SystemEffect,
+};
+use record::Quantity;
 
 /// A nominal coefficient that calibration may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -12,33 +15,58 @@ pub(crate) enum Calibrated {
     Damping,
     Stiffness,
     RestAngle,
+    /// A parameter of an effect that the nominal simulator has: both are numbers from 0.
+    Effect {
+        known: usize,
+        parameter: usize,
+    },
 }
 
 impl Calibrated {
+    /// The coefficients of the oscillator itself.
+    pub(crate) const PLAIN: [Self; 4] = [Self::Inertia, Self::Damping, Self::Stiffness, Self::RestAngle];
+
+    /// Name of a coefficient of the oscillator; that of an effect's parameter stands with the effect.
     pub(crate) fn name(self) -> &'static str {
         match self {
             Self::Inertia => "inertia",
             Self::Damping => "damping",
             Self::Stiffness => "stiffness",
             Self::RestAngle => "rest_angle",
+            Self::Effect { .. } => "",
         }
     }
 
-    pub(crate) fn free(self) -> Free {
+    /// The coefficient of the oscillator that it is; none for an effect's parameter.
+    pub(crate) fn free(self) -> Option<Free> {
         match self {
-            Self::Inertia => Free::Inertia,
-            Self::Damping => Free::Damping,
-            Self::Stiffness => Free::Stiffness,
-            Self::RestAngle => Free::RestAngle,
+            Self::Inertia => Some(Free::Inertia),
+            Self::Damping => Some(Free::Damping),
+            Self::Stiffness => Some(Free::Stiffness),
+            Self::RestAngle => Some(Free::RestAngle),
+            Self::Effect { .. } => None,
         }
     }
 
+    /// What a coefficient of the oscillator measures.
+    pub(crate) fn quantity(self) -> dynamics::Quantity {
+        match self {
+            Self::Inertia => dynamics::Quantity::Inertia,
+            Self::Damping => dynamics::Quantity::Damping,
+            Self::Stiffness => dynamics::Quantity::Stiffness,
+            Self::RestAngle => dynamics::Quantity::Position,
+            Self::Effect { .. } => dynamics::Quantity::Ratio,
+        }
+    }
+
+    /// Value of a coefficient of the oscillator.
     pub(crate) fn of(self, coefficients: &Coefficients<f64>) -> f64 {
         match self {
             Self::Inertia => coefficients.inertia,
             Self::Damping => coefficients.damping,
             Self::Stiffness => coefficients.stiffness,
             Self::RestAngle => coefficients.rest_angle,
+            Self::Effect { .. } => f64::NAN,
         }
     }
 
@@ -48,7 +76,32 @@ impl Calibrated {
             Self::Damping => coefficients.damping = value,
             Self::Stiffness => coefficients.stiffness = value,
             Self::RestAngle => coefficients.rest_angle = value,
+            Self::Effect { .. } => {}
         }
+    }
+}
+
+/// An effect that the nominal simulator has, with its parameters as a fit moves them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Known {
+    pub(crate) candidate: Candidate,
+    pub(crate) stated: Vec<f64>,
+    /// Whether recalibration may move it.
+    pub(crate) recalibrate: bool,
+}
+
+impl Known {
+    /// The effects of a nominal simulator that act in a fit of records of a quantity.
+    pub(crate) fn of(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Self> {
+        let known = |known: &KnownEffect| {
+            let (candidate, values) = Candidate::of(&known.active)?;
+            candidate.is_observed_in(quantity).then(|| Self {
+                candidate,
+                stated: candidate.fitted(&values),
+                recalibrate: known.recalibrate,
+            })
+        };
+        simulator.effects().iter().filter_map(known).collect()
     }
 }
 
@@ -128,7 +181,12 @@ impl Measurement {
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Hypothesis {
     pub(crate) nominal: Nominal,
+    /// The effects that the nominal simulator has; part of every hypothesis.
+    pub(crate) known: Vec<Known>,
+    /// What calibration moves: the oscillator's coefficients, then the parameters of known effects, all of an effect or
+    /// none.
     pub(crate) calibrated: Vec<Calibrated>,
+    /// What is missing from the nominal simulator.
     pub(crate) candidates: Vec<Candidate>,
 }
 
@@ -136,8 +194,8 @@ pub(crate) struct Hypothesis {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Source {
     Nominal(Calibrated),
-    /// Index among the candidates, index among its parameters.
-    Candidate(usize, usize),
+    /// Index among the effects (see [`Hypothesis::effects`]), index among its parameters.
+    Effect(usize, usize),
 }
 
 impl Hypothesis {
@@ -149,35 +207,72 @@ impl Hypothesis {
         Self { candidates, ..self.clone() }
     }
 
+    /// Every effect: those of the nominal simulator, then the candidates.
+    pub(crate) fn effects(&self) -> impl Iterator<Item = Candidate> + '_ {
+        self.known.iter().map(|known| known.candidate).chain(self.candidates.iter().copied())
+    }
+
+    /// The effect with a number among all.
+    pub(crate) fn effect(&self, index: usize) -> Option<Candidate> {
+        self.effects().nth(index)
+    }
+
+    /// Whether the nominal simulator has an effect.
+    pub(crate) fn knows(&self, candidate: Candidate) -> bool {
+        self.known.iter().any(|known| known.candidate == candidate)
+    }
+
     pub(crate) fn sources(&self, facts: &Facts) -> Vec<Source> {
-        let nominal = self.calibrated.iter().map(|&which| Source::Nominal(which));
+        let nominal = self.calibrated.iter().map(|&which| match which {
+            Calibrated::Effect { known, parameter } => Source::Effect(known, parameter),
+            which => Source::Nominal(which),
+        });
         let own = self.candidates.iter().enumerate().flat_map(|(index, candidate)| {
-            (0..candidate.parameters(facts).len()).map(move |parameter| Source::Candidate(index, parameter))
+            let index = self.known.len() + index;
+            (0..candidate.parameters(facts).len()).map(move |parameter| Source::Effect(index, parameter))
         });
         nominal.chain(own).collect()
     }
 
     /// Every global parameter with its bounds.
     pub(crate) fn parameters(&self, facts: &Facts) -> Vec<Parameter> {
-        let nominal = self.calibrated.iter().map(|which| Parameter {
+        let plain = |which: Calibrated| Parameter {
             name: which.name(),
             lower: match which {
                 Calibrated::Inertia => 1e-3 * facts.inertia,
                 Calibrated::Damping | Calibrated::Stiffness => 0.0,
-                Calibrated::RestAngle => f64::NEG_INFINITY,
+                Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
             },
             upper: f64::INFINITY,
             strength: false,
             shape: false,
             simpler: false,
-        });
+        };
+        let nominal =
+            self.calibrated.iter().map(|&which| self.of_known(which, facts).unwrap_or(plain(which)));
         nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
+    }
+
+    /// A known effect's parameter with its bounds, which always admit what is stated. The effect is there at any size.
+    fn of_known(&self, which: Calibrated, facts: &Facts) -> Option<Parameter> {
+        let Calibrated::Effect { known, parameter } = which else { return None };
+        let known = self.known.get(known)?;
+        let own = *known.candidate.parameters(facts).get(parameter)?;
+        let stated = known.stated.get(parameter).copied()?;
+        let (lower, upper) = (own.lower.min(stated), own.upper.max(stated));
+        Some(Parameter { lower, upper, strength: false, shape: false, simpler: false, ..own })
     }
 
     /// The nominal values of the calibrated coefficients: where a fit without candidates starts.
     pub(crate) fn nominal_point(&self) -> Vec<f64> {
         let coefficients = self.nominal.coefficients();
-        self.calibrated.iter().map(|which| which.of(&coefficients)).collect()
+        let stated = |which: Calibrated| match which {
+            Calibrated::Effect { known, parameter } => {
+                self.known.get(known).and_then(|known| known.stated.get(parameter).copied()).unwrap_or(0.0)
+            }
+            which => which.of(&coefficients),
+        };
+        self.calibrated.iter().map(|&which| stated(which)).collect()
     }
 
     /// Each candidate's part of a point.
@@ -194,6 +289,28 @@ impl Hypothesis {
             .collect()
     }
 
+    /// The parameters of every effect at a point, as a fit moves them, with the place of the first among the global ones;
+    /// no place for known effects that are held.
+    pub(crate) fn all_parts<'a>(
+        &'a self,
+        facts: &Facts,
+        point: &'a [f64],
+    ) -> Vec<(Candidate, Option<usize>, &'a [f64])> {
+        let mut all = Vec::with_capacity(self.known.len() + self.candidates.len());
+        for (index, known) in self.known.iter().enumerate() {
+            let first = Calibrated::Effect { known: index, parameter: 0 };
+            let place = self.calibrated.iter().position(|own| *own == first);
+            let moved = place.and_then(|place| point.get(place..place + known.stated.len()));
+            all.push((known.candidate, moved.and(place), moved.unwrap_or(&known.stated)));
+        }
+        let mut place = self.calibrated.len();
+        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+            all.push((*candidate, Some(place), own));
+            place += own.len();
+        }
+        all
+    }
+
     pub(crate) fn calibrated_nominal(&self, point: &[f64]) -> Result<Nominal, DynamicsError> {
         let mut coefficients = self.nominal.coefficients();
         for (which, &value) in self.calibrated.iter().zip(point) {
@@ -204,28 +321,30 @@ impl Hypothesis {
 
     pub(crate) fn system(&self, facts: &Facts, point: &[f64]) -> Result<System, DynamicsError> {
         let mut effects = Vec::new();
-        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+        for (candidate, _, own) in self.all_parts(facts, point) {
             if let Candidate::System(effect) = candidate {
-                let values = candidate.values(own);
-                let parameters = effect.description().parameters;
-                let inside: Vec<f64> =
-                    values
-                        .iter()
-                        .zip(parameters)
-                        // Open ranges exclude their ends, which a fit at its bound reaches.
-                        .map(|(&value, parameter)| {
-                            if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
-                        })
-                        .collect();
-                effects.push(Active::new(candidate.id(), &inside)?);
+                effects.push(active(effect, &candidate.values(own))?);
             }
         }
         System::new(self.calibrated_nominal(point)?, effects)
     }
 
+    /// The oscillator at a point, and the stiffness against small swings of it with a known weight.
+    pub(crate) fn swinging(&self, facts: &Facts, point: &[f64]) -> Result<(Nominal, f64), DynamicsError> {
+        let nominal = self.calibrated_nominal(point)?;
+        let parts = self.all_parts(facts, point).into_iter().take(self.known.len());
+        let weight = parts.filter_map(|(known, _, own)| match known {
+            Candidate::System(effect @ SystemEffect::Gravity) => Some(active(effect, &known.values(own))),
+            _ => None,
+        });
+        let effects = weight.map(|active| Ok(KnownEffect { active: active?, recalibrate: true }));
+        let simulator = NominalSimulator::new(nominal, effects.collect::<Result<_, DynamicsError>>()?)?;
+        Ok((nominal, simulator.equilibrium().1))
+    }
+
     pub(crate) fn measurement(&self, facts: &Facts, point: &[f64]) -> Measurement {
         let mut measurement = Measurement::default();
-        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+        for (candidate, _, own) in self.all_parts(facts, point) {
             match (candidate, candidate.values(own).as_slice()) {
                 (Candidate::Chain(Distortion::Lag), &[lag]) => measurement.lag = Some(lag),
                 (Candidate::Chain(Distortion::Nonlinearity), &[amplitude, phase]) => {
@@ -245,7 +364,7 @@ impl Hypothesis {
 
     /// Whether the motion depends smoothly on everything that is fitted.
     pub(crate) fn smooth(&self) -> bool {
-        self.candidates.iter().all(|candidate| match candidate {
+        self.effects().all(|candidate| match candidate {
             Candidate::System(effect) => effect.description().smooth,
             Candidate::Chain(_) => true,
         })
@@ -253,7 +372,12 @@ impl Hypothesis {
 
     /// State values of a segment that are fitted: position, velocity, hidden ones.
     pub(crate) fn start_length(&self) -> usize {
-        2 + self.candidates.iter().map(|candidate| candidate.free_hidden()).sum::<usize>()
+        2 + self.effects().map(Candidate::free_hidden).sum::<usize>()
+    }
+
+    /// The same without candidates: what every hypothesis fits.
+    pub(crate) fn least_start_length(&self) -> usize {
+        2 + self.known.iter().map(|known| known.candidate.free_hidden()).sum::<usize>()
     }
 
     /// The places of its candidates in the vocabulary: what tells sets apart.
@@ -264,6 +388,16 @@ impl Hypothesis {
     pub(crate) fn ids(&self) -> Vec<&'static str> {
         self.candidates.iter().map(|candidate| candidate.id()).collect()
     }
+}
+
+/// An effect with a law's parameters, kept inside their ranges: open ranges exclude their ends, which a fit at its bound
+/// reaches.
+pub(crate) fn active(effect: SystemEffect, values: &[f64]) -> Result<Active, DynamicsError> {
+    let parameters = effect.description().parameters;
+    let inside = values.iter().zip(parameters).map(|(&value, parameter)| {
+        if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
+    });
+    Active::of(Effect::System(effect), &inside.collect::<Vec<_>>())
 }
 
 #[cfg(test)]

@@ -27,6 +27,7 @@ mod coefficients;
 mod conclusion;
 mod confidence;
 mod contact;
+mod determined;
 mod diagnose;
 mod dictionary;
 mod ending;
@@ -56,6 +57,10 @@ mod ratio;
 mod reading;
 mod refine;
 mod release;
+mod repaired;
+#[cfg(test)]
+#[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
+mod repaired_tests;
 mod response;
 mod rounding;
 mod score;
@@ -78,7 +83,8 @@ mod work;
 
 pub use answer::{
     Budget, Calibrated, Cell, Detectability, Diagnosis, EffectProbability, Experiment, Finding, Gap,
-    Interval, MeasuringChain, ParameterEstimate, Rivalry, Series, SetScore, Stage, Status, Verdict, Where,
+    Interval, KnownRow, MeasuringChain, ParameterEstimate, RepairedSimulator, Rivalry, Series, SetScore,
+    Stage, Status, Undetermined, Verdict, Where,
 };
 pub use candidate::has_fitted_hidden_start;
 pub use conclusion::DISTINCT_DISTANCE;
@@ -87,4 +93,5 @@ pub use error::DiagnosisError;
 pub use noise::NoiseFloor;
 pub use observations::Observations;
 pub use portrait::{SurfaceCell, Swing, backbone, surface};
+pub use repaired::rounded;
 pub use single_effect::single_effect;

@@ -88,9 +88,9 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
     let starts_once = data.segments.len() <= data.inputs.len();
-    let swing = match fit.hypothesis.calibrated_nominal(&fit.point.globals) {
-        Ok(nominal) => MainMode {
-            frequency: (nominal.stiffness() / nominal.inertia()).max(0.0).sqrt(),
+    let swing = match fit.hypothesis.swinging(&data.facts, &fit.point.globals) {
+        Ok((nominal, stiffness)) => MainMode {
+            frequency: (stiffness / nominal.inertia()).max(0.0).sqrt(),
             decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
             inertia: nominal.inertia(),
             starts_once,

@@ -48,11 +48,11 @@ pub(crate) struct Simulator<'a> {
     times: Vec<f64>,
 }
 
-/// A contact that bends before it slides: its number among the candidates, that of its hidden state, and where the
+/// A contact that bends before it slides: its number among the effects, that of its hidden state, and where the
 /// hidden state's column stands in the response.
 #[derive(Debug, Clone, Copy)]
 struct Contact {
-    candidate: usize,
+    effect: usize,
     hidden: usize,
     column: Option<usize>,
 }
@@ -105,8 +105,8 @@ impl<'a> Simulator<'a> {
         if derivatives == Derivatives::All {
             for (source, column) in sources.iter().zip(&mut columns) {
                 let own = match *source {
-                    Source::Nominal(which) => Some(which.free()),
-                    Source::Candidate(index, parameter) => match hypothesis.candidates.get(index) {
+                    Source::Nominal(which) => which.free(),
+                    Source::Effect(index, parameter) => match hypothesis.effect(index) {
                         Some(Candidate::System(effect)) => {
                             let description = effect.description();
                             description
@@ -159,7 +159,7 @@ impl<'a> Simulator<'a> {
     /// point has to be the one that they were made for.
     pub(crate) fn set(&mut self, point: &[f64]) -> Result<(), DynamicsError> {
         let mut values = Vec::new();
-        let parts = self.hypothesis.parts(self.facts(), point);
+        let parts = self.hypothesis.all_parts(self.facts(), point);
         for (source, column) in self.sources.iter().zip(&self.columns) {
             match (*source, column) {
                 (_, None) => {}
@@ -167,9 +167,8 @@ impl<'a> Simulator<'a> {
                     let at = self.hypothesis.calibrated.iter().position(|own| *own == which);
                     values.extend(at.and_then(|at| point.get(at)));
                 }
-                (Source::Candidate(index, parameter), _) => {
-                    let candidate = self.hypothesis.candidates.get(index);
-                    let own = candidate.zip(parts.get(index)).map(|(c, part)| c.values(part));
+                (Source::Effect(index, parameter), _) => {
+                    let own = parts.get(index).map(|(effect, _, part)| effect.values(part));
                     values.extend(own.and_then(|own| own.get(parameter).copied()));
                 }
             }
@@ -213,8 +212,8 @@ impl<'a> Simulator<'a> {
     /// How far the contact is bent at a segment's start; none where there is none or the record begins.
     fn bent(&self, segment: &Segment, start: &[f64]) -> Option<Bent> {
         let contact = self.contact.filter(|_| !segment.first)?;
-        let parts = self.hypothesis.parts(self.facts(), &self.point);
-        let &&[_, displacement] = parts.get(contact.candidate)? else { return None };
+        let parts = self.hypothesis.all_parts(self.facts(), &self.point);
+        let &(_, _, &[_, displacement]) = parts.get(contact.effect)? else { return None };
         let &[position, velocity, ..] = start else { return None };
         let deflection = position - self.facts().rest(&self.point, self.hypothesis);
         Some(bent(deflection, velocity / self.facts().frequency, displacement))
@@ -230,7 +229,7 @@ impl<'a> Simulator<'a> {
             let number = |own: Source| self.sources.iter().position(|source| *source == own);
             let by_rest = number(Source::Nominal(Calibrated::RestAngle));
             all.extend(by_rest.map(|number| (starts + number, -bent.by_deflection)));
-            let by_displacement = number(Source::Candidate(contact.candidate, 1));
+            let by_displacement = number(Source::Effect(contact.effect, 1));
             all.extend(by_displacement.map(|number| (starts + number, bent.by_displacement)));
         }
         all
@@ -297,8 +296,8 @@ impl<'a> Simulator<'a> {
             for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
                 let value = match (column, *source) {
                     (Some(column), _) => through(*column),
-                    (None, Source::Candidate(index, parameter)) => {
-                        let which = sensor_parameter(self.hypothesis.candidates.get(index), parameter);
+                    (None, Source::Effect(index, parameter)) => {
+                        let which = sensor_parameter(self.hypothesis.effect(index), parameter);
                         which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
                     }
                     (None, Source::Nominal(_)) => 0.0,
@@ -350,8 +349,8 @@ impl<'a> Simulator<'a> {
     /// Number of the reading hysteresis among the global parameters.
     fn by_width(&self) -> Option<usize> {
         let own = Candidate::Chain(Distortion::ReadingHysteresis);
-        let index = self.hypothesis.candidates.iter().position(|candidate| *candidate == own)?;
-        self.sources.iter().position(|source| matches!(source, Source::Candidate(at, _) if *at == index))
+        let index = self.hypothesis.effects().position(|effect| effect == own)?;
+        self.sources.iter().position(|source| matches!(source, Source::Effect(at, _) if *at == index))
     }
 
     /// From derivatives by the laws' parameters to those by the fit's.
@@ -359,11 +358,9 @@ impl<'a> Simulator<'a> {
         if self.derivatives != Derivatives::All {
             return;
         }
-        let parts = self.hypothesis.parts(self.facts(), &self.point);
-        let mut at = starts + self.hypothesis.calibrated.len();
-        for (candidate, part) in self.hypothesis.candidates.iter().zip(parts) {
-            let slopes = candidate.slopes(part);
-            if !slopes.is_empty() {
+        for (effect, place, part) in self.hypothesis.all_parts(self.facts(), &self.point) {
+            let slopes = effect.slopes(part);
+            if let Some(at) = place.map(|place| starts + place).filter(|_| !slopes.is_empty()) {
                 let law = jacobian.columns(at, part.len()).clone_owned();
                 let mut change = DMatrix::identity(part.len(), part.len());
                 for (row, column, slope) in slopes {
@@ -371,7 +368,6 @@ impl<'a> Simulator<'a> {
                 }
                 jacobian.columns_mut(at, part.len()).copy_from(&(law * change));
             }
-            at += part.len();
         }
     }
 
@@ -396,18 +392,20 @@ impl<'a> Simulator<'a> {
 }
 
 impl Facts {
-    /// The rest angle at a point.
+    /// Where the motion comes to rest at a point: the rest angle, moved by what a known weight does.
     pub(crate) fn rest(&self, point: &[f64], hypothesis: &Hypothesis) -> f64 {
         let at = hypothesis.calibrated.iter().position(|own| *own == Calibrated::RestAngle);
-        at.and_then(|at| point.get(at)).copied().unwrap_or_else(|| hypothesis.nominal.rest_angle())
+        let angle =
+            at.and_then(|at| point.get(at)).copied().unwrap_or_else(|| hypothesis.nominal.rest_angle());
+        angle + self.rest_moved
     }
 }
 
-/// Effects of a hypothesis's system, with their numbers among its candidates and those of their first hidden states.
+/// Effects of a hypothesis's system, with their numbers among all and those of their first hidden states.
 fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, SystemEffect, usize)> {
     let mut hidden = 0;
-    hypothesis.candidates.iter().enumerate().filter_map(move |(number, candidate)| {
-        let Candidate::System(effect) = *candidate else { return None };
+    hypothesis.effects().enumerate().filter_map(move |(number, effect)| {
+        let Candidate::System(effect) = effect else { return None };
         let from = hidden;
         hidden += effect.description().hidden_states;
         Some((number, effect, from))
@@ -418,7 +416,7 @@ fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, Syste
 fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
     let mut effects = system_effects(hypothesis);
     let own = effects.find(|(_, effect, _)| *effect == SystemEffect::Hysteresis);
-    own.map(|(candidate, _, hidden)| Contact { candidate, hidden, column: None })
+    own.map(|(effect, _, hidden)| Contact { effect, hidden, column: None })
 }
 
 /// Numbers of the hidden states that each segment fits, among all of the system's.
@@ -428,8 +426,8 @@ fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
 }
 
 /// Place of a sensor effect's parameter in [`crate::hypothesis::Observed::by_parameter`].
-fn sensor_parameter(candidate: Option<&Candidate>, parameter: usize) -> Option<usize> {
-    match candidate? {
+fn sensor_parameter(effect: Option<Candidate>, parameter: usize) -> Option<usize> {
+    match effect? {
         Candidate::Chain(Distortion::Lag) => Some(0),
         Candidate::Chain(Distortion::Nonlinearity) => Some(1 + parameter),
         Candidate::Chain(Distortion::Drift) => Some(3),

@@ -16,7 +16,7 @@ fn data() -> (Data, Nominal) {
     let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
     let nominal = Nominal::new(1.0, 0.2, 36.0, 0.0).unwrap();
     let kept = [vec![true; observations.len()]];
-    (cut(std::slice::from_ref(&observations), &kept, &nominal).unwrap(), nominal)
+    (cut(std::slice::from_ref(&observations), &kept, &(&nominal).into()).unwrap(), nominal)
 }
 
 /// But for the first reading, whose turn of before the derivatives take for fixed.
@@ -25,7 +25,7 @@ fn a_held_readings_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();
     let candidates = vec![Candidate::Chain(Distortion::ReadingHysteresis)];
     let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
-    let hypothesis = Hypothesis { nominal, calibrated, candidates };
+    let hypothesis = Hypothesis { nominal, known: Vec::new(), calibrated, candidates };
     let globals = [0.2, 36.0, 0.01, 0.4 * STEP];
     let mut simulator = Simulator::new(&data, &hypothesis, &globals, Derivatives::All).unwrap();
     for segment in &data.segments {
@@ -54,7 +54,7 @@ fn a_bent_contacts_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();
     let candidates = vec![Candidate::System(dynamics::SystemEffect::Hysteresis)];
     let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
-    let hypothesis = Hypothesis { nominal, calibrated, candidates };
+    let hypothesis = Hypothesis { nominal, known: Vec::new(), calibrated, candidates };
     let globals = [0.2, 36.0, 0.01, 0.3, 0.02];
     let mut simulator = Simulator::new(&data, &hypothesis, &globals, Derivatives::All).unwrap();
     for (number, segment) in data.segments.iter().enumerate() {

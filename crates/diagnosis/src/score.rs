@@ -11,9 +11,15 @@ use crate::fit::Fit;
 pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
     let samples = fit.samples() as f64;
     let worth = samples / autocorrelation_time;
-    let extra = fit.point.starts.iter().map(|start| start.len().saturating_sub(2)).sum::<usize>();
+    let extra = further_starts(fit);
     let mean = (fit.squares / samples).max(f64::MIN_POSITIVE);
     -0.5 * worth * mean.ln() - price(fit.globals() + extra, worth)
+}
+
+/// Start values that a hypothesis has beyond those of every one.
+pub(crate) fn further_starts(fit: &Fit) -> usize {
+    let common = fit.hypothesis.least_start_length();
+    fit.point.starts.iter().map(|start| start.len().saturating_sub(common)).sum()
 }
 
 /// What parameters cost: (p/2)·ln(N/τ).
@@ -38,8 +44,8 @@ pub(crate) fn calibrated_swing() -> (crate::segments::Data, Fit) {
     let clock = Clock::new(&record, ClockChoice::Host).unwrap();
     let nominal = dynamics::Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
     let observations = crate::Observations::new(&record, &clock);
-    let data = crate::segments::cut(&[observations], &[vec![true; 1000]], &nominal).unwrap();
-    let calibrated = crate::calibrate::baseline(&data, &nominal).unwrap().calibrated;
+    let data = crate::segments::cut(&[observations], &[vec![true; 1000]], &(&nominal).into()).unwrap();
+    let calibrated = crate::calibrate::baseline(&data, &(&nominal).into()).unwrap().calibrated;
     (data, calibrated)
 }
 

@@ -9,7 +9,7 @@ use crate::matrices::element;
 use crate::observations::Observations;
 use crate::period::swing;
 use crate::statistics::{median, quantile};
-use dynamics::{Coordinate, Hold, Input, Nominal};
+use dynamics::{Coordinate, Hold, Input, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -179,23 +179,23 @@ impl Data {
 pub(crate) fn cut(
     records: &[Observations],
     kept: &[Vec<bool>],
-    nominal: &Nominal,
+    simulator: &NominalSimulator,
 ) -> Result<Data, DiagnosisError> {
     let first = records.first().ok_or(DiagnosisError::NoRecord)?;
     let mut swings = Vec::new();
     for (index, record) in records.iter().enumerate() {
-        swings.push(check(index + 1, record, first, nominal)?);
+        swings.push(check(index + 1, record, first, simulator)?);
     }
     let measured: Vec<f64> = swings.iter().flatten().copied().collect();
     let period_s = (!measured.is_empty()).then(|| median(&measured));
-    let facts = facts(records, nominal, period_s);
+    let facts = facts(records, simulator, period_s);
     let mut segments = Vec::new();
     let mut inputs = Vec::new();
     for (number, (record, kept)) in records.iter().zip(kept).enumerate() {
         inputs.push(input(record)?);
         let times: Vec<f64> = only(&record.times_s, kept);
         let values: Vec<f64> = only(&record.values, kept);
-        let (count, length, end) = cuts(record, nominal, period_s, &times, &values);
+        let (count, length, end) = cuts(record, simulator, period_s, &times, &values);
         let mut own: Vec<(Vec<f64>, Vec<f64>)> = vec![(Vec::new(), Vec::new()); count];
         for (&time, &value) in times.iter().zip(&values).take_while(|(time, _)| **time <= end) {
             let at = ((time / length) as usize).min(count - 1);
@@ -212,7 +212,7 @@ pub(crate) fn cut(
             if at > 1 && swings_within(&values, record.resolution) {
                 continue;
             }
-            let guess = guess(&times, &values, record.quantity, &facts, period_s, nominal);
+            let guess = guess(&times, &values, record.quantity, &facts, period_s, simulator);
             let still = values.iter().zip(values.iter().skip(1)).all(|(before, after)| before == after);
             let first = at == 0 && kept.first() == Some(&true);
             segments.push(Segment { record: number, first, times, values, still, parts: vec![0], guess });
@@ -244,7 +244,7 @@ fn check(
     number: usize,
     record: &Observations,
     first: &Observations,
-    nominal: &Nominal,
+    simulator: &NominalSimulator,
 ) -> Result<Option<f64>, DiagnosisError> {
     if record.quantity != first.quantity || record.unit != first.unit {
         return Err(DiagnosisError::MixedQuantities { record: number });
@@ -258,6 +258,7 @@ fn check(
     }
     let highest = record.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = record.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let nominal = simulator.nominal();
     let resolution = record.resolution.or(nominal.sensor_resolution()).unwrap_or(0.0);
     if highest - lowest <= 3.0 * resolution || highest <= lowest {
         return Err(DiagnosisError::NoMotion {
@@ -270,7 +271,7 @@ fn check(
     if record.input.is_some() {
         return Ok(None);
     }
-    let omega = nominal.angular_frequency();
+    let omega = simulator.angular_frequency();
     if omega == 0.0 {
         return Err(DiagnosisError::MissingInput { record: number });
     }
@@ -328,12 +329,12 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
 /// only as much is kept as there was motion: a body at rest says once what holds it.
 fn cuts(
     record: &Observations,
-    nominal: &Nominal,
+    simulator: &NominalSimulator,
     period_s: Option<f64>,
     times: &[f64],
     values: &[f64],
 ) -> (usize, f64, f64) {
-    let omega = nominal.angular_frequency();
+    let (nominal, omega) = (simulator.nominal(), simulator.angular_frequency());
     let wanted = match period_s {
         Some(period) => PERIODS * period,
         None if omega > 0.0 => PERIODS * TAU / omega,
@@ -359,8 +360,8 @@ fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
     moving.map_or(0.0, |(time, _)| *time)
 }
 
-fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> Facts {
-    let omega = nominal.angular_frequency();
+fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Option<f64>) -> Facts {
+    let (nominal, omega) = (simulator.nominal(), simulator.angular_frequency());
     let frequency = match period_s {
         Some(period) => TAU / period,
         None if omega > 0.0 => omega,
@@ -372,7 +373,7 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         Quantity::Velocity => 1.0 / frequency,
         Quantity::Acceleration => 1.0 / (frequency * frequency),
     };
-    let rest = nominal.rest_angle();
+    let (rest, _) = simulator.equilibrium();
     // Rates swing about zero, positions about where the spring rests.
     let center = if quantity == Quantity::Position { 0.0 } else { rest };
     let values = || records.iter().flat_map(|record| record.values.iter().copied());
@@ -407,6 +408,11 @@ fn facts(records: &[Observations], nominal: &Nominal, period_s: Option<f64>) -> 
         input_torque: input.fold(0.0, |most: f64, u| most.max(u.abs())) * gain,
         duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
         interval,
+        rest_moved: rest - nominal.rest_angle(),
+        friction_known: simulator
+            .effects()
+            .iter()
+            .any(|known| known.recalibrate && known.active.id() == "coulomb_friction"),
         inertia,
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
@@ -436,13 +442,14 @@ fn guess(
     quantity: Quantity,
     facts: &Facts,
     period_s: Option<f64>,
-    nominal: &Nominal,
+    simulator: &NominalSimulator,
 ) -> [f64; 2] {
     let start = times.first().copied().unwrap_or_default();
     let omega = facts.frequency;
+    let (rest, stiffness) = simulator.equilibrium();
     let reach = match period_s {
         Some(period) => 0.6 * period,
-        None if nominal.stiffness() > 0.0 => 0.25 * TAU / omega,
+        None if stiffness > 0.0 => 0.25 * TAU / omega,
         None => 12.0 * facts.interval,
     };
     let points: Vec<(f64, f64)> = times
@@ -467,10 +474,10 @@ fn guess(
         (Quantity::Position, true) => [offset + cosine, omega * sine],
         (Quantity::Position, false) => [offset, cosine],
         // v = −A·ω·sin + B·ω·cos about the rest angle.
-        (Quantity::Velocity, true) => [nominal.rest_angle() - sine / omega, cosine],
-        (Quantity::Velocity, false) => [nominal.rest_angle(), offset],
-        (Quantity::Acceleration, true) => [nominal.rest_angle() - cosine / (omega * omega), -sine / omega],
+        (Quantity::Velocity, true) => [rest - sine / omega, cosine],
+        (Quantity::Velocity, false) => [rest, offset],
+        (Quantity::Acceleration, true) => [rest - cosine / (omega * omega), -sine / omega],
         // Nothing swings: an acceleration says where the spring pulls and nothing of the speed.
-        (Quantity::Acceleration, false) => [nominal.rest_angle() - offset / (omega * omega), 0.0],
+        (Quantity::Acceleration, false) => [rest - offset / (omega * omega), 0.0],
     }
 }

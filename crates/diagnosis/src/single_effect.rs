@@ -11,7 +11,7 @@ use crate::pool::vanished;
 use crate::proposal::fit_all;
 use crate::search::alone;
 use crate::segments::{MOST_SEARCHED, cut};
-use dynamics::Nominal;
+use dynamics::NominalSimulator;
 
 /// What an effect would take away, and what its parameters cost: N·ln(SS/N) + p·ln N, for N samples with
 /// squares SS and p parameters.
@@ -36,13 +36,14 @@ fn criterion(fit: &Fit) -> f64 {
 /// Schwarz, Annals of Statistics 6 (1978) 461.
 pub fn single_effect(
     records: &[Observations],
-    nominal: &Nominal,
+    simulator: impl Into<NominalSimulator>,
 ) -> Result<Option<&'static str>, DiagnosisError> {
+    let simulator = &simulator.into();
     let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
-    let all = cut(records, &kept, nominal)?;
+    let all = cut(records, &kept, simulator)?;
     let data = all.sparser(MOST_SEARCHED).thinned(MOST_SEARCHED);
-    let (data, base) = better_hold(&data, nominal)?;
-    let candidates = Candidate::that_apply(&data.facts, data.quantity, nominal);
+    let (data, base) = better_hold(&data, simulator)?;
+    let candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
     let dictionary = Dictionary::at(&data, &base.calibrated, &candidates)?;
     let proposals = alone(&data, &base.calibrated, &dictionary);
     let fits = fit_all(&data, &proposals, |_| Effort::SEARCH);

@@ -288,7 +288,7 @@ fn slopes(system: &System, path: &Path, index: usize, facts: &Facts) -> (f64, f6
             continue;
         }
         if let (SystemEffect::Hysteresis, &[torque, displacement, ..]) = (effect, &values) {
-            let deflection = plain.position - c.rest_angle;
+            let deflection = plain.position - (c.rest_angle + facts.rest_moved);
             let z = bent(deflection, plain.velocity / facts.frequency, displacement).z;
             stiffness += torque * (1.0 - z * plain.direction).max(0.0) / displacement;
             continue;

@@ -82,11 +82,15 @@ pub(crate) fn unnamed(work: &Work<'_>, held: &Held<'_>) -> Result<Option<Unnamed
 }
 
 /// The fit of a set with such a torque beside it; none where by its gain to first order its log evidence over the set
-/// alone, at an autocorrelation time, stays below a bound, or where it comes out as something else.
+/// alone, at an autocorrelation time, stays below a bound, where it comes out as something else, or where the nominal
+/// simulator has one.
 ///
 /// # Errors
 /// What the dynamics refuse.
 pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<Option<Fit>, DynamicsError> {
+    if named.hypothesis.knows(Candidate::UNNAMED) {
+        return Ok(None);
+    }
     let Some(wave) = strongest(data, named)? else { return Ok(None) };
     let promised = Fit { squares: (named.squares - wave.gain).max(f64::MIN_POSITIVE), ..named.clone() };
     if evidence(data, &promised, named, time) < bound {

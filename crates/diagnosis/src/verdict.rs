@@ -3,6 +3,7 @@
 use crate::candidate::Candidate;
 use crate::fit::Fit;
 use crate::pool::Pool;
+use crate::score::further_starts;
 use crate::statistics::chi_squared_above;
 
 /// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered
@@ -64,7 +65,7 @@ pub(crate) fn weigh<'a>(
         .iter()
         .map(|fit| {
             let size = fit.hypothesis.candidates.len();
-            let extra = fit.point.starts.iter().map(|start| start.len().saturating_sub(2)).sum::<usize>();
+            let extra = further_starts(fit);
             let parameters = fit.globals().saturating_sub(calibrated.globals()) + extra;
             let price = 0.5 * parameters as f64 * worth.max(2.0).ln();
             let evidence = ratio(fit, calibrated, time) - price - beyond(size, price, threshold, vocabulary);

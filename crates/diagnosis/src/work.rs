@@ -140,6 +140,13 @@ impl<'a> Work<'a> {
         Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
+    /// What a recalibration moves: nothing of a simulator whose effects explain the records as it is given. Its many
+    /// coefficients, fitted to half of a short record, would predict the other half worse.
+    fn calibrating(&self) -> Moving {
+        let has_effects = !self.base.calibrated.hypothesis.known.is_empty();
+        if has_effects && !self.base.is_off() { Moving::Starts } else { Moving::All }
+    }
+
     /// Goes through the sets in the order of their probability and takes the first that also predicts
     /// held-out parts: better than the calibrated simulator, and not clearly worse than any other of the best
     /// sets.
@@ -153,9 +160,13 @@ impl<'a> Work<'a> {
         let short = self.segments.base;
         let unjoined = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
         let nominal = unjoined.interleaved(Moving::Starts)?;
-        let recalibrated_both = own(&self.base.calibrated, &short.calibrated);
-        let recalibrated = recalibrated_both.interleaved(Moving::All)?;
-        let third = recalibrated_both.last_third(Moving::All)?;
+        let moving = self.calibrating();
+        let recalibrated_both = match moving {
+            Moving::All => own(&self.base.calibrated, &short.calibrated),
+            Moving::Starts => own(&self.base.nominal, &short.nominal),
+        };
+        let recalibrated = recalibrated_both.interleaved(moving)?;
+        let third = recalibrated_both.last_third(moving)?;
         let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
         let of = |w: &Weighed<'a>| {
             // A set whose motion cannot be followed from parts of the data predicts nothing.

@@ -28,6 +28,7 @@ mod fixtures;
 mod input;
 mod law;
 mod nominal;
+mod nominal_simulator;
 pub mod reference;
 pub mod registry;
 #[cfg(test)]
@@ -49,6 +50,7 @@ pub use field::SYSTEM_HIDDEN;
 pub use input::{Hold, Input};
 pub use law::{Hidden, Law, MOST_HIDDEN, MOST_PARAMETERS, Margins, Moment, Values};
 pub use nominal::{Coefficients, Nominal};
+pub use nominal_simulator::{KnownEffect, NominalSimulator};
 pub use registry::{ChainEffect, Effect, REGISTRY, SystemEffect, UNNAMED};
 pub use system::{Start, System};
 pub use units::{Coordinate, Quantity, Units};

@@ -20,7 +20,7 @@ pub use experiment::{
     Pipeline, Single, Task, resolve,
 };
 pub use json_schema::{compare_schema, estimate_schema, predict_schema};
-pub use nominal::{NOMINAL, StatedNominal, resolve_nominal};
+pub use nominal::{KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, StatedNominal, resolve_nominal};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
     is_prediction, resolve_prediction,

@@ -1,14 +1,23 @@
 //! `nominal.toml`: what is believed of a system.
+//!
+//! The oscillator stands at the top of the file or, as in a configuration of `trainer simulate`, in `[nominal]`; the
+//! effects that the simulator has in `[[effects]]`. What such a configuration says besides, of records to be made, says
+//! nothing of the system and is left to it: a repaired simulator is a nominal one as it stands.
 
-use dynamics::{Coefficients, Coordinate, DynamicsError, Nominal};
+use dynamics::{
+    Active, Coefficients, Coordinate, Effect, KnownEffect, Nominal, NominalSimulator, REGISTRY, Units,
+};
 use serde::Deserialize;
-use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError};
+use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError};
+use std::f64::consts::TAU;
 
 /// A nominal simulator as its file has it.
 #[derive(Debug, Clone)]
 pub struct StatedNominal {
-    /// The simulator.
+    /// The oscillator.
     pub nominal: Nominal,
+    /// The oscillator with the effects that the simulator has already.
+    pub simulator: NominalSimulator,
     /// Whether the file speaks of an input: the records have to have one then.
     pub driven: bool,
 }
@@ -16,18 +25,27 @@ pub struct StatedNominal {
 #[derive(Deserialize)]
 struct Keys {
     coordinate: Coordinate,
-    inertia: f64,
-    damping: f64,
-    stiffness: f64,
-    rest_angle: f64,
+    inertia: Option<f64>,
+    damping: Option<f64>,
+    damping_ratio: Option<f64>,
+    stiffness: Option<f64>,
+    natural_frequency: Option<f64>,
+    natural_frequency_rad_s: Option<f64>,
+    period: Option<f64>,
+    rest_angle: Option<f64>,
     input_gain: f64,
     sensor_resolution: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct EffectKeys {
+    recalibrate: bool,
 }
 
 const NUMBER: Field = Field {
     key: "",
     kind: Kind::Float { min: f64::MIN, max: f64::MAX },
-    default: Default::Required,
+    default: Default::Absent,
     unit: "SI, or divided by the inertia",
     meaning: "",
     source: "",
@@ -35,8 +53,19 @@ const NUMBER: Field = Field {
 const POSITIVE: Kind = Kind::Float { min: f64::MIN_POSITIVE, max: f64::MAX };
 const NON_NEGATIVE: Kind = Kind::Float { min: 0.0, max: f64::MAX };
 
-/// The keys of the file.
+/// The keys of the oscillator.
 pub const NOMINAL: Section<'static> = Section { name: "", fields: FIELDS };
+
+/// The keys of each of `[[effects]]`, beside its parameters.
+pub const KNOWN_EFFECT: Section<'static> = Section { name: "effects", fields: EFFECT };
+
+/// Keys that say how fast it swings; a file states one.
+pub const NOMINAL_SWINGS: [&str; 4] = ["stiffness", "natural_frequency", "natural_frequency_rad_s", "period"];
+/// Keys that say how fast it decays; a file states one.
+pub const NOMINAL_DECAYS: [&str; 2] = ["damping", "damping_ratio"];
+
+/// Tables of a simulation that say nothing of the system.
+const OF_RECORDS: [&str; 6] = ["simulate", "record", "start", "sensor", "input", "calibration"];
 
 const FIELDS: &[Field] = &[
     Field {
@@ -50,17 +79,55 @@ const FIELDS: &[Field] = &[
     Field {
         key: "inertia",
         kind: POSITIVE,
-        meaning: "Moment of inertia, or mass; 1 where everything is per unit of inertia.",
+        meaning: "Moment of inertia, or mass; 1 where everything is per unit of inertia, as it is by default beside a frequency or a period.",
         ..NUMBER
     },
-    Field { key: "damping", kind: NON_NEGATIVE, meaning: "Viscous damping.", ..NUMBER },
+    Field {
+        key: "damping",
+        kind: NON_NEGATIVE,
+        meaning: "Viscous damping; damping_ratio says it otherwise.",
+        ..NUMBER
+    },
+    Field {
+        key: "damping_ratio",
+        kind: NON_NEGATIVE,
+        unit: "1",
+        meaning: "Damping over the critical damping 2·√(stiffness·inertia), in place of damping.",
+        ..NUMBER
+    },
     Field {
         key: "stiffness",
         kind: NON_NEGATIVE,
-        meaning: "Stiffness; 0 for a drive without a spring.",
+        meaning: "Stiffness of the spring; 0 for a drive without one, or a pendulum that only its weight holds. natural_frequency, natural_frequency_rad_s and period say it otherwise.",
         ..NUMBER
     },
-    Field { key: "rest_angle", unit: "rad or m", meaning: "Where the spring is relaxed.", ..NUMBER },
+    Field {
+        key: "natural_frequency",
+        kind: POSITIVE,
+        unit: "Hz",
+        meaning: "Frequency of the undamped oscillator without effects, in place of stiffness.",
+        ..NUMBER
+    },
+    Field {
+        key: "natural_frequency_rad_s",
+        kind: POSITIVE,
+        unit: "rad/s",
+        meaning: "The same as an angular frequency, in place of stiffness.",
+        ..NUMBER
+    },
+    Field {
+        key: "period",
+        kind: POSITIVE,
+        unit: "s",
+        meaning: "Period of the undamped oscillator without effects, in place of stiffness.",
+        ..NUMBER
+    },
+    Field {
+        key: "rest_angle",
+        unit: "rad or m",
+        meaning: "Where the spring is relaxed; 0 by default beside a frequency or a period.",
+        ..NUMBER
+    },
     Field {
         key: "input_gain",
         default: Default::Float(1.0),
@@ -71,9 +138,42 @@ const FIELDS: &[Field] = &[
     Field {
         key: "sensor_resolution",
         kind: POSITIVE,
-        default: Default::Absent,
         unit: "rad or m",
         meaning: "The sensor's stated resolution.",
+        ..NUMBER
+    },
+];
+
+/// What a configuration of `trainer simulate` has at the top.
+const OF_SIMULATION: &[Field] = &[
+    Field { key: "task", kind: Kind::Choice(&["simulate"]), unit: "", ..NUMBER },
+    Field { key: "name", kind: Kind::Text, unit: "", ..NUMBER },
+    Field { key: "seed", kind: Kind::Integer { min: 0, max: i64::MAX }, unit: "", ..NUMBER },
+];
+
+const EFFECT: &[Field] = &[
+    Field {
+        key: "id",
+        kind: Kind::Text,
+        default: Default::Required,
+        unit: "",
+        meaning: "An effect that the simulator has, as `trainer list effects` names it.",
+        ..NUMBER
+    },
+    Field {
+        key: "recalibrate",
+        kind: Kind::Boolean,
+        default: Default::Boolean(true),
+        unit: "",
+        meaning: "Whether a recalibration may move its parameters; false holds them as stated.",
+        ..NUMBER
+    },
+    Field {
+        key: "probability",
+        kind: Kind::Float { min: 1.0, max: 1.0 },
+        default: Default::Float(1.0),
+        unit: "",
+        meaning: "As in a simulation, where an effect may come by chance; a nominal simulator has it.",
         ..NUMBER
     },
 ];
@@ -83,27 +183,183 @@ const FIELDS: &[Field] = &[
 /// # Errors
 /// [`SettingsError`] with line and column; [`SettingsError::Refused`] for numbers that no oscillator has.
 pub fn resolve_nominal(document: &Document) -> Result<StatedNominal, SettingsError> {
-    let resolved = Resolved::new(document, &[NOMINAL])?;
-    let keys: Keys = resolved.section("")?;
-    nominal(&keys)
-        .map(|nominal| StatedNominal { nominal, driven: document.get("input_gain").is_some() })
-        .map_err(|error| SettingsError::Refused {
-            file: document.file().to_owned(),
-            problem: error.to_string(),
-        })
+    let inside = document.leaves().iter().any(|leaf| leaf.key.starts_with("nominal."));
+    let table = if inside { "nominal" } else { "" };
+    // A repaired simulator always states its gain; it is driven where it has a table for the input.
+    let driven = if inside {
+        document.leaves().iter().any(|leaf| leaf.key.starts_with("input."))
+    } else {
+        document.get("input_gain").is_some()
+    };
+    let mut own = document.clone();
+    for table in OF_RECORDS {
+        own.clear_table(table);
+    }
+    let effects = effects(&own)?;
+    let units = units(&own, table);
+    let parameters: Vec<(String, Vec<Field>)> = effects
+        .iter()
+        .map(|(table, effect)| (format!("{table}.parameters"), parameter_fields(*effect, units)))
+        .collect();
+    let mut sections =
+        vec![Section { name: "", fields: OF_SIMULATION }, Section { name: table, fields: NOMINAL.fields }];
+    sections.extend(effects.iter().map(|(table, _)| Section { name: table, fields: EFFECT }));
+    sections.extend(parameters.iter().map(|(table, fields)| Section { name: table, fields }));
+    let resolved = Resolved::new(&own, &sections)?;
+    let refused = |problem: String| SettingsError::Refused { file: document.file().to_owned(), problem };
+    let keys: Keys = resolved.section(table)?;
+    let nominal = nominal(&own, table, &keys)?;
+    let known = effects.iter().zip(&parameters).map(|((table, effect), (parameters, _))| {
+        let EffectKeys { recalibrate } = resolved.section(table)?;
+        let value = |name: &str| {
+            let key = format!("{parameters}.{name}");
+            let setting = resolved.settings().iter().find(|setting| setting.key() == key);
+            setting.and_then(|setting| setting.value.as_ref()?.as_float()).unwrap_or_default()
+        };
+        let values: Vec<f64> =
+            effect.description().parameters.iter().map(|parameter| value(parameter.name)).collect();
+        let active = Active::of(*effect, &values).map_err(|error| refused(error.to_string()))?;
+        Ok(KnownEffect { active, recalibrate })
+    });
+    let known = known.collect::<Result<_, SettingsError>>()?;
+    let simulator = NominalSimulator::new(nominal, known).map_err(|error| refused(error.to_string()))?;
+    Ok(StatedNominal { nominal, simulator, driven })
 }
 
-fn nominal(keys: &Keys) -> Result<Nominal, DynamicsError> {
-    let nominal = Nominal::from_coefficients(Coefficients {
-        inertia: keys.inertia,
-        damping: keys.damping,
-        stiffness: keys.stiffness,
-        rest_angle: keys.rest_angle,
-        input_gain: keys.input_gain,
-    })?
-    .with_coordinate(keys.coordinate);
-    match keys.sensor_resolution {
-        Some(resolution) => nominal.with_sensor_resolution(resolution),
-        None => Ok(nominal),
+fn dotted(table: &str, key: &str) -> String {
+    if table.is_empty() { key.to_owned() } else { format!("{table}.{key}") }
+}
+
+/// The units that numbers are in, for messages: per inertia where that is 1 or not given.
+fn units(document: &Document, table: &str) -> Units {
+    let value = |key: &str| document.get(&dotted(table, key)).map(|leaf| &leaf.value);
+    let coordinate = match value("coordinate").and_then(|value| value.as_str()) {
+        Some("displacement") => Coordinate::Displacement,
+        _ => Coordinate::Angle,
+    };
+    let inertia = value("inertia").map(ToString::to_string).and_then(|number| number.parse::<f64>().ok());
+    if inertia.unwrap_or(1.0) == 1.0 { Units::PerInertia(coordinate) } else { Units::Si(coordinate) }
+}
+
+/// The tables `[[effects]]`, each with the effect that it names.
+fn effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> {
+    let mut found: Vec<(String, Effect)> = Vec::new();
+    for table in document.tables_below("effects") {
+        let table = format!("effects.{table}");
+        let key = format!("{table}.id");
+        let ids = || REGISTRY.iter().map(|effect| effect.id().to_owned()).collect::<Vec<_>>();
+        let Some(leaf) = document.get(&key) else {
+            return Err(SettingsError::Missing {
+                file: document.file().to_owned(),
+                key,
+                meaning: "An effect that the simulator has.".to_owned(),
+                expected: format!("one of {}", ids().join(", ")),
+            });
+        };
+        let id = leaf.value.as_str().unwrap_or_default();
+        let Ok(effect) = Effect::find(id) else {
+            return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", id, ids()));
+        };
+        if found.iter().any(|(_, other)| *other == effect) {
+            let expected = "each effect once";
+            return Err(bad_value(leaf.origin.clone(), &key, &format!("{id} again"), expected));
+        }
+        found.push((table, effect));
+    }
+    Ok(found)
+}
+
+fn parameter_fields(effect: Effect, units: Units) -> Vec<Field> {
+    let field = |parameter: &dynamics::Parameter| Field {
+        key: parameter.name,
+        // A kind's bounds are included; what an open range leaves out, the effect refuses.
+        kind: Kind::Float { min: parameter.range.minimum, max: parameter.range.maximum },
+        default: parameter.default.map_or(Default::Required, Default::Float),
+        unit: parameter.quantity.unit(units),
+        meaning: parameter.meaning,
+        ..NUMBER
+    };
+    effect.description().parameters.iter().map(field).collect()
+}
+
+/// The one of several keys that a file states.
+///
+/// # Errors
+/// Where it states two of them, or none that it has to.
+fn one_of(document: &Document, table: &str, keys: &[&str]) -> Result<String, SettingsError> {
+    let mut stated = keys.iter().filter(|key| document.get(&dotted(table, key)).is_some());
+    let alternatives = keys.join(", ");
+    let Some(first) = stated.next() else {
+        let key = keys.first().copied().unwrap_or_default();
+        let field = FIELDS.iter().find(|field| field.key == key);
+        return Err(SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: dotted(table, key),
+            meaning: field.map_or("", |field| field.meaning).to_owned(),
+            expected: format!("one of {alternatives}"),
+        });
+    };
+    match stated.next().and_then(|second| document.get(&dotted(table, second))) {
+        None => Ok((*first).to_owned()),
+        Some(second) => {
+            let expected = format!("one of {alternatives}, and `{first}` is stated already: take one away");
+            Err(bad_value(second.origin.clone(), &second.key, &second.value.to_string(), &expected))
+        }
+    }
+}
+
+fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, SettingsError> {
+    let by_stiffness = one_of(document, table, &NOMINAL_SWINGS)? == "stiffness";
+    let by_damping = one_of(document, table, &NOMINAL_DECAYS)? == "damping";
+    let missing = |key: &str| {
+        let field = FIELDS.iter().find(|field| field.key == key);
+        SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: dotted(table, key),
+            meaning: field.map_or("", |field| field.meaning).to_owned(),
+            expected: field.map_or_else(String::new, |field| field.kind.expected()),
+        }
+    };
+    let given = |value: Option<f64>, key: &str, default: f64| match value {
+        Some(value) => Ok(value),
+        // A frequency or a period says all that there is per unit of inertia.
+        None if !by_stiffness => Ok(default),
+        None => Err(missing(key)),
+    };
+    let inertia = given(keys.inertia, "inertia", 1.0)?;
+    let omega = keys.natural_frequency_rad_s.or(keys.natural_frequency.map(|frequency| TAU * frequency));
+    let omega = omega.or(keys.period.map(|period| TAU / period));
+    let stiffness = keys.stiffness.or(omega.map(|omega| inertia * omega * omega)).unwrap_or_default();
+    if !by_damping && stiffness == 0.0 {
+        let leaf = document.get(&dotted(table, "damping_ratio"));
+        let found = leaf.map_or_else(String::new, |leaf| leaf.value.to_string());
+        let expected = "damping in its place: without a spring no damping is critical";
+        let origin = leaf.map_or(Origin::Default, |leaf| leaf.origin.clone());
+        return Err(bad_value(origin, &dotted(table, "damping_ratio"), &found, expected));
+    }
+    let critical = 2.0 * (stiffness * inertia).sqrt();
+    let damping = keys.damping.or(keys.damping_ratio.map(|ratio| ratio * critical)).unwrap_or_default();
+    let rest_angle = given(keys.rest_angle, "rest_angle", 0.0)?;
+    let input_gain = keys.input_gain;
+    let made =
+        Nominal::from_coefficients(Coefficients { inertia, damping, stiffness, rest_angle, input_gain })
+            .map(|nominal| nominal.with_coordinate(keys.coordinate))
+            .and_then(|nominal| match keys.sensor_resolution {
+                Some(resolution) => nominal.with_sensor_resolution(resolution),
+                None => Ok(nominal),
+            });
+    made.map_err(|error| SettingsError::Refused {
+        file: document.file().to_owned(),
+        problem: error.to_string(),
+    })
+}
+
+fn bad_value(origin: Origin, key: &str, found: &str, expected: &str) -> SettingsError {
+    SettingsError::BadValue {
+        origin,
+        key: key.to_owned(),
+        found: found.to_owned(),
+        expected: expected.to_owned(),
+        unit: String::new(),
     }
 }

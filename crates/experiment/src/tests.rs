@@ -3,7 +3,7 @@
 use crate::prediction::{KINDS, PREDICT_SECTIONS, fields_of};
 use crate::schema::{COMPARE, SECTIONS, estimator_name_field};
 use crate::{
-    NOMINAL, Pipeline, ProblemSource, Single, Task, is_prediction, resolve, resolve_nominal,
+    KNOWN_EFFECT, NOMINAL, Pipeline, ProblemSource, Single, Task, is_prediction, resolve, resolve_nominal,
     resolve_prediction,
 };
 use envelope::Envelope;
@@ -46,7 +46,7 @@ fn document(text: &str) -> Document {
 
 /// Every declared key with the name of its section.
 fn declared() -> Vec<(String, Field)> {
-    let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL]);
+    let sections = SECTIONS.iter().chain([&COMPARE]).chain(PREDICT_SECTIONS).chain([&NOMINAL, &KNOWN_EFFECT]);
     let fixed =
         sections.flat_map(|section| section.fields.iter().map(|field| (section.name.to_owned(), *field)));
     let problems = KINDS.iter().map(Some).chain([None]).flat_map(|kind| {
@@ -65,10 +65,16 @@ fn every_key_is_declared_whole() {
         let admitted = field.default.value().map(|value| field.kind.admit(&value));
         assert!(!matches!(admitted, Some(Err(_))), "{place}: its default is not admitted: {admitted:?}");
         // The name of a key that ends in a unit says it, and so does the declaration.
-        for (ending, unit) in
-            [("_s", "s"), ("_hz", "Hz"), ("_kg_m2", "kg m^2"), ("_percent", "%"), ("_periods", "periods")]
-        {
-            assert!(!field.key.ends_with(ending) || field.unit == unit, "{place} is in `{}`", field.unit);
+        let endings = [
+            ("_rad_s", "rad/s"),
+            ("_s", "s"),
+            ("_hz", "Hz"),
+            ("_kg_m2", "kg m^2"),
+            ("_percent", "%"),
+            ("_periods", "periods"),
+        ];
+        if let Some((_, unit)) = endings.iter().find(|(ending, _)| field.key.ends_with(ending)) {
+            assert_eq!(field.unit, *unit, "{place}");
         }
     }
 }
@@ -285,6 +291,88 @@ fn a_nominal_simulator_is_read_with_what_it_may_leave_out() {
             text.lines().filter(|line| !line.starts_with(key)).map(|line| format!("{line}\n")).collect();
         let message = resolve_nominal(&document(&kept)).unwrap_err().to_string();
         assert!(message.contains(&format!("`{key}` is missing")), "{message}");
+    }
+}
+
+#[test]
+fn stiffness_and_damping_may_be_a_frequency_and_a_ratio() {
+    let of = |text: &str| resolve_nominal(&document(text)).unwrap().nominal;
+    let rate = std::f64::consts::TAU * 3.5;
+    for swing in [
+        "natural_frequency = 3.5".to_owned(),
+        format!("natural_frequency_rad_s = {rate}"),
+        format!("period = {}", 1.0 / 3.5),
+    ] {
+        let found = of(&format!("{swing}\ndamping_ratio = 0.01\n"));
+        assert_eq!((found.inertia(), found.rest_angle()), (1.0, 0.0));
+        assert!((found.stiffness() / (rate * rate) - 1.0).abs() < 1e-14, "{found:?}");
+        assert!((found.damping() / (0.02 * rate) - 1.0).abs() < 1e-14, "{found:?}");
+    }
+    let heavy = of("inertia = 2\nnatural_frequency = 3.5\ndamping = 0.1\nrest_angle = 0.2\n");
+    assert!((heavy.stiffness() / (2.0 * rate * rate) - 1.0).abs() < 1e-14);
+    assert_eq!((heavy.damping(), heavy.rest_angle()), (0.1, 0.2));
+    let stiff = of("inertia = 2\nstiffness = 8\ndamping_ratio = 0.5\nrest_angle = 0\n");
+    assert_eq!(stiff.damping(), 4.0);
+    for (text, said) in [
+        ("damping = 0.1\n", "`stiffness` is missing"),
+        ("natural_frequency = 3.5\n", "`damping` is missing"),
+        ("stiffness = 8\ndamping_ratio = 0.1\nrest_angle = 0\n", "`inertia` is missing"),
+        (
+            "period = 2\nstiffness = 8\ndamping = 0\n",
+            "a.toml:1:1: `period` is 2; expected one of stiffness, natural_frequency, natural_frequency_rad_s, period, and `stiffness` is stated already",
+        ),
+        (
+            "period = 2\ndamping = 0\ndamping_ratio = 0\n",
+            "a.toml:3:1: `damping_ratio` is 0; expected one of damping, damping_ratio, and `damping` is stated already",
+        ),
+        (
+            "inertia = 1\nstiffness = 0\ndamping_ratio = 0.1\nrest_angle = 0\n",
+            "a.toml:3:1: `damping_ratio` is 0.1; expected damping in its place",
+        ),
+        ("natural_frequenzy = 3.5\n", "did you mean `natural_frequency`"),
+    ] {
+        let message = resolve_nominal(&document(text)).unwrap_err().to_string();
+        assert!(message.contains(said), "{message}");
+    }
+}
+
+#[test]
+fn a_nominal_simulator_has_effects_as_a_simulation_has() {
+    let effect = "[[effects]]\nid = \"gravity\"\nparameters.torque = 5\nparameters.angle = 0.1\n";
+    let oscillator = "inertia = 2\ndamping = 0.5\nstiffness = 8\nrest_angle = 0.1\n";
+    let held = effect.replace("id", "recalibrate = false\nid");
+    let unnamed = "[[effects]]\nid = \"unknown\"\nparameters = { torque = 1, wavenumber = 9, phase = 0 }\n";
+    let found = resolve_nominal(&document(&format!("{oscillator}{effect}{unnamed}"))).unwrap();
+    let ids: Vec<&str> = found.simulator.effects().iter().map(|known| known.active.id()).collect();
+    assert_eq!(ids, ["gravity", "unknown"]);
+    assert!(found.simulator.effects().iter().all(|known| known.recalibrate));
+    assert_eq!(found.simulator.effects()[0].active.values(), [5.0, 0.1]);
+    let found = resolve_nominal(&document(&format!("{oscillator}{held}"))).unwrap();
+    assert!(!found.simulator.effects()[0].recalibrate);
+    // As a repaired simulator has it: the oscillator in a table, and what is said of records.
+    let records = "task = \"simulate\"\nname = \"repaired\"\nseed = 0\n[record]\nrate_hz = 260.0\n[start]\nposition = 0.7\n[sensor]\nobserves = \"position\"\nnoise = 1e-3\n";
+    let whole = format!("{records}[nominal]\n{oscillator}input_gain = 1.0\n{effect}");
+    let repaired = resolve_nominal(&document(&whole)).unwrap();
+    assert_eq!(repaired.nominal.inertia(), 2.0);
+    assert_eq!(repaired.simulator.effects().len(), 1);
+    assert!(!repaired.driven);
+    assert!(resolve_nominal(&document(&format!("{whole}[input]\nwaveform = \"none\"\n"))).unwrap().driven);
+    for (wrong, said) in [
+        (effect.replace("gravity", "gravty"), "unknown effect \"gravty\"; did you mean `gravity`"),
+        (
+            effect.replace("torque", "torqe"),
+            "a.toml:7:12: unknown key `effects.1.parameters.torqe`; did you mean `effects.1.parameters.torque`",
+        ),
+        (effect.replace("parameters.angle = 0.1", ""), "`effects.1.parameters.angle` is missing"),
+        (effect.replace("torque = 5", "torque = -5"), "`effects.1.parameters.torque` is -5; expected"),
+        (effect.replace("id = \"gravity\"", ""), "`effects.1.id` is missing"),
+        (format!("{effect}{effect}"), "`effects.2.id` is gravity again; expected each effect once"),
+        (effect.replace("id", "recalibrat = true\nid"), "did you mean `effects.1.recalibrate`"),
+        (effect.replace("id", "probability = 0.5\nid"), "`effects.1.probability` is 0.5"),
+        ("[recrd]\nrate_hz = 1\n".to_owned(), "unknown key `recrd.rate_hz`"),
+    ] {
+        let message = resolve_nominal(&document(&format!("{oscillator}{wrong}"))).unwrap_err().to_string();
+        assert!(message.contains(said), "{message}");
     }
 }
 

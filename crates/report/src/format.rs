@@ -115,6 +115,37 @@ pub fn share(value: f64) -> String {
     quantity(&fixed(100.0 * value, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
 }
 
+/// A probability to three decimals: what rounds to none is said to be small, however many zeros it has.
+#[must_use]
+pub fn probability(value: f64) -> String {
+    if value > 0.0 && value < 5e-4 { format!("<{NO_BREAK}0.001") } else { fixed(value, 3) }
+}
+
+/// What stands for an estimate whose interval says nothing.
+pub const UNDETERMINED: &str = "not determined by these data";
+
+/// An estimate with its 95 % interval, to the digits that the interval warrants: `484.12 N m [483.90, 484.34]`.
+#[must_use]
+pub fn estimate(value: f64, interval_95: [f64; 2], unit: &str) -> String {
+    let [low, high] = interval_95;
+    let quarter = (high - low) / 4.0;
+    let digits = if quarter.is_finite() && quarter > 0.0 && value.is_finite() {
+        fixed_beside(value, quarter)
+    } else {
+        significant(value, 4)
+    };
+    format!("{} {}", quantity(&digits, unit), interval(interval_95))
+}
+
+/// A value to the decimal place of its standard error's second digit.
+fn fixed_beside(value: f64, std_error: f64) -> String {
+    let exponent = exponent_after_rounding(value.abs().max(std_error), 1);
+    let power = if is_plain(exponent) { 0 } else { exponent };
+    let unit = 10f64.powi(power);
+    let text = fixed(value / unit, decimals_for(value / unit, std_error / unit));
+    if power == 0 { text } else { times_power(&text, power) }
+}
+
 /// A share with its interval: `71.0 % [65.2 %, 77.1 %]`.
 #[must_use]
 pub fn share_with_interval(of: &WithInterval) -> String {
@@ -309,6 +340,23 @@ mod tests {
     fn an_uncertainty_below_a_double_invents_no_digits() {
         let text = with_uncertainty(0.190_961, 1e-30);
         assert!(text.len() < 50, "{text}");
+    }
+
+    #[test]
+    fn an_estimate_has_the_digits_of_its_interval() {
+        assert_eq!(plain(&estimate(484.123_456, [483.9, 484.35], "N m")), "484.12 N m [483.90, 484.35]");
+        assert_eq!(
+            plain(&estimate(1.533_986_9e-6, [1.53e-6, 1.54e-6], "")),
+            "1.5340 × 10⁻⁶ [1.5300, 1.5400] × 10⁻⁶"
+        );
+        assert_eq!(plain(&estimate(1.5, [1.5, 1.5], "s")), "1.500 s [1.5000000, 1.5000000]");
+    }
+
+    #[test]
+    fn no_probability_is_a_row_of_zeros() {
+        assert_eq!(plain(&probability(7.6e-147)), "< 0.001");
+        assert_eq!(probability(0.0), "0.000");
+        assert_eq!(probability(0.9512), "0.951");
     }
 
     #[test]

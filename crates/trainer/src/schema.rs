@@ -4,7 +4,9 @@ use crate::Outcome;
 use crate::console;
 use crate::error::TrainerError;
 use clap::ValueEnum;
-use experiment::{NOMINAL, compare_schema, estimate_schema, predict_schema};
+use experiment::{
+    KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, compare_schema, estimate_schema, predict_schema,
+};
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
 use serde_json::{Value, json};
@@ -53,17 +55,46 @@ impl Purpose {
             Self::Predict => predict_schema(ESTIMATORS, &classical),
             Self::Simulate => simulate_schema(),
             Self::Trials => trials_schema(),
-            Self::Nominal => {
-                let sections = [NOMINAL];
-                let needed = json_schema::requirements(&sections);
-                let mut table = json_schema::tables(&sections);
-                if let (Some(table), Some(needed)) = (table.as_object_mut(), needed.as_object()) {
-                    table.extend(needed.clone());
-                }
-                table
+            Self::Nominal => nominal_schema(),
+        }
+    }
+}
+
+/// The oscillator at the top or in a table, the effects of a simulation with the key that holds them, and what else a
+/// configuration of a simulation has, so that a repaired simulator is a nominal one.
+fn nominal_schema() -> Value {
+    let simulation = simulate_schema();
+    let mut root = json_schema::tables(&[NOMINAL]);
+    json_schema::insert(&mut root, "", "nominal", json_schema::table(NOMINAL.fields));
+    let properties = simulation.get("properties").and_then(Value::as_object).into_iter().flatten();
+    for (name, schema) in properties {
+        let is_own = root.pointer(&format!("/properties/{name}")).is_some();
+        if !is_own && name != "base" {
+            json_schema::insert(&mut root, "", name, schema.clone());
+        }
+    }
+    for table in ["anyOf/0/items", "anyOf/1/additionalProperties"] {
+        if let Some(effect) = root.pointer_mut(&format!("/properties/effects/{table}")) {
+            for field in KNOWN_EFFECT.fields.iter().filter(|field| field.key == "recalibrate") {
+                json_schema::insert(effect, "", field.key, json_schema::field(field));
             }
         }
     }
+    let one_of = |keys: &[&str]| -> Value { keys.iter().map(|key| json!({ "required": [key] })).collect() };
+    let stated = json!({
+        "allOf": [
+            { "oneOf": one_of(&NOMINAL_SWINGS) },
+            { "oneOf": one_of(&NOMINAL_DECAYS) },
+            { "if": { "required": ["stiffness"] }, "then": { "required": ["inertia", "rest_angle"] } },
+        ],
+    });
+    if let Some(root) = root.as_object_mut() {
+        root.insert("anyOf".to_owned(), json!([{ "required": ["nominal"] }, stated]));
+    }
+    if let Some(table) = root.pointer_mut("/properties/nominal").and_then(Value::as_object_mut) {
+        table.extend(stated.as_object().cloned().unwrap_or_default());
+    }
+    root
 }
 
 /// Prints the schema of one task, or that of all, which looks at the file's `task`.

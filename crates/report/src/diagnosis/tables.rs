@@ -3,7 +3,9 @@
 use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, WithInterval};
 
 use super::title;
-use crate::format::{self, fixed, interval, quantity, share_with_interval, significant, unit};
+use crate::format::{
+    self, UNDETERMINED, estimate, fixed, interval, quantity, share_with_interval, significant, unit,
+};
 use crate::tables::{Fact, fact, whole};
 
 /// A simulator and how far it is off.
@@ -98,25 +100,26 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
         .map(|row| EffectView {
             title: row.title.clone(),
             id: row.id.clone(),
-            probability: probability(row.probability),
+            probability: format::probability(row.probability),
             bar: format!("{:.1}", 100.0 * row.probability.clamp(0.0, 1.0)),
             coefficients: row
                 .parameters
                 .iter()
                 .map(|(name, parameter)| {
+                    let name = name.replace('_', " ");
                     let unit = unit(&parameter.unit);
-                    let value = quantity(&significant(parameter.value, 4), unit);
-                    format!("{} = {value}, 95 %: {}", name.replace('_', " "), interval(parameter.interval_95))
+                    let all = estimate(parameter.value, parameter.interval_95, unit);
+                    if parameter.determined {
+                        format!("{name} = {all}")
+                    } else {
+                        format!("{name}: {UNDETERMINED}")
+                    }
                 })
                 .collect(),
             share: row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share_with_interval),
             is_named: result.verdict.effects.contains(&row.id),
         })
         .collect()
-}
-
-fn probability(value: f64) -> String {
-    if value > 0.0 && value < 5e-4 { "< 0.001".to_owned() } else { fixed(value, 3) }
 }
 
 /// What can and what cannot be told apart, in sentences.
@@ -160,7 +163,7 @@ pub(super) fn experiments(result: &DiagnosisResult) -> Vec<String> {
 
 /// A nominal coefficient before and after.
 pub(super) struct CoefficientView {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) unit: String,
     pub(super) given: String,
     pub(super) recalibrated: String,
@@ -168,28 +171,24 @@ pub(super) struct CoefficientView {
 }
 
 pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
-    let all = &result.calibration;
-    let view = |name, row: &CalibratedRow| {
+    let view = |(name, row): (String, &CalibratedRow)| {
         let estimate = |found: &Option<WithInterval>| {
-            found.as_ref().map_or_else(
-                || "held: these data cannot tell it".to_owned(),
-                |found| format!("{} {}", significant(found.value, 5), interval(found.interval_95)),
-            )
+            found
+                .as_ref()
+                .map_or_else(|| "held".to_owned(), |found| estimate(found.value, found.interval_95, ""))
         };
         CoefficientView {
-            name,
+            name: name.replace("rest_angle", "rest position").replace('_', " ").replace('.', ": "),
             unit: row.unit.clone(),
             given: significant(row.nominal, 5),
             recalibrated: estimate(&row.recalibrated),
-            repaired: estimate(&row.repaired),
+            repaired: match row.determined {
+                Some(false) => UNDETERMINED.to_owned(),
+                _ => estimate(&row.repaired),
+            },
         }
     };
-    vec![
-        view("inertia", &all.inertia),
-        view("damping", &all.damping),
-        view("stiffness", &all.stiffness),
-        view("rest position", &all.rest_angle),
-    ]
+    result.calibration.rows().into_iter().map(view).collect()
 }
 
 pub(super) fn chain(result: &DiagnosisResult) -> Vec<Fact> {

@@ -124,6 +124,13 @@ pub struct ParameterRow {
     /// 95 % interval, widened for the residual's autocorrelation; an end that is not finite is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub interval_95: [f64; 2],
+    /// Whether these data determine it; of older files it is taken to be so.
+    #[serde(default = "yes")]
+    pub determined: bool,
+}
+
+fn yes() -> bool {
+    true
 }
 
 /// How far the gap shrinks: root mean squares on parts not fitted, in `unit`.
@@ -260,6 +267,38 @@ pub struct Calibration {
     pub stiffness: CalibratedRow,
     /// Where the spring is relaxed.
     pub rest_angle: CalibratedRow,
+    /// The effects that the nominal simulator has; absent where it has none.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub effects: Vec<KnownEffectRow>,
+}
+
+impl Calibration {
+    /// The coefficients of the oscillator by name, then the parameters of the effects that the nominal simulator has,
+    /// as `gravity.torque`.
+    #[must_use]
+    pub fn rows(&self) -> Vec<(String, &CalibratedRow)> {
+        let plain = [
+            ("inertia", &self.inertia),
+            ("damping", &self.damping),
+            ("stiffness", &self.stiffness),
+            ("rest_angle", &self.rest_angle),
+        ];
+        let own = self.effects.iter().flat_map(|effect| {
+            effect.parameters.iter().map(|(name, row)| (format!("{}.{name}", effect.id), row))
+        });
+        plain.into_iter().map(|(name, row)| (name.to_owned(), row)).chain(own).collect()
+    }
+}
+
+/// An effect that the nominal simulator has, before and after.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KnownEffectRow {
+    /// Its id.
+    pub id: String,
+    /// Whether recalibration may move its parameters; otherwise they are held.
+    pub recalibrate: bool,
+    /// Its parameters by name.
+    pub parameters: BTreeMap<String, CalibratedRow>,
 }
 
 /// A nominal coefficient before and after.
@@ -273,6 +312,9 @@ pub struct CalibratedRow {
     pub recalibrated: Option<WithInterval>,
     /// With the named effects; `null` where these data cannot tell it.
     pub repaired: Option<WithInterval>,
+    /// Whether these data determine what stands under `repaired`; absent where that is `null`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub determined: Option<bool>,
 }
 
 /// What to record next.

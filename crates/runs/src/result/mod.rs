@@ -15,8 +15,8 @@ pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodO
 pub use diagnosis::{
     Backbone, BackbonePoint, BatchResult, BudgetShares, CalibratedRow, Calibration, ChainFinding,
     ChainSummary, DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
-    EffectRow, Equation, FailedCase, GapMaps, GapSummary, MapCell, NextExperiment, ParameterRow, RecordRow,
-    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+    EffectRow, Equation, FailedCase, GapMaps, GapSummary, KnownEffectRow, MapCell, NextExperiment,
+    ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

@@ -114,7 +114,7 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
     let digests: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
     folder
         .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
-    folder.write("nominal.toml", simulator::nominal_text(&question.stated.nominal).as_bytes())?;
+    folder.write("nominal.toml", simulator::nominal_text(&question.stated.simulator).as_bytes())?;
     folder.record_event(kept::ASKED, &asked)?;
     folder.write_json("diagnosis.json", &answer.result)?;
     folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
@@ -157,7 +157,7 @@ impl Question {
         let observations: Vec<Observations> =
             self.given.iter().map(|given| given.observations.clone()).collect();
         let stopwatch = || start.elapsed().as_secs_f64();
-        let found = diagnosis::diagnose(&observations, &self.stated.nominal, settings, &stopwatch)
+        let found = diagnosis::diagnose(&observations, &self.stated.simulator, settings, &stopwatch)
             .map_err(|source| self.refused(source))?;
         let seconds = stopwatch();
         let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())

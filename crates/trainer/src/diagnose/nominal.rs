@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Digest of all that a nominal simulator states; comments and order are not among it.
 pub(super) fn digest(stated: &StatedNominal) -> String {
-    runs::digest(simulator::nominal_text(&stated.nominal).as_bytes())
+    runs::digest(simulator::nominal_text(&stated.simulator).as_bytes())
 }
 
 /// Reads a nominal simulator.

@@ -1,14 +1,17 @@
 //! A diagnosis in the form that files and scripts get.
 
 use super::read::Given;
-use diagnosis::{Calibrated, Cell, Diagnosis, Interval, Series, Status, Swing, backbone, surface};
+use diagnosis::{
+    Calibrated, Cell, Diagnosis, Interval, KnownRow, ParameterEstimate, Series, Status, Swing, backbone,
+    surface,
+};
 use dynamics::{Effect, Quantity, Units};
 use export::{Repaired, equation_latex, equation_text};
 use runs::result::{
     Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
     DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation, GapMaps,
-    GapSummary, MapCell, NextExperiment, ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell,
-    WithInterval,
+    GapSummary, KnownEffectRow, MapCell, NextExperiment, ParameterRow, RivalRow, SeriesRow, SetRow, StageRow,
+    SurfaceCell, WithInterval,
 };
 
 use super::sentence;
@@ -166,6 +169,7 @@ fn effects(found: &Diagnosis) -> Vec<EffectRow> {
                     value: parameter.estimate.value,
                     unit: parameter.unit.clone(),
                     interval_95: parameter.estimate.interval_95,
+                    determined: parameter.determined,
                 };
                 (parameter.name.to_owned(), row)
             })
@@ -216,6 +220,7 @@ fn calibration(found: &Diagnosis, units: Units) -> Calibration {
             unit: quantity.unit(units).to_owned(),
             recalibrated: own.and_then(|row| row.recalibrated).map(with_interval),
             repaired: own.and_then(|row| row.repaired).map(with_interval),
+            determined: own.and_then(|row| row.determined),
         }
     };
     Calibration {
@@ -223,6 +228,33 @@ fn calibration(found: &Diagnosis, units: Units) -> Calibration {
         damping: row("damping", Quantity::Damping),
         stiffness: row("stiffness", Quantity::Stiffness),
         rest_angle: row("rest_angle", Quantity::Position),
+        effects: found.known.iter().map(|known| known_effect(known, units)).collect(),
+    }
+}
+
+fn known_effect(known: &KnownRow, units: Units) -> KnownEffectRow {
+    let stated = known
+        .nominal
+        .into_iter()
+        .flat_map(|active| active.effect().description().parameters.iter().zip(active.values().to_vec()));
+    let parameters = stated.map(|(parameter, nominal)| {
+        let of = |rows: &[ParameterEstimate]| rows.iter().find(|own| own.name == parameter.name).cloned();
+        let repaired = of(&known.repaired);
+        let row = CalibratedRow {
+            nominal,
+            unit: repaired
+                .as_ref()
+                .map_or_else(|| parameter.quantity.unit(units).to_owned(), |own| own.unit.clone()),
+            recalibrated: of(&known.recalibrated).map(|own| with_interval(own.estimate)),
+            repaired: repaired.as_ref().map(|own| with_interval(own.estimate)),
+            determined: repaired.map(|own| own.determined),
+        };
+        (parameter.name.to_owned(), row)
+    });
+    KnownEffectRow {
+        id: known.id.to_owned(),
+        recalibrate: known.recalibrate,
+        parameters: parameters.collect(),
     }
 }
 

@@ -1,7 +1,9 @@
 //! The terminal's answer: one screen.
 
 use crate::summary::table;
-use report::format::{self, interval, quantity, share_with_interval, significant, unit};
+use report::format::{
+    self, UNDETERMINED, estimate, interval, quantity, share_with_interval, significant, unit,
+};
 use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, EffectRow, MapCell, WithInterval};
 use std::path::Path;
 
@@ -88,13 +90,17 @@ fn effects(result: &DiagnosisResult) -> String {
                 .parameters
                 .iter()
                 .map(|(name, parameter)| {
-                    let value = quantity(&significant(parameter.value, 3), unit(&parameter.unit));
-                    format!("{name} {value} {}", interval(parameter.interval_95))
+                    let all = estimate(parameter.value, parameter.interval_95, unit(&parameter.unit));
+                    if parameter.determined {
+                        format!("{name} {all}")
+                    } else {
+                        format!("{name}: {UNDETERMINED}")
+                    }
                 })
                 .collect();
             vec![
                 row.id.clone(),
-                significant(row.probability, 2),
+                format::probability(row.probability),
                 row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share_with_interval),
                 coefficients.join("\n"),
             ]
@@ -181,17 +187,11 @@ fn worst(axis: &str, cells: &[MapCell], axis_unit: &str, unit: &str) -> Option<S
 }
 
 fn calibration(result: &DiagnosisResult) -> String {
-    let all = &result.calibration;
-    let rows: Vec<Vec<String>> = [
-        ("inertia", &all.inertia),
-        ("damping", &all.damping),
-        ("stiffness", &all.stiffness),
-        ("rest_angle", &all.rest_angle),
-    ]
-    .into_iter()
-    .filter(|(_, row)| row.recalibrated.is_some() || row.repaired.is_some())
-    .map(|(name, row)| calibrated(name, row))
-    .collect();
+    let all = result.calibration.rows().into_iter();
+    let rows: Vec<Vec<String>> = all
+        .filter(|(_, row)| row.recalibrated.is_some() || row.repaired.is_some())
+        .map(|(name, row)| calibrated(&name, row))
+        .collect();
     if rows.is_empty() {
         return String::new();
     }
@@ -202,16 +202,11 @@ fn calibrated(name: &str, row: &CalibratedRow) -> Vec<String> {
     let value = |found: &Option<WithInterval>| {
         found.as_ref().map_or_else(|| "held".to_owned(), |found| significant(found.value, 4))
     };
-    let repaired = row.repaired.as_ref().map_or_else(
-        || "held".to_owned(),
-        |found| {
-            format!(
-                "{} {}",
-                quantity(&significant(found.value, 4), unit(&row.unit)),
-                interval(found.interval_95)
-            )
-        },
-    );
+    let repaired = match (&row.repaired, row.determined) {
+        (None, _) => "held".to_owned(),
+        (_, Some(false)) => UNDETERMINED.to_owned(),
+        (Some(found), _) => estimate(found.value, found.interval_95, unit(&row.unit)),
+    };
     vec![name.to_owned(), significant(row.nominal, 4), value(&row.recalibrated), repaired]
 }
 

@@ -1,0 +1,109 @@
+//! Nominal simulators with effects, and numbers that a record does not determine: what the whole program makes of them.
+
+use crate::support::{measured, result, trainer};
+use serde_json::Value;
+use std::path::Path;
+
+/// A decay with drag, and an encoder of 4096 steps a turn.
+const CONFIG: &str = r#"
+name = "drag"
+inertia = 1.0
+damping = 0.3
+stiffness = 484.0
+rest_angle = 0.0
+[record]
+rate_hz = 130.0
+seconds = 12.0
+[start]
+position = 0.7
+[sensor]
+noise = 1e-4
+[[effects]]
+id = "quadratic_drag"
+parameters.coefficient = 0.03
+[[effects]]
+id = "sensor_quantization"
+parameters.step = 1.5339807878856412e-3
+"#;
+
+fn text(folder: &Path, name: &str) -> String {
+    std::fs::read_to_string(folder.join(name)).unwrap()
+}
+
+fn simulated(folder: &Path) -> String {
+    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    std::fs::write(at("drag.toml"), CONFIG).unwrap();
+    let made = trainer(&["simulate", &at("drag.toml"), "--quiet", "--out", &at("made")]);
+    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
+    at("made/records")
+}
+
+#[test]
+fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
+    let scratch = tempfile::tempdir().unwrap();
+    let records = simulated(scratch.path());
+    let record = format!("{records}/record-000.csv");
+    let (code, first, folder) =
+        result(&["diagnose", &record, "--nominal", &format!("{records}/nominal.toml")]);
+    assert_eq!(code, 0, "{first}");
+    assert_eq!(first["verdict"]["effects"], serde_json::json!(["quadratic_drag", "sensor_quantization"]));
+    let repaired = folder.path().join("repaired.toml");
+    let stated = text(folder.path(), "repaired.toml");
+    // The digits that the errors leave, and two more.
+    assert!(stated.contains("parameters.step = 0.00153398 "), "{stated}");
+    let longest = stated.lines().filter_map(|line| line.split_once('=')?.1.split('#').next());
+    assert!(longest.clone().all(|number| number.trim().len() <= 12), "{stated}");
+    let (code, again, second) = result(&["diagnose", &record, "--nominal", repaired.to_str().unwrap()]);
+    assert_eq!(code, 0, "{again}");
+    assert_eq!(again["verdict"]["status"], "none", "{again}");
+    let known = &again["calibration"]["effects"][0];
+    assert_eq!((&known["id"], &known["recalibrate"]), (&Value::from("quadratic_drag"), &Value::from(true)));
+    let coefficient = &known["parameters"]["coefficient"];
+    assert_eq!(coefficient["determined"], true);
+    assert_eq!(coefficient["unit"], "1/rad");
+    assert!((coefficient["repaired"]["value"].as_f64().unwrap() / 0.03 - 1.0).abs() < 0.05, "{known}");
+    // The folder holds the simulator that was asked about, and its copy is the same question.
+    let kept = text(second.path(), "nominal.toml");
+    assert!(kept.contains("id = \"quadratic_drag\"\nrecalibrate = true\n"), "{kept}");
+    let nominal = second.path().join("nominal.toml");
+    let (_, third, _) = result(&["diagnose", &record, "--nominal", nominal.to_str().unwrap()]);
+    assert_eq!(third["nominal_digest"], again["nominal_digest"]);
+    assert_ne!(first["nominal_digest"], again["nominal_digest"]);
+    assert!(text(second.path(), "repaired.toml").contains("id = \"quadratic_drag\""));
+}
+
+/// A carriage without a spring, whose owner believes in one.
+#[test]
+fn a_spring_where_there_is_none_is_not_determined() {
+    let Some(record) = measured("positioning-drive/record.csv") else { return };
+    let Some(nominal) = measured("positioning-drive/nominal.toml") else { return };
+    let scratch = tempfile::tempdir().unwrap();
+    let sprung = std::fs::read_to_string(crate::support::root().join(nominal)).unwrap();
+    let sprung = sprung.replace("stiffness = 0.0", "stiffness = 0.5");
+    let sprung = sprung.replace("rest_angle = 0.0", "rest_angle = 0.125");
+    let path = scratch.path().join("sprung.toml");
+    std::fs::write(&path, sprung).unwrap();
+    let nominal = path.to_str().unwrap();
+    let columns = ["--time", "t", "--angle", "qm_m", "--input", "vir_V"];
+    let (code, found, folder) =
+        result(&[&["diagnose", &record, "--nominal", nominal][..], &columns].concat());
+    assert_eq!(code, 0, "{found}");
+    let row = &found["calibration"]["rest_angle"];
+    assert_eq!(row["determined"], false, "{row}");
+    assert!(row["repaired"]["value"].is_number(), "{row}");
+    assert_eq!(found["calibration"]["damping"]["determined"], true);
+    assert_eq!(found["calibration"]["stiffness"]["determined"], false);
+    // A stiffness that is next to nothing stays as it was believed; the rest angle beside it is what preloads the drive.
+    let said = "a number for stiffness that these data determine; the one here is the nominal simulator's";
+    for (name, number) in [
+        ("repaired.toml", "stiffness = 0.5 "),
+        ("repaired.mjcf.xml", "stiffness=\"0.5\""),
+        ("repaired.py", "stiffness = 0.5 "),
+        ("repaired.mo", "stiffness = 0.5;"),
+    ] {
+        let text = text(folder.path(), name);
+        assert!(text.contains(said) && text.contains(number), "{name}: {text}");
+    }
+    assert!(text(folder.path(), "repaired.urdf.xml").contains(said));
+    assert!(text(folder.path(), "report.html").contains("not determined by these data"));
+}
