@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use runs::result::{EnvelopeRow, TraceRow};
 
 use crate::format;
@@ -27,26 +26,6 @@ pub(crate) struct Figure {
     /// What is drawn, as a table, and how many rows that is.
     pub(crate) csv: String,
     pub(crate) rows: String,
-}
-
-impl Figure {
-    /// An address that holds the plot itself: the page is one file, and what it offers is in it.
-    pub(crate) fn svg_address(&self) -> String {
-        address("image/svg+xml", &self.drawing.file)
-    }
-
-    /// An address that holds the plot's data.
-    pub(crate) fn csv_address(&self) -> String {
-        address("text/csv", &self.csv)
-    }
-}
-
-/// What is in an address as it is; everything else is two hexadecimal digits for each byte.
-const IN_AN_ADDRESS: &AsciiSet =
-    &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'<').add(b'>').add(b'\'').add(b'`');
-
-fn address(kind: &str, content: &str) -> String {
-    format!("data:{kind};charset=utf-8,{}", utf8_percent_encode(content, IN_AN_ADDRESS))
 }
 
 pub(crate) fn figures(run: &Run) -> Vec<Figure> {
@@ -203,13 +182,6 @@ pub(crate) fn figure(
              axis) are left out: {left_out}."
         ));
     }
-    if drawing.thinned {
-        notes.push(
-            "Drawn with fewer points than there are; of every stretch the lowest and the highest \
-             are kept."
-                .to_owned(),
-        );
-    }
     Some(Figure { id, title, explanation: explanation.to_owned(), notes, drawing, csv, rows })
 }
 
@@ -331,16 +303,6 @@ mod tests {
     fn every_other_phase_is_shaded_up_to_the_next() {
         let trace = [row(0, "a"), row(1, "b"), row(2, "b"), row(3, "c"), row(4, "d"), row(5, "d")];
         assert_eq!(shaded(&trace), [(1.0, 3.0), (4.0, 5.0)]);
-    }
-
-    #[test]
-    fn an_address_gives_back_what_was_put_into_it() {
-        let content = "a,\"b\"\n100 %,<'&#`>,\u{3b6}\r\n";
-        let address = address("text/csv", content);
-        let (kind, data) = address.split_once(',').unwrap();
-        assert_eq!(kind, "data:text/csv;charset=utf-8");
-        assert!(!data.contains([' ', '"', '<', '>', '\'', '&', '#', '\n']), "{data}");
-        assert_eq!(percent_encoding::percent_decode_str(data).decode_utf8().unwrap(), content);
     }
 
     #[test]

@@ -249,24 +249,12 @@ fn clock(data: &DataSummary) -> Vec<String> {
             data.sample_rate_std_error_hz
         ),
     ];
-    if data.believed_clock != data.clock {
-        remarks.push(format!(
-            "note: the record speaks for the {} clock: {}",
-            data.believed_clock, data.believed_clock_reason
-        ));
-    }
-    remarks.extend(data.findings.iter().map(|finding| format!("note: {finding}")));
+    remarks.extend(report::noticed(data).iter().map(|finding| format!("note: {finding}")));
     remarks
 }
 
 fn remarks(result: &EstimationResult) -> Vec<String> {
     let mut remarks = clock(&result.data);
-    if result.oracle.residual_autocorrelation.abs() > 0.5 {
-        remarks.push(format!(
-            "note: the residuals of ln A are autocorrelated ({:.2}): the envelope is no pure \
-             exponential, and the standard errors are too small",
-            result.oracle.residual_autocorrelation
-        ));
-    }
+    remarks.extend(report::warnings(&result.oracle).iter().map(|warning| format!("note: {warning}")));
     remarks
 }

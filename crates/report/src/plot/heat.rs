@@ -10,7 +10,6 @@ use kuva::render::plots::Plot as KuvaPlot;
 use kuva::render::render::{Primitive, Scene, render_multiple};
 
 use super::axis::Ticks;
-use super::file::file;
 use super::svg::{self, Canvas};
 use super::{Axis, Drawing, Hue, LegendEntry};
 use crate::format;
@@ -64,12 +63,11 @@ impl HeatMap {
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let left_out = self.cells.iter().filter(|cell| !cell.is_shown(self)).count();
-        let (wide, legend) = (self.render(&svg::WIDE, description)?, self.legend());
         Some(Drawing {
-            file: file(&wide, svg::WIDE.height, &legend, description),
-            wide,
+            wide: self.render(&svg::WIDE, description)?,
             narrow: self.render(&svg::NARROW, description)?,
-            legend,
+            live: None,
+            legend: self.legend(),
             left_out,
             thinned: false,
         })

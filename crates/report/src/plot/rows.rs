@@ -10,7 +10,6 @@ use kuva::render::plots::Plot as KuvaPlot;
 use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
 
 use super::axis::Ticks;
-use super::file::file;
 use super::svg::{self, Canvas};
 use super::{Axis, Drawing, Hue, LegendEntry};
 
@@ -76,12 +75,11 @@ impl DotRows {
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let rows = self.rows.get(..self.rows.len().min(MOST_ROWS)).unwrap_or_default();
         let left_out = rows.iter().flat_map(DotRow::values).filter(|value| !self.x.can_show(*value)).count();
-        let (wide, legend) = (self.render(rows, &WIDE, description)?, self.legend());
         Some(Drawing {
-            file: file(&wide, WIDE.height(rows), &legend, description),
-            wide,
+            wide: self.render(rows, &WIDE, description)?,
             narrow: self.render(rows, &NARROW, description)?,
-            legend,
+            live: None,
+            legend: self.legend(),
             left_out,
             thinned: false,
         })

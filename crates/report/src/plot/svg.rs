@@ -30,11 +30,11 @@ pub(super) struct Canvas {
 
 pub(super) const WIDE: Canvas = Canvas {
     class: "plot wide",
-    width: 720.0,
+    width: 960.0,
     height: 400.0,
     label_size: 14,
     tick_size: 13,
-    x_ticks: 8.0,
+    x_ticks: 10.0,
     y_ticks: 6.0,
     dot_radius: 3.2,
     line_width: 2.0,

@@ -11,7 +11,7 @@ use runs::result::{RunState, RunTable, SweepAxis};
 
 use crate::figures::Figure;
 use crate::format::count;
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::plot::Hue;
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
@@ -58,9 +58,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
             verdict: headline(table),
             origin: origin(table),
             warnings: warnings(table),
+            next: Vec::new(),
             pipelines: Vec::new(),
             data: Vec::new(),
-            findings: &[],
+            findings: Vec::new(),
             files: [
                 ("Configuration that every run starts from (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -79,7 +80,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
         numbers: cells::NUMBERS.len(),
         rows: table.rows.iter().take(shown).map(|row| cells::row(table, row)).collect(),
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 fn headline(table: &RunTable) -> Verdict {
