@@ -26,7 +26,22 @@
     const digits = Math.max(1, 1 + Math.floor(Math.log10(largest || 1) + 1e-9) - lowest + half);
     return splits.map((v) => say(Math.abs(v) < step * 1e-6 ? 0 : v, Math.min(digits, 15)));
   };
-  const LOG_STEPS = [0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+  // On a logarithmic axis: whole decades, of few decades 1, 2 and 5 in each, of a part of one even steps.
+  const LOG_STEPS = [0.0001, 0.0002, 0.0005, 0.001, 0.002, 0.005, 0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100];
+  const logSplits = (u, at, min, max, step) => {
+    const decades = max - min;
+    const from = Math.floor(min);
+    const all = [];
+    if (decades > 2.5) {
+      const every = Math.max(1, Math.round(step));
+      for (let power = Math.ceil(min / every) * every; power <= max; power += every) all.push(power);
+    } else if (decades > 0.5) {
+      for (let power = from; power <= max; power++) all.push(...[1, 2, 5].map((digit) => power + Math.log10(digit)));
+    } else {
+      for (let k = Math.ceil(min / step); k * step <= max; k++) all.push(k * step);
+    }
+    return all.filter((place) => place >= min && place <= max);
+  };
 
   const decode = ({ from, step, deltas }) => {
     let at = 0;
@@ -43,11 +58,12 @@
   const font = () => `13px ${getComputedStyle(document.body).fontFamily}`;
   const isLevel = (series) => series.mark.endsWith("level");
   const DASHES = { dashes: [8, 8], level: [8, 8], "dotted-line": [2, 3], "dotted-level": [2, 3] };
-  const drawn = (series) => {
+  // A single point of a line is seen as a dot.
+  const drawn = (series, values) => {
+    const isSingle = values.filter((value) => value != null).length === 1;
     const color = () => hue(series.hue);
-    const points = { size: series.mark === "dots" ? 6 : 5, space: 24, width: 0, stroke: color, fill: color };
+    const points = { show: isSingle, size: 6, width: 0, stroke: color, fill: color };
     if (series.mark === "dots") return { stroke: color, paths: () => null, points: { ...points, show: true } };
-    if (isLevel(series)) points.show = false;
     return { stroke: color, width: 1.75, dash: DASHES[series.mark], points };
   };
 
@@ -60,6 +76,7 @@
     grid: { stroke: () => hue("plot-grid"), width: 1 },
     ticks: { stroke: () => hue("plot-axis"), width: 1, size: 5 },
     incrs: spec.log ? LOG_STEPS : undefined,
+    splits: spec.log ? logSplits : undefined,
     values: ticks(spec),
     space: side === "x" ? (u) => (u.width < 500 ? 60 : 90) : 40,
     size:
@@ -216,7 +233,7 @@
           y: { range: (u, min, max) => (min == null ? [0, 1] : uPlot.rangeNum(min, max, 0.08, false)) },
         },
         axes: [axis(spec.x, "x"), axis(spec.y, "y")],
-        series: [{}, ...spec.series.map(drawn)],
+        series: [{}, ...spec.series.map((series, at) => drawn(series, values[at + 1]))],
         cursor: {
           dataIdx: nearest(spec),
           drag: { x: true, y: true, uni: 40, dist: 6 },

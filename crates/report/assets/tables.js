@@ -4,7 +4,7 @@
   const SMALL = "⁰¹²³⁴⁵⁶⁷⁸⁹";
   // The first number of a cell, as the pages write them: −1.5 × 10⁻⁷ %, < 0.001, 0.12 ± 0.03. None: not a number.
   const number = (cell) => {
-    const text = cell.replace(/\u2212/g, "-").replace(/\s/g, " ");
+    const text = cell.replace(/\u202f/g, "").replace(/\u2212/g, "-").replace(/\s/g, " ");
     const found = /^[<≥≤≈ ]*(-?\d+(?:\.\d+)?(?:e-?\d+)?)(?: × 10(⁻?[⁰¹²³⁴⁵⁶⁷⁸⁹]+))?/.exec(text);
     if (!found) return NaN;
     const exponent = (found[2] ?? "⁰").replace("⁻", "-").replace(/[⁰¹²³⁴⁵⁶⁷⁸⁹]/g, (digit) => SMALL.indexOf(digit));
@@ -27,7 +27,7 @@
     });
     body.append(...rows.map(({ row }) => row));
   };
-  for (const table of document.querySelectorAll("table.rows")) {
+  for (const table of document.querySelectorAll("table.rows:not(.gaps)")) {
     if (!table.tBodies[0] || table.tBodies[0].rows.length < 3) continue;
     const heads = [...table.tHead.rows[0].cells];
     heads.forEach((head, column) => {

@@ -62,7 +62,7 @@ fn residuals(run: &Run) -> Option<Figure> {
     let rows = &run.envelope;
     let plot = Plot {
         x: time_axis(),
-        y: Axis::linear("ln A less the oracle’s line"),
+        y: Axis::linear("ln A less the reference line"),
         series: vec![
             estimate(run, Mark::Line, rows.iter().map(|r| (r.time_s, r.estimate - r.oracle))),
             oracle(Mark::Level, [(0.0, 0.0)].into_iter()),
@@ -76,9 +76,9 @@ fn residuals(run: &Run) -> Option<Figure> {
         shaded: vec![],
     };
     let title = "Residuals";
-    let explanation = "The same with the oracle’s line taken away: dots scattered evenly about \
+    let explanation = "The same with the reference line subtracted: dots scattered evenly about \
                        zero speak for a single damping ratio, a bend or a wave against it. Where \
-                       the estimator agrees with the oracle its line lies on zero.";
+                       the estimator agrees with the reference its line lies on zero.";
     let csv = csv(&["time_s", "residual", "estimate_less_oracle"], rows, |r: &EnvelopeRow| {
         numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
     });
@@ -139,12 +139,12 @@ fn distance(run: &Run) -> Option<Figure> {
     };
     let plot = Plot {
         x: step_axis(),
-        y: Axis::log("|λ / oracle’s λ − 1|"),
+        y: Axis::log("|λ / reference λ − 1|"),
         series: vec![
             estimate_steps(run, relative),
             level("stated tolerance", Hue::Data, Mark::Level, run.result.tolerance_percent / 100.0),
             level(
-                "standard error of the oracle’s λ",
+                "standard error of the reference λ",
                 Hue::Oracle,
                 Mark::DottedLevel,
                 (run.result.oracle.std_error / reference).abs(),
@@ -153,7 +153,7 @@ fn distance(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Digits gained";
-    let explanation = "The distance of λ from the oracle’s: each decade down is one more digit \
+    let explanation = "The distance of λ from that of the reference: each decade down is one more digit \
                        that both share. Below the dotted line the digits tell how well the \
                        training solves the fit, and nothing more about the oscillator.";
     let csv = trace_csv(run, "relative_distance", relative);
@@ -194,12 +194,7 @@ fn step_axis() -> Axis {
 }
 
 pub(crate) fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
-    Series {
-        label: "closed-form least squares (oracle)".into(),
-        hue: Hue::Oracle,
-        mark,
-        points: points.collect(),
-    }
+    Series { label: "reference (least squares)".into(), hue: Hue::Oracle, mark, points: points.collect() }
 }
 
 fn estimate(run: &Run, mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {

@@ -3,6 +3,7 @@
 use askama::Template;
 use runs::result::{DataSummary, OracleSummary, PipelineRow};
 
+use crate::glossary;
 use crate::plot::Hue;
 use crate::remarks;
 use crate::scripts;
@@ -72,9 +73,9 @@ impl Frame<'_> {
     }
 }
 
-/// The page of a template, with its contents at the top.
+/// The page of a template, with its contents at the top and its terms explained at the end.
 pub(crate) fn finish(page: &impl Template) -> Result<String, ReportError> {
-    let html = page.render()?;
+    let html = glossary::explained(&page.render()?, "<!-- terms -->");
     let contents = contents(&html);
     Ok(html.replacen("<!-- contents -->\n", &contents, 1))
 }

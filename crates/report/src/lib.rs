@@ -18,6 +18,7 @@ mod error;
 mod figures;
 pub mod format;
 mod frame;
+pub mod glossary;
 mod page;
 mod parse;
 pub mod plot;

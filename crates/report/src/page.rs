@@ -38,7 +38,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
         cards: [
             ("Training", tables::training(result)),
             ("Envelope", tables::envelope(result)),
-            ("Oracle", tables::oracle(result)),
+            ("Reference", tables::oracle(result)),
         ],
         seeds: tables::seeds(&result.seeds),
         figures: figures(run),

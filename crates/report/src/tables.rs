@@ -92,7 +92,7 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
         quantity(&exact(result.tolerance_percent), "%")
     );
     vec![
-        fact("ζ differs from the oracle’s by", error),
+        fact("ζ differs from the reference by", error),
         fact("Stopped because", result.estimate.stopped_because.clone()),
         fact("State", reached(&result.estimate.reached)),
         fact("Steps", count(result.steps)),

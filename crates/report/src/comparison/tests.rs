@@ -98,7 +98,7 @@ fn every_part_is_there() {
         "(d) Summary",
         "What does not follow from these numbers",
         "The same record through each pipeline",
-        "What was noticed about the file",
+        "Findings about the file",
         "Files of the run",
         "no estimate: the budget of 200 generations ran out",
         ">FAIL<",

@@ -48,7 +48,7 @@ const EMPTY: RunTexts<'static> = RunTexts {
 };
 
 fn page(result: &Value, series: &str) -> String {
-    render(&RunTexts { result: &result.to_string(), series, ..EMPTY }).unwrap()
+    crate::glossary::unexplained(&render(&RunTexts { result: &result.to_string(), series, ..EMPTY }).unwrap())
 }
 
 fn row(record: usize, segment: usize, time_s: f64, off: f64) -> SeriesRow {
@@ -96,8 +96,8 @@ fn names_of_persons_keep_their_capital() {
     result["rivals"] = json!([{ "effect": "gravity", "rival": "coulomb_friction", "distance": 3.0 },
                               { "effect": "gravity", "rival": "end_stop", "distance": 4.0 }]);
     let html = page(&result, "");
-    assert!(html.contains("gravity and Coulomb friction: 3.0 noise units"), "{html}");
-    assert!(html.contains("gravity and end stop: 4.0 noise units"));
+    assert!(html.contains("gravity and Coulomb friction: best fits 3.0 × noise apart"), "{html}");
+    assert!(html.contains("gravity and end stop: best fits 4.0 × noise apart"));
 }
 
 #[test]

@@ -118,7 +118,10 @@ fn a_method_without_predictions_says_so() {
         scores.interpolation = None;
         scores.extrapolation = None;
     }
-    assert!(folder.render().unwrap().contains("no prediction: the method gives a decay rate only"));
+    assert!(
+        crate::glossary::unexplained(&folder.render().unwrap())
+            .contains("no prediction: the method gives a decay rate only")
+    );
     folder.rows.clear();
     let html = folder.render().unwrap();
     assert!(!html.contains("id=\"problem-dry-envelope\"") && html.contains("id=\"problem-dry-errors\""));

@@ -72,7 +72,7 @@ fn texts(result: &str) -> RunTexts<'_> {
 #[test]
 fn bars_come_first_and_their_states_are_told_apart() {
     let result = small().to_string();
-    let page = render(&texts(&result)).unwrap().replace('\u{a0}', " ");
+    let page = crate::glossary::unexplained(&render(&texts(&result)).unwrap()).replace('\u{a0}', " ");
     assert!(page.contains("Of 3 bars 1 are met, 1 are not (of these 1 with the whole 95 % interval), 1 are"));
     assert!(page.contains("Some bars missed beyond chance"));
     assert!(page.contains("1 of 10 cases have no answer"));

@@ -69,7 +69,7 @@ fn gap(result: &DiagnosisResult) -> String {
             share_with_interval(&gap.closure_of_recalibrated)
         ));
     }
-    table(&["held-out error", "RMS", "floors", ""], rows)
+    table(&["held-out error", "RMS", "× noise", ""], rows)
 }
 
 fn effects(result: &DiagnosisResult) -> String {
@@ -117,12 +117,12 @@ fn apart(result: &DiagnosisResult) -> String {
     if lines.is_empty() {
         lines.push(match result.rivals.first() {
             Some(rival) if rival.distance.is_finite() => format!(
-                "told apart: closest to {} is {}, {} noise units away (one class below {DISTINCT_DISTANCE})",
+                "told apart: closest to {} is {}, {} × noise away (one class below {DISTINCT_DISTANCE})",
                 rival.effect,
                 rival.rival,
                 significant(rival.distance, 2)
             ),
-            _ => "nothing here that could not be told apart".to_owned(),
+            _ => "every named effect can be told from the others".to_owned(),
         });
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
