@@ -1,5 +1,5 @@
 // What is wrong with the page as it is displayed now, a sentence each. Runs in the page, given by the test:
-// `view.width` in CSS pixels, and `view.decoration`, the colors that a plot reads without.
+// `view.width` in CSS pixels, `view.scripts`, whether the page runs its own, and `view.decoration`, the colors that a plot reads without.
 (async (view) => {
   const LEAST_TEXT_CONTRAST = 4.5; // WCAG 2.2, 1.4.3
   const LEAST_LARGE_TEXT_CONTRAST = 3;
@@ -9,7 +9,7 @@
   const MARKS = "line, path, polyline, polygon, circle, ellipse, rect";
 
   document.querySelectorAll("details").forEach((details) => (details.open = true));
-  await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+  if (view.scripts) await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
 
   const found = new Set();
   const shown = (element) => {
@@ -161,9 +161,9 @@
     }
   }
   for (const figure of document.querySelectorAll("figure")) {
-    const drawn = [...figure.querySelectorAll("svg.plot")].filter(isVisible);
+    const drawn = [...figure.querySelectorAll("svg.plot, .stage canvas")].filter(isVisible);
     if (drawn.length !== 1) found.add(`absent: ${shown(figure)} shows ${drawn.length} plots`);
-    else if (drawn[0].getBoundingClientRect().width < 0.75 * Math.min(view.width, 700) - 60) {
+    else if (drawn[0].getBoundingClientRect().width < Math.min(view.width, 576) - 80) {
       found.add(`small: the plot of ${shown(figure)} is ${drawn[0].getBoundingClientRect().width} px wide`);
     }
   }

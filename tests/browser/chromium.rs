@@ -39,6 +39,7 @@ pub(super) struct Chromium {
     output: BufReader<ChildStdout>,
     calls: u64,
     session: String,
+    runs_scripts: bool,
     /// What it said since the page was opened last.
     events: Vec<Value>,
     _profile: TempDir,
@@ -74,6 +75,7 @@ impl Chromium {
             output,
             calls: 0,
             session: String::new(),
+            runs_scripts: true,
             events: Vec::new(),
             _profile: profile,
         };
@@ -91,7 +93,7 @@ impl Chromium {
     pub(super) fn faults(&mut self, page: &Path, view: View) -> Vec<String> {
         self.open(page, view);
         let decoration = [Hue::Grid.light(), Hue::Shade.light()];
-        let given = json!({ "width": view.width, "decoration": decoration });
+        let given = json!({ "width": view.width, "scripts": self.runs_scripts, "decoration": decoration });
         let seen = self.evaluate(&format!("({AUDIT})({given})"));
         let mut faults: Vec<String> = self.events.iter().filter_map(|event| said(event, page)).collect();
         faults.extend(seen.as_array().unwrap().iter().map(|fault| fault.as_str().unwrap().to_owned()));
@@ -120,7 +122,36 @@ impl Chromium {
         answer["result"]["value"].clone()
     }
 
-    /// Where what a page's links offer is put.
+    /// With or without the scripts of the pages to be opened.
+    pub(super) fn run_scripts(&mut self, runs: bool) {
+        self.call("Emulation.setScriptExecutionDisabled", json!({ "value": !runs }));
+        self.runs_scripts = runs;
+    }
+
+    /// A mouse event at a place of the window, in CSS pixels: `mouseMoved`, `mousePressed` or `mouseReleased`.
+    /// `clicks` is 2 for the second click of a double click, 0 for a mouse whose button is up.
+    pub(super) fn mouse(&mut self, kind: &str, at: [f64; 2], clicks: u32) {
+        let held = u32::from(kind != "mouseReleased");
+        let button = if kind == "mouseMoved" && clicks == 0 { "none" } else { "left" };
+        self.call(
+            "Input.dispatchMouseEvent",
+            json!({ "type": kind, "x": at[0], "y": at[1], "button": button, "clickCount": clicks,
+                    "buttons": if button == "left" { held } else { 0 } }),
+        );
+    }
+
+    /// A key, down and up.
+    pub(super) fn press(&mut self, key: &str) {
+        let text = if key == "Enter" { "\r" } else { key };
+        self.call(
+            "Input.dispatchKeyEvent",
+            json!({ "type": "keyDown", "key": key, "code": key, "text": text,
+            "windowsVirtualKeyCode": 13 }),
+        );
+        self.call("Input.dispatchKeyEvent", json!({ "type": "keyUp", "key": key, "code": key }));
+    }
+
+    /// Where what a page's buttons save is put.
     pub(super) fn download_to(&mut self, folder: &Path) {
         let asked = json!({ "behavior": "allow", "downloadPath": folder, "eventsEnabled": true });
         self.call("Browser.setDownloadBehavior", asked);
@@ -204,7 +235,8 @@ fn said(event: &Value, page: &Path) -> Option<String> {
         "Log.entryAdded" => Some(format!("console: {}", params["entry"]["text"])),
         "Network.requestWillBeSent" => {
             let url = params["request"]["url"].as_str()?;
-            (url != address(page) && !url.starts_with("data:")).then(|| format!("request: {url}"))
+            let inside = ["data:", "blob:"].iter().any(|scheme| url.starts_with(scheme));
+            (url != address(page) && !inside).then(|| format!("request: {url}"))
         }
         _ => None,
     }

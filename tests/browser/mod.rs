@@ -2,10 +2,10 @@
 //! read, on a phone and at a desk, in light and in dark. Skipped loudly where there is no Chromium.
 
 mod chromium;
+mod instruments;
 
 use crate::support::{measured, root, trainer};
 use chromium::{Chromium, VIEWS, View};
-use serde_json::Value;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -31,54 +31,53 @@ fn look_at(browser: &mut Chromium, page: &Path) {
     assert!(faults.is_empty(), "{}:\n{}", page.display(), faults.join("\n"));
 }
 
-/// Every plot of the page that is open, by its name: what its links offer as SVG and as CSV, and the CSV that stands in
-/// the page.
-const OFFERED: &str = "[...document.querySelectorAll('figure')].map((figure) => ({
-    id: figure.id,
-    offered: ['svg', 'csv'].map((kind) => {
-        const links = figure.querySelectorAll(`a[download=\"${figure.id}.${kind}\"]`);
-        return links.length === 1 ? decodeURIComponent(links[0].href.replace(/^[^,]*,/, '')) : `${links.length} links`;
-    }),
-    csv: figure.querySelector('pre').textContent,
-}))";
-
-/// What the plots of a page offer to take along: the CSV is the page's, and the SVG is sound in the browser
-/// by itself. A click, on the first plot's, gives the file.
-fn take_along(browser: &mut Chromium, page: &Path, least: usize) {
+/// What the plots of a page save: the CSV is the page's, the SVG is sound in the browser by itself, and the PNG is an
+/// image of some size.
+fn save(browser: &mut Chromium, page: &Path, least: usize) {
     let scratch = tempfile::tempdir().unwrap();
     browser.open(page, VIEWS[0]);
-    let figures = browser.evaluate(OFFERED);
-    let figures = figures.as_array().unwrap();
+    let figures = browser.evaluate(
+        "[...document.querySelectorAll('figure')].map((figure) => [figure.id, figure.querySelector('pre.csv').textContent])",
+    );
+    let figures: Vec<(String, String)> = serde_json::from_value(figures).unwrap();
     assert!(figures.len() >= least, "{}: {} plots", page.display(), figures.len());
-    let text = |value: &Value| value.as_str().unwrap().to_owned();
     browser.download_to(scratch.path());
-    for (index, figure) in figures.iter().enumerate() {
-        let id = text(&figure["id"]);
-        let [svg, csv] = [0, 1].map(|at| text(&figure["offered"][at]));
-        assert_eq!(csv, text(&figure["csv"]), "{id}");
+    for (id, shown) in &figures {
+        browser.open(page, VIEWS[0]);
+        let [svg, png, csv] = ["svg", "png", "csv"].map(|kind| {
+            browser.evaluate(&format!(
+                "document.getElementById('{id}').querySelector('[data-save={kind}]').click()"
+            ));
+            browser.wait_for_download();
+            scratch.path().join(format!("{id}.{kind}"))
+        });
+        let csv = std::fs::read_to_string(csv).unwrap();
+        assert_eq!(csv, *shown, "{id}");
         let mut rows = csv::Reader::from_reader(csv.as_bytes());
         let width = rows.headers().unwrap().len();
         assert!(width > 1 && rows.records().all(|row| row.unwrap().len() == width), "{id}");
-        let file = scratch.path().join(format!("{id}.svg"));
-        std::fs::write(&file, &svg).unwrap();
-        for view in VIEWS.iter().filter(|view| view.width > 720) {
-            let faults = browser.faults(&file, *view);
+        let png = std::fs::read(png).unwrap();
+        assert!(png.starts_with(b"\x89PNG") && png.len() > 3_000, "{id}.png: {} bytes", png.len());
+        for view in VIEWS.iter().filter(|view| view.width > 960) {
+            let faults = browser.faults(&svg, *view);
             assert!(faults.is_empty(), "{}, {id}.svg: {view:?} {faults:?}", page.display());
         }
-        if index > 0 {
-            continue;
-        }
-        std::fs::remove_file(&file).unwrap();
-        browser.open(page, VIEWS[0]);
-        for (kind, content) in [("svg", svg), ("csv", csv)] {
-            browser.evaluate(&format!("document.querySelector('a[download=\"{id}.{kind}\"]').click()"));
-            browser.wait_for_download();
-            assert_eq!(
-                std::fs::read_to_string(scratch.path().join(format!("{id}.{kind}"))).unwrap(),
-                content
-            );
-        }
     }
+}
+
+/// The page without its scripts: nothing wrong with it, every plot drawn, and no button that does nothing.
+fn without_scripts(browser: &mut Chromium, page: &Path) {
+    browser.run_scripts(false);
+    look_at(browser, page);
+    for view in VIEWS {
+        browser.open(page, view);
+        let counted = "[document.querySelectorAll('figure').length, document.querySelectorAll('button, .stage').length,
+            [...document.querySelectorAll('svg.plot')].filter((plot) => plot.getBoundingClientRect().width > 200).length]";
+        let [figures, live, drawn] = serde_json::from_value(browser.evaluate(counted)).unwrap();
+        let counts: [u64; 3] = [figures, live, drawn];
+        assert_eq!(counts, [figures, 0, figures], "{}", page.display());
+    }
+    browser.run_scripts(true);
 }
 
 /// Makes a run and looks at its report, which has so many plots or more.
@@ -87,7 +86,9 @@ fn report_of(arguments: &[&str], plots: usize) {
     let page = made(&scratch, "run", arguments).join("report.html");
     let Some(mut browser) = Chromium::start() else { return };
     look_at(&mut browser, &page);
-    take_along(&mut browser, &page, plots);
+    save(&mut browser, &page, plots);
+    without_scripts(&mut browser, &page);
+    instruments::try_all(&mut browser, &page);
 }
 
 #[test]
@@ -142,7 +143,8 @@ fn the_tables_of_runs() {
     for folder in [&sweep, &failing, &table] {
         look_at(&mut browser, &folder.join("report.html"));
     }
-    take_along(&mut browser, &sweep.join("report.html"), 2);
+    save(&mut browser, &sweep.join("report.html"), 2);
+    instruments::sort(&mut browser, &table.join("report.html"));
 }
 
 /// Names as hostile as a file system lets them be, and as long.
@@ -176,7 +178,7 @@ fn hostile_names_are_text() {
         let title = browser.evaluate("document.querySelector('h1').textContent");
         assert_eq!(title.as_str(), folder.file_name().unwrap().to_str());
     }
-    take_along(&mut browser, &run.join("report.html"), 5);
+    save(&mut browser, &run.join("report.html"), 5);
 }
 
 /// A page with one fault of each kind: what was not found here would not be found in a report.

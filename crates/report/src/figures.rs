@@ -2,7 +2,6 @@
 
 use std::borrow::Cow;
 
-use percent_encoding::{AsciiSet, CONTROLS, utf8_percent_encode};
 use runs::result::{EnvelopeRow, TraceRow};
 
 use crate::format;
@@ -27,26 +26,6 @@ pub(crate) struct Figure {
     /// What is drawn, as a table, and how many rows that is.
     pub(crate) csv: String,
     pub(crate) rows: String,
-}
-
-impl Figure {
-    /// An address that holds the plot itself: the page is one file, and what it offers is in it.
-    pub(crate) fn svg_address(&self) -> String {
-        address("image/svg+xml", &self.drawing.file)
-    }
-
-    /// An address that holds the plot's data.
-    pub(crate) fn csv_address(&self) -> String {
-        address("text/csv", &self.csv)
-    }
-}
-
-/// What is in an address as it is; everything else is two hexadecimal digits for each byte.
-const IN_AN_ADDRESS: &AsciiSet =
-    &CONTROLS.add(b' ').add(b'"').add(b'#').add(b'%').add(b'&').add(b'<').add(b'>').add(b'\'').add(b'`');
-
-fn address(kind: &str, content: &str) -> String {
-    format!("data:{kind};charset=utf-8,{}", utf8_percent_encode(content, IN_AN_ADDRESS))
 }
 
 pub(crate) fn figures(run: &Run) -> Vec<Figure> {
@@ -83,7 +62,7 @@ fn residuals(run: &Run) -> Option<Figure> {
     let rows = &run.envelope;
     let plot = Plot {
         x: time_axis(),
-        y: Axis::linear("ln A less the oracle’s line"),
+        y: Axis::linear("ln A less the reference line"),
         series: vec![
             estimate(run, Mark::Line, rows.iter().map(|r| (r.time_s, r.estimate - r.oracle))),
             oracle(Mark::Level, [(0.0, 0.0)].into_iter()),
@@ -97,9 +76,9 @@ fn residuals(run: &Run) -> Option<Figure> {
         shaded: vec![],
     };
     let title = "Residuals";
-    let explanation = "The same with the oracle’s line taken away: dots scattered evenly about \
+    let explanation = "The same with the reference line subtracted: dots scattered evenly about \
                        zero speak for a single damping ratio, a bend or a wave against it. Where \
-                       the estimator agrees with the oracle its line lies on zero.";
+                       the estimator agrees with the reference its line lies on zero.";
     let csv = csv(&["time_s", "residual", "estimate_less_oracle"], rows, |r: &EnvelopeRow| {
         numbers(&[r.time_s, r.log_amplitude - r.oracle, r.estimate - r.oracle])
     });
@@ -160,12 +139,12 @@ fn distance(run: &Run) -> Option<Figure> {
     };
     let plot = Plot {
         x: step_axis(),
-        y: Axis::log("|λ / oracle’s λ − 1|"),
+        y: Axis::log("|λ / reference λ − 1|"),
         series: vec![
             estimate_steps(run, relative),
             level("stated tolerance", Hue::Data, Mark::Level, run.result.tolerance_percent / 100.0),
             level(
-                "standard error of the oracle’s λ",
+                "standard error of the reference λ",
                 Hue::Oracle,
                 Mark::DottedLevel,
                 (run.result.oracle.std_error / reference).abs(),
@@ -174,7 +153,7 @@ fn distance(run: &Run) -> Option<Figure> {
         shaded: shaded(&run.trace),
     };
     let title = "Digits gained";
-    let explanation = "The distance of λ from the oracle’s: each decade down is one more digit \
+    let explanation = "The distance of λ from that of the reference: each decade down is one more digit \
                        that both share. Below the dotted line the digits tell how well the \
                        training solves the fit, and nothing more about the oscillator.";
     let csv = trace_csv(run, "relative_distance", relative);
@@ -203,13 +182,6 @@ pub(crate) fn figure(
              axis) are left out: {left_out}."
         ));
     }
-    if drawing.thinned {
-        notes.push(
-            "Drawn with fewer points than there are; of every stretch the lowest and the highest \
-             are kept."
-                .to_owned(),
-        );
-    }
     Some(Figure { id, title, explanation: explanation.to_owned(), notes, drawing, csv, rows })
 }
 
@@ -222,12 +194,7 @@ fn step_axis() -> Axis {
 }
 
 pub(crate) fn oracle(mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
-    Series {
-        label: "closed-form least squares (oracle)".into(),
-        hue: Hue::Oracle,
-        mark,
-        points: points.collect(),
-    }
+    Series { label: "reference (least squares)".into(), hue: Hue::Oracle, mark, points: points.collect() }
 }
 
 fn estimate(run: &Run, mark: Mark, points: impl Iterator<Item = (f64, f64)>) -> Series {
@@ -331,16 +298,6 @@ mod tests {
     fn every_other_phase_is_shaded_up_to_the_next() {
         let trace = [row(0, "a"), row(1, "b"), row(2, "b"), row(3, "c"), row(4, "d"), row(5, "d")];
         assert_eq!(shaded(&trace), [(1.0, 3.0), (4.0, 5.0)]);
-    }
-
-    #[test]
-    fn an_address_gives_back_what_was_put_into_it() {
-        let content = "a,\"b\"\n100 %,<'&#`>,\u{3b6}\r\n";
-        let address = address("text/csv", content);
-        let (kind, data) = address.split_once(',').unwrap();
-        assert_eq!(kind, "data:text/csv;charset=utf-8");
-        assert!(!data.contains([' ', '"', '<', '>', '\'', '&', '#', '\n']), "{data}");
-        assert_eq!(percent_encoding::percent_decode_str(data).decode_utf8().unwrap(), content);
     }
 
     #[test]

@@ -1,11 +1,15 @@
 //! What every page has: head, origin, verdict, warnings, pipelines, data and files.
 
+use askama::Template;
 use runs::result::{DataSummary, OracleSummary, PipelineRow};
 
-use crate::RunTexts;
+use crate::glossary;
 use crate::plot::Hue;
+use crate::remarks;
+use crate::scripts;
 use crate::tables::{self, Fact, PipelineView};
 use crate::verdict::{self, Origin, Verdict};
+use crate::{ReportError, RunTexts};
 
 /// What `base.html` and the templates that pages include are filled with.
 pub(crate) struct Frame<'a> {
@@ -17,9 +21,11 @@ pub(crate) struct Frame<'a> {
     pub(crate) verdict: Verdict,
     pub(crate) origin: Origin,
     pub(crate) warnings: Vec<String>,
+    /// The next steps, a sentence or two each; directly beneath the verdict.
+    pub(crate) next: Vec<String>,
     pub(crate) pipelines: Vec<PipelineView<'a>>,
     pub(crate) data: Vec<Fact>,
-    pub(crate) findings: &'a [String],
+    pub(crate) findings: Vec<String>,
     /// What the files are, and their texts.
     pub(crate) files: [(&'static str, &'a str); 3],
 }
@@ -39,15 +45,73 @@ impl<'a> Frame<'a> {
             kicker,
             verdict,
             origin: verdict::origin(&data.origin),
-            warnings: verdict::warnings(oracle),
+            warnings: remarks::warnings(oracle),
+            next: Vec::new(),
             pipelines: tables::pipelines(pipelines),
             data: tables::data(data),
-            findings: &data.findings,
+            findings: remarks::noticed(data),
             files: [
                 ("Resolved configuration (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
                 ("Every number, unrounded (result.json)", texts.result),
             ],
         }
+    }
+}
+
+impl Frame<'_> {
+    pub(crate) fn policy(&self) -> String {
+        scripts::policy()
+    }
+
+    pub(crate) fn plot_style(&self) -> &'static str {
+        scripts::STYLE
+    }
+
+    pub(crate) fn scripts(&self) -> [&'static str; 2] {
+        scripts::SCRIPTS
+    }
+}
+
+/// The page of a template, with its contents at the top and its terms explained at the end.
+pub(crate) fn finish(page: &impl Template) -> Result<String, ReportError> {
+    let html = glossary::explained(&page.render()?, "<!-- terms -->");
+    let contents = contents(&html);
+    Ok(html.replacen("<!-- contents -->\n", &contents, 1))
+}
+
+/// Links to the sections: every heading of second rank that has an id. Texts from files are escaped and cannot look
+/// like one. Nothing for a page of few sections.
+fn contents(html: &str) -> String {
+    const FEWEST: usize = 3;
+    let headings: Vec<(&str, &str)> = html
+        .split("<h2 id=\"")
+        .skip(1)
+        .filter_map(|rest| {
+            let (id, rest) = rest.split_once("\">")?;
+            Some((id, rest.split_once("</h2>")?.0))
+        })
+        .collect();
+    if headings.len() < FEWEST {
+        return String::new();
+    }
+    let items: String =
+        headings.iter().map(|(id, title)| format!("<li><a href=\"#{id}\">{title}</a></li>\n")).collect();
+    format!("<nav class=\"contents\" aria-label=\"Contents\">\n<p>Contents</p>\n<ul>\n{items}</ul>\n</nav>\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::contents;
+
+    #[test]
+    fn every_section_is_in_the_contents_of_a_long_page() {
+        let section =
+            |id: &str| format!("<section><h2 id=\"{id}\">On {id}</h2><h3 id=\"x\">no</h3></section>");
+        let page: String = ["a", "b", "c"].map(section).concat();
+        let found = contents(&page);
+        assert_eq!(found.matches("<li>").count(), 3);
+        assert!(found.contains("<a href=\"#b\">On b</a>"));
+        assert!(contents(&section("a")).is_empty());
     }
 }

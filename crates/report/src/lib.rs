@@ -18,11 +18,14 @@ mod error;
 mod figures;
 pub mod format;
 mod frame;
+pub mod glossary;
 mod page;
 mod parse;
 pub mod plot;
 mod prediction;
+mod remarks;
 mod run_table;
+mod scripts;
 mod tables;
 mod trials;
 mod verdict;
@@ -31,6 +34,7 @@ mod verdict;
 mod sample;
 
 pub use error::ReportError;
+pub use remarks::{bar_state, is_exponential, noticed, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
 pub use verdict::in_a_sentence;
 
@@ -57,8 +61,8 @@ pub struct RunTexts<'a> {
     pub environment: &'a str,
 }
 
-/// The report on a run, whatever it was asked for: a complete HTML page that loads nothing and runs
-/// no script.
+/// The report on a run, whatever it was asked for: a complete HTML page that loads nothing.
+/// Its scripts stand in it.
 ///
 /// # Errors
 ///

@@ -250,7 +250,7 @@ mod tests {
     fn an_error_without_a_finite_value_is_no_obstacle() {
         let mut sample = Sample::new();
         sample.result.error_percent = f64::INFINITY;
-        let page = sample.render().unwrap();
+        let page = crate::glossary::unexplained(&sample.render().unwrap());
         assert!(page.contains("cannot be compared with closed-form least squares"));
     }
 

@@ -92,7 +92,7 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
         quantity(&exact(result.tolerance_percent), "%")
     );
     vec![
-        fact("ζ differs from the oracle’s by", error),
+        fact("ζ differs from the reference by", error),
         fact("Stopped because", result.estimate.stopped_because.clone()),
         fact("State", reached(&result.estimate.reached)),
         fact("Steps", count(result.steps)),
@@ -120,7 +120,7 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
         fact("Digest", data.digest.clone()),
         fact("Samples", whole(data.samples)),
         fact("Clock in force", format!("{}: {}", data.clock, data.clock_reason)),
-        fact("Clock to believe", format!("{}: {}", data.believed_clock, data.believed_clock_reason)),
+        fact("Clock to believe", data.believed_clock.clone()),
         fact("Sample rate", quantity(&rate, "Hz")),
         fact("Sample period", quantity(&significant(data.sample_period_s * 1e3, 6), "ms")),
         fact(

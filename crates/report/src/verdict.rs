@@ -1,6 +1,6 @@
 //! What a run came to, in one sentence, and what kind of record it is about.
 
-use runs::result::{EstimationResult, OracleSummary};
+use runs::result::EstimationResult;
 
 use crate::format;
 
@@ -168,21 +168,6 @@ pub(crate) fn origin(stated: &str) -> Origin {
     }
 }
 
-/// What the reader has to know before believing the numbers.
-pub(crate) fn warnings(oracle: &OracleSummary) -> Vec<String> {
-    let mut warnings = Vec::new();
-    let correlation = oracle.residual_autocorrelation;
-    if correlation.abs() > 0.5 {
-        let consequence = if correlation > 0.0 { "are therefore too small" } else { "therefore do not hold" };
-        warnings.push(format!(
-            "Neighboring residuals are correlated (lag-one autocorrelation {}): the standard \
-             errors and intervals on this page assume independent residuals and {consequence}.",
-            format::fixed(correlation, 2)
-        ));
-    }
-    warnings
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -281,17 +266,5 @@ mod tests {
         assert_eq!(origin("simulated").class, "simulated");
         assert_eq!(origin("unstated").class, "unstated");
         assert_eq!(origin("dreamt").class, "unstated");
-    }
-
-    #[test]
-    fn correlated_residuals_are_warned_about() {
-        let mut result = Sample::new().result;
-        result.oracle.residual_autocorrelation = 0.5;
-        assert!(warnings(&result.oracle).is_empty());
-        result.oracle.residual_autocorrelation = 0.61;
-        assert!(warnings(&result.oracle)[0].contains("0.61): the standard errors"));
-        assert!(warnings(&result.oracle)[0].contains("too small"));
-        result.oracle.residual_autocorrelation = -0.7;
-        assert!(warnings(&result.oracle)[0].contains("do not hold"));
     }
 }

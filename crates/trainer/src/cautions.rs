@@ -71,19 +71,23 @@ fn grid_is_not_sampling(input: &Input, summary: &EnvelopeSummary) -> Option<Caut
     })
 }
 
-/// Only where ln A bends by more than three standard errors or its residuals hang together.
+/// Only where ln A bends by more than three standard errors or its residuals are correlated, and they are large enough
+/// to matter.
 fn fit_quality_is_not_viscosity(input: &Input) -> Option<Caution> {
     let bend = curvature(&input.extraction.envelope).ok()?;
     let sizes = bend.coefficient.abs() / bend.std_error;
     let correlation = input.oracle.residual_autocorrelation;
     let by_chance = PLAIN / (input.extraction.envelope.len() as f64).sqrt();
-    (sizes > PLAIN || correlation > by_chance).then(|| Caution {
-        statement: format!("R² = {:.3} confirms viscous damping", input.oracle.r_squared),
+    let r_squared = input.oracle.r_squared;
+    let conclusion =
+        if sizes > PLAIN { "the envelope is not exponential" } else { "the residuals are not independent" };
+    ((sizes > PLAIN || correlation > by_chance) && !report::is_exponential(r_squared)).then(|| Caution {
+        statement: format!("R² = {r_squared:.3} confirms viscous damping"),
         finding: format!(
             "Under viscous damping ln A is a line with independent residuals. Here a quadratic term is \
              {:.1e} ± {:.1e} 1/s² ({sizes:.1} standard errors from 0), and neighboring residuals \
-             correlate by {correlation:.2}: the envelope is no pure exponential, and a high R² only says \
-             that the line is long.",
+             correlate by {correlation:.2}: {conclusion}, and a high R² says only that the decay spans many \
+             residuals.",
             bend.coefficient, bend.std_error
         ),
     })

@@ -3,8 +3,8 @@
 use comfy_table::{ContentArrangement, Table, presets};
 use report::format;
 use runs::result::{
-    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, PipelineOutcome, PipelineRow,
-    TruthComparison,
+    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, OracleSummary,
+    PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
 
@@ -230,8 +230,12 @@ fn comparison_remarks(result: &ComparisonResult) -> String {
         .cautions
         .iter()
         .map(|caution| format!("not borne out: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
-    let correlation = correlated(result.oracle.residual_autocorrelation);
-    clock(&result.data).into_iter().chain(correlation).chain(cautions).collect::<Vec<_>>().join("\n")
+    clock(&result.data)
+        .into_iter()
+        .chain(warned(&result.oracle))
+        .chain(cautions)
+        .collect::<Vec<_>>()
+        .join("\n")
 }
 
 /// Ten significant digits.
@@ -280,25 +284,14 @@ fn clock(data: &DataSummary) -> Vec<String> {
             data.sample_rate_std_error_hz
         ),
     ];
-    if data.believed_clock != data.clock {
-        remarks.push(format!(
-            "note: the record speaks for the {} clock: {}",
-            data.believed_clock, data.believed_clock_reason
-        ));
-    }
-    remarks.extend(data.findings.iter().map(|finding| format!("note: {finding}")));
+    remarks.extend(report::noticed(data).iter().map(|finding| format!("note: {finding}")));
     remarks
 }
 
 fn remarks(result: &EstimationResult) -> Vec<String> {
-    clock(&result.data).into_iter().chain(correlated(result.oracle.residual_autocorrelation)).collect()
+    clock(&result.data).into_iter().chain(warned(&result.oracle)).collect()
 }
 
-fn correlated(correlation: f64) -> Option<String> {
-    (correlation.abs() > 0.5).then(|| {
-        format!(
-            "note: the residuals of ln A are autocorrelated ({correlation:.2}): the envelope is no pure exponential, and the \
-             standard errors are too small"
-        )
-    })
+fn warned(reference: &OracleSummary) -> impl Iterator<Item = String> {
+    report::warnings(reference).into_iter().map(|warning| format!("note: {warning}"))
 }

@@ -4,8 +4,9 @@ use runs::result::ComparisonResult;
 
 use super::methods::{self, MethodTable, MethodView};
 use super::{WordTable, guidelines, oscillation, verdict};
+use crate::remarks::{noticed, warnings};
 use crate::tables::{self, PipelineView};
-use crate::verdict::{origin, warnings};
+use crate::verdict::origin;
 
 pub(crate) fn markdown(result: &ComparisonResult) -> String {
     let origin = origin(&result.data.origin);
@@ -40,7 +41,8 @@ pub(crate) fn markdown(result: &ComparisonResult) -> String {
     blocks.push("## Data".to_owned());
     let facts = tables::data(&result.data);
     let facts = facts.iter().map(|fact| format!("{}: {}", fact.name, escape(&fact.value)));
-    let findings = result.data.findings.iter().map(|finding| format!("Noticed: {}", escape(finding)));
+    let findings = noticed(&result.data);
+    let findings = findings.iter().map(|finding| format!("Noticed: {}", escape(finding)));
     blocks.push(list(facts.chain(findings)));
     blocks.join("\n\n") + "\n"
 }

@@ -16,7 +16,7 @@ use askama::Template;
 use runs::result::{Caution, ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
 
 use crate::figures::Figure;
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::parse::Comparison;
 use crate::tables::Fact;
 use crate::{ReportError, RunTexts};
@@ -69,7 +69,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<St
         summary: oscillation::summary(result),
         cautions: &result.cautions,
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 /// The methods that gave an estimate, with it.

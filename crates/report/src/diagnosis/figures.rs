@@ -15,12 +15,6 @@ pub(super) fn framed(
     if drawing.left_out > 0 {
         notes.push(format!("Values that are not finite are left out: {}.", drawing.left_out));
     }
-    if drawing.thinned {
-        notes.push(
-            "Drawn with fewer points than there are; of every stretch the lowest and the highest are kept."
-                .to_owned(),
-        );
-    }
     Figure { id: id.into(), title: title.into(), explanation, notes, drawing, csv, rows }
 }
 

@@ -4,7 +4,7 @@ use runs::result::{DiagnosisResult, MapCell};
 
 use super::figures::{Simulator, framed};
 use crate::figures::{Figure, csv, number};
-use crate::plot::{Axis, HeatCell, HeatMap, Hue, Mark, Plot, Series};
+use crate::plot::{Axis, BREAK, HeatCell, HeatMap, Hue, Mark, Plot, Series};
 
 /// Cells of the spectrum that are shown beyond the last significant one.
 const BEYOND: usize = 6;
@@ -73,7 +73,20 @@ fn along(
     let label = format!("RMS of what is left over ({})", result.gap.unit);
     let steps = |value: fn(&MapCell) -> f64| -> Vec<(f64, f64)> {
         let ends = |cell: &MapCell| cell.bounds.first().copied().unwrap_or([f64::NAN; 2]);
-        cells.iter().flat_map(|cell| ends(cell).map(|end| (end, value(cell)))).collect()
+        let mut points = Vec::with_capacity(2 * cells.len());
+        let mut last = f64::NEG_INFINITY;
+        for cell in cells {
+            let [from, to] = ends(cell);
+            let room = 1e-6 * (to - from);
+            if from > last + room || cell.samples == 0 {
+                points.push(BREAK);
+            }
+            if cell.samples > 0 {
+                points.extend([from, to].map(|end| (end, value(cell))));
+            }
+            last = to;
+        }
+        points
     };
     let significant = cells.iter().filter(|cell| cell.significant);
     let marked = significant.filter_map(|cell| {

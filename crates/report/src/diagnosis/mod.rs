@@ -13,7 +13,7 @@ use askama::Template;
 use runs::result::DiagnosisResult;
 
 use crate::figures::Figure;
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
 use crate::plot::Hue;
 use crate::tables::Fact;
@@ -31,7 +31,6 @@ struct DiagnosisPage<'a> {
     shares: Vec<Share>,
     effects: Vec<EffectView>,
     apart: Vec<String>,
-    experiment: &'a str,
     experiments: Vec<String>,
     record_figures: Vec<Figure>,
     place_figures: Vec<Figure>,
@@ -56,9 +55,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
             verdict: headline(result),
             origin: origin(result),
             warnings: warnings(result),
+            next: next(result),
             pipelines: Vec::new(),
             data: Vec::new(),
-            findings: &[],
+            findings: Vec::new(),
             files: [
                 ("Repaired simulator (repaired.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -70,7 +70,6 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         shares: budget::shares(&result.place.budget),
         effects: tables::effects(result),
         apart: tables::apart(result),
-        experiment: &result.next_experiment.text,
         experiments: tables::experiments(result),
         record_figures: record::figures(result, &diagnosis.series),
         place_figures: maps::figures(result),
@@ -84,7 +83,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         latex: &result.equation.latex,
         stages: tables::stages(result),
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 fn headline(result: &DiagnosisResult) -> Verdict {
@@ -130,6 +129,22 @@ fn warnings(result: &DiagnosisResult) -> Vec<String> {
         ));
     }
     warnings
+}
+
+/// The next experiment, and what can be done with the answer already.
+fn next(result: &DiagnosisResult) -> Vec<String> {
+    let mut steps = Vec::new();
+    if !result.next_experiment.text.is_empty() {
+        steps.push(format!("Next experiment: {}", result.next_experiment.text));
+    }
+    if matches!(result.verdict.status.as_str(), "calibration" | "effect") {
+        steps.push(
+            "The repaired simulator stands beside this page: “trainer simulate repaired.toml” runs it, and the section \
+             on it below names the files for SciPy, Modelica, MuJoCo and URDF."
+                .to_owned(),
+        );
+    }
+    steps
 }
 
 /// The name of an id in words, inside a sentence.

@@ -1,4 +1,4 @@
-//! The system's portrait: backbone curves and the restoring-force surface.
+//! Backbone curves and the restoring-force surface.
 
 use runs::result::{BackbonePoint, DiagnosisResult, SurfaceCell};
 
@@ -8,7 +8,7 @@ use crate::plot::{Axis, HeatCell, HeatMap, Mark, Plot};
 
 /// Points of a backbone curve: each is the median of neighbors in amplitude.
 const POINTS: usize = 40;
-/// Smallest amplitude shown, in noise floors.
+/// Smallest amplitude shown, in units of the noise floor.
 const SMALLEST: f64 = 10.0;
 
 pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
@@ -20,7 +20,7 @@ pub(super) fn figures(result: &DiagnosisResult) -> Vec<Figure> {
             "angular frequency (rad/s)",
             |point| Some(point.frequency),
             "The backbone curve, flat for a linear oscillator. Where it rises with amplitude the spring stiffens; where it falls the spring softens, as with a hanging weight. Cycle by cycle \
-             from turning points, each dot the median of neighbors in amplitude; none below ten noise floors.",
+             from turning points, each dot the median of neighbors in amplitude; none below 10 × noise.",
         ),
         backbone(
             result,

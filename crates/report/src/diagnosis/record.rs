@@ -5,7 +5,7 @@ use runs::result::{DiagnosisResult, SeriesRow};
 use super::figures::{Simulator, framed, recorded};
 use crate::figures::{Figure, csv, number};
 use crate::format;
-use crate::plot::{Axis, Hue, Mark, Plot, Series};
+use crate::plot::{Axis, BREAK, Hue, Mark, Plot, Series};
 
 /// Samples of the worst stretch that are shown: a few periods of an ordinary record.
 const MOST_SHOWN: usize = 500;
@@ -27,10 +27,15 @@ impl Worst<'_> {
 
 pub(super) fn figures(result: &DiagnosisResult, rows: &[SeriesRow]) -> Vec<Figure> {
     let Some(worst) = worst(rows) else { return Vec::new() };
-    [overview(result, rows, &worst), zoom(result, &worst), residuals(result, rows, &worst)]
-        .into_iter()
-        .flatten()
-        .collect()
+    [
+        overview(result, rows, &worst),
+        input(result, rows),
+        zoom(result, &worst),
+        residuals(result, rows, &worst),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
 }
 
 fn worst(rows: &[SeriesRow]) -> Option<Worst<'_>> {
@@ -58,27 +63,57 @@ fn time() -> Axis {
     Axis::linear("time (s)")
 }
 
-fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> Option<Figure> {
+/// A line for each of the first records; `single` names that of a single one.
+fn by_record(
+    result: &DiagnosisResult,
+    rows: &[SeriesRow],
+    single: &str,
+    value: fn(&SeriesRow) -> f64,
+) -> Vec<Series> {
     let records = rows.chunk_by(|one, next| one.record == next.record).take(MOST_RECORDS);
     let several = result.records.len() > 1;
-    let series = records
+    records
         .enumerate()
         .map(|(index, rows)| Series {
             label: if several {
                 format!("record {}", rows.first().map_or(0, |row| row.record))
             } else {
-                "recorded".to_owned()
+                single.to_owned()
             },
             hue: if several { Hue::of_series(index) } else { Hue::Data },
             mark: Mark::Line,
-            points: pieces(rows, |row| row.observed),
+            points: pieces(rows, value),
         })
-        .collect();
+        .collect()
+}
+
+/// Only where a record has one.
+fn input(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<Figure> {
+    rows.iter().find(|row| row.input_torque.is_some())?;
+    let torque = |row: &SeriesRow| row.input_torque.unwrap_or(f64::NAN);
+    let [_, _, unit] = &result.units;
+    let what = if unit == "N" { "force" } else { "torque" };
+    let plot = Plot {
+        x: time(),
+        y: Axis::linear(format!("{what} of the input ({unit})")),
+        series: by_record(result, rows, "input", torque),
+        shaded: vec![],
+    };
+    let drawing = plot.draw("The input over time.")?;
+    let explanation = format!("The measured input over the same time, as the {what} that it exerts.");
+    let table = csv(&["record", "time_s", "input_torque"], rows, |row: &SeriesRow| {
+        vec![row.record.to_string(), number(row.time_s), number(torque(row))]
+    });
+    Some(framed("input", "The input".to_owned(), explanation, drawing, table))
+}
+
+fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> Option<Figure> {
+    let series = by_record(result, rows, "recorded", |row| row.observed);
     let plot = Plot { x: time(), y: observed_axis(result), series, shaded: vec![worst.span()] };
     let drawing = plot.draw("What was recorded, over time.")?;
     let explanation =
         "What was recorded, on the clock that is believed. Shaded: the stretch in which the recalibrated \
-                       simulator is farthest off; the next plot shows it enlarged."
+                       simulator is farthest off, enlarged below."
             .to_owned();
     let table = csv(&["record", "time_s", "observed"], rows, |row: &SeriesRow| {
         vec![row.record.to_string(), number(row.time_s), number(row.observed)]
@@ -86,7 +121,10 @@ fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> 
     Some(framed("record", "The record".to_owned(), explanation, drawing, table))
 }
 
-/// A line that breaks where time jumps: between records and where stretches were left out.
+/// Steps between samples, in units of the usual one, beyond which samples are missing.
+const GAP: f64 = 4.0;
+
+/// A line that breaks where time jumps: between records and where samples are missing.
 fn pieces(rows: &[SeriesRow], value: impl Fn(&SeriesRow) -> f64) -> Vec<(f64, f64)> {
     let mut steps: Vec<f64> = rows.windows(2).map(pair_step).filter(|step| *step > 0.0).collect();
     steps.sort_by(f64::total_cmp);
@@ -94,8 +132,8 @@ fn pieces(rows: &[SeriesRow], value: impl Fn(&SeriesRow) -> f64) -> Vec<(f64, f6
     let mut points = Vec::with_capacity(rows.len());
     let mut last: Option<f64> = None;
     for row in rows {
-        if last.is_some_and(|last| row.time_s - last > 20.0 * usual || row.time_s < last) {
-            points.push((row.time_s, f64::NAN));
+        if last.is_some_and(|last| row.time_s - last > GAP * usual || row.time_s < last) {
+            points.push(BREAK);
         }
         points.push((row.time_s, value(row)));
         last = Some(row.time_s);
@@ -111,8 +149,7 @@ fn pair_step(pair: &[SeriesRow]) -> f64 {
 }
 
 fn zoom(result: &DiagnosisResult, worst: &Worst<'_>) -> Option<Figure> {
-    let points =
-        |value: fn(&SeriesRow) -> f64| worst.rows.iter().map(|row| (row.time_s, value(row))).collect();
+    let points = |value: fn(&SeriesRow) -> f64| pieces(worst.rows, value);
     let plot = Plot {
         x: time(),
         y: observed_axis(result),

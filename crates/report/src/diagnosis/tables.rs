@@ -55,7 +55,7 @@ pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
     let gap = &result.gap;
     let closed = format!(
         "Closed of the whole gap: {}; of what recalibration leaves: {}. Closure compares squares above the noise \
-         floor, so that 99 % can still be several floors: the ratio to the floor says more.",
+         floor, so that 99 % can still leave several times the noise: see the column “× noise”.",
         share_with_interval(&gap.closure),
         share_with_interval(&gap.closure_of_recalibrated)
     );
@@ -136,7 +136,7 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
                 "told apart on these data"
             };
             format!(
-                "{} and {}: {} noise units between the best fits, {verdict}.",
+                "{} and {}: best fits {} × noise apart, {verdict}.",
                 title(result, &rival.effect),
                 title(result, &rival.rival),
                 significant(rival.distance, 2)
@@ -144,7 +144,11 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
         })
         .collect();
     sentences.extend(result.detectability.iter().filter(|row| row.d.is_finite()).map(|row| {
-        format!("Leaving out {} costs {} noise units.", title(result, &row.effect), significant(row.d, 2))
+        format!(
+            "Leaving out {} worsens the fit by {} × noise.",
+            title(result, &row.effect),
+            significant(row.d, 2)
+        )
     }));
     sentences
 }

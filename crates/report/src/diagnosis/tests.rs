@@ -48,7 +48,7 @@ const EMPTY: RunTexts<'static> = RunTexts {
 };
 
 fn page(result: &Value, series: &str) -> String {
-    render(&RunTexts { result: &result.to_string(), series, ..EMPTY }).unwrap()
+    crate::glossary::unexplained(&render(&RunTexts { result: &result.to_string(), series, ..EMPTY }).unwrap())
 }
 
 fn row(record: usize, segment: usize, time_s: f64, off: f64) -> SeriesRow {
@@ -60,6 +60,7 @@ fn row(record: usize, segment: usize, time_s: f64, off: f64) -> SeriesRow {
         nominal: 0.0,
         recalibrated: time_s.sin(),
         repaired: time_s.sin() + off,
+        input_torque: None,
     }
 }
 
@@ -85,7 +86,7 @@ fn what_is_absent_is_said_and_breaks_nothing() {
     ] {
         assert!(html.contains(part), "{part}");
     }
-    assert!(!html.contains("NaN"));
+    assert!(!crate::scripts::stripped(&html).contains("NaN"));
 }
 
 /// Rivals without a row of their own keep the capital of a person's name.
@@ -95,8 +96,8 @@ fn names_of_persons_keep_their_capital() {
     result["rivals"] = json!([{ "effect": "gravity", "rival": "coulomb_friction", "distance": 3.0 },
                               { "effect": "gravity", "rival": "end_stop", "distance": 4.0 }]);
     let html = page(&result, "");
-    assert!(html.contains("gravity and Coulomb friction: 3.0 noise units"), "{html}");
-    assert!(html.contains("gravity and end stop: 4.0 noise units"));
+    assert!(html.contains("gravity and Coulomb friction: best fits 3.0 × noise apart"), "{html}");
+    assert!(html.contains("gravity and end stop: best fits 4.0 × noise apart"));
 }
 
 #[test]
@@ -110,6 +111,52 @@ fn the_worst_stretch_is_the_one_farthest_off() {
     let html = page(&small(), &table(&rows));
     assert!(html.contains("The worst stretch: 10.0 to 19.9\u{a0}s"), "{}", html.len());
     assert_eq!(html, page(&small(), &table(&rows)), "equal bytes");
+}
+
+/// Samples are missing from 5 to 9 s: no line crosses the gap, in any plot over time.
+#[test]
+fn no_line_is_drawn_across_missing_samples() {
+    let at = |index: usize| 0.1 * index as f64 + if index < 50 { 0.0 } else { 4.0 };
+    let rows: Vec<SeriesRow> = (0..100).map(|index| row(1, 1, at(index), 0.1)).collect();
+    let html = page(&small(), &table(&rows));
+    for (id, lines) in [("record", 1), ("worst-stretch", 3), ("residuals", 2)] {
+        let figure = html.split(&format!("<figure id=\"{id}\"")).nth(1).unwrap();
+        let live = figure.split("class=\"live\">").nth(1).unwrap().split("</script>").next().unwrap();
+        let live: Value = serde_json::from_str(live).unwrap();
+        let breaks = |column: &Value| {
+            column["deltas"].as_array().unwrap().iter().filter(|delta| delta.is_null()).count()
+        };
+        let columns =
+            live["tables"].as_array().unwrap().iter().flat_map(|table| table["columns"].as_array().unwrap());
+        assert!(columns.map(breaks).filter(|count| *count == 1).count() >= lines, "{id}: {live}");
+    }
+}
+
+#[test]
+fn the_input_is_plotted_where_there_is_one() {
+    let mut rows: Vec<SeriesRow> = (0..100).map(|index| row(1, 1, 0.1 * f64::from(index), 0.1)).collect();
+    assert!(!page(&small(), &table(&rows)).contains("<figure id=\"input\""));
+    for row in &mut rows {
+        row.input_torque = Some(row.time_s.cos());
+    }
+    let html = page(&small(), &table(&rows));
+    assert!(html.contains("<figure id=\"input\"") && html.contains("torque of the input (N m)"));
+}
+
+/// A map whose second cell holds no sample, and whose fourth begins beyond the end of the third.
+#[test]
+fn no_line_is_drawn_across_empty_cells() {
+    let cell = |from: f64, to: f64, samples: u64| {
+        json!({ "bounds": [[from, to]], "value": 0.02, "repaired": 0.001, "band": 0.003, "significant": false,
+                "samples": samples })
+    };
+    let mut result = small();
+    result["where"]["time"] =
+        json!([cell(0.0, 1.0, 9), cell(1.0, 2.0, 0), cell(2.0, 3.0, 9), cell(5.0, 6.0, 9)]);
+    let html = page(&result, "");
+    let figure = html.split("<figure id=\"gap-over-time\"").nth(1).unwrap();
+    let svg = figure.split("</svg>").next().unwrap();
+    assert_eq!(svg.matches(&format!("stroke=\"{}\"", crate::plot::Hue::Estimate.light())).count(), 3);
 }
 
 #[test]
@@ -155,7 +202,7 @@ fn what_comes_from_files_is_escaped() {
     let html =
         render(&RunTexts { name: EVIL, config: EVIL, result: &replaced, series: &table(&rows), ..EMPTY })
             .unwrap();
-    assert!(!html.contains("<script"));
+    assert!(!crate::scripts::stripped(&html).contains("<script"));
 }
 
 #[test]

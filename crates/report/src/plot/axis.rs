@@ -1,8 +1,7 @@
 //! Axes: which values they span, where their ticks stand, and what the ticks say.
 //!
-//! kuva is given positions in units of ticks, counted from the lowest tick, never the values
-//! themselves. So its own arithmetic sees numbers from 0 to about 10 whatever the data are: its
-//! logarithmic axis stops at 1e-10, and its linear ticks are rounded to nine decimals.
+//! Places on an axis are counted in ticks from the lowest one, so that all drawing deals with numbers from 0 to about 10
+//! whatever the data are.
 
 use crate::format;
 
@@ -122,6 +121,12 @@ impl Ticks {
             Scale::Log => value.log10(),
         };
         (value - self.low) / self.step
+    }
+
+    /// Letters of the longest label.
+    pub(crate) fn longest_label(&self) -> usize {
+        let places = self.ends.0.ceil() as i64..=self.ends.1.floor() as i64;
+        places.map(|place| self.label(place as f64).chars().count()).max().unwrap_or(0)
     }
 
     /// What the tick at a position says.

@@ -3,23 +3,13 @@
 //! The color is one hue for each sign, more or less opaque, so that it follows the reader's color scheme like every
 //! other plot's.
 
-use kuva::plot::ScatterPlot;
-use kuva::render::color::Color;
-use kuva::render::layout::{AxisLabelOverlap, ComputedLayout, Layout};
-use kuva::render::plots::Plot as KuvaPlot;
-use kuva::render::render::{Primitive, Scene, render_multiple};
-
 use super::axis::Ticks;
-use super::file::file;
-use super::svg::{self, Canvas};
+use super::svg::{self, Canvas, Margins, Sheet};
 use super::{Axis, Drawing, Hue, LegendEntry};
 use crate::format;
 
 /// Opacity of the smallest value; below it a cell could not be told from none.
 const FAINTEST: f64 = 0.06;
-/// Above the plot and right of it.
-const TOP: f64 = 10.0;
-const RIGHT: f64 = 24.0;
 
 /// Cells over two axes, both linear.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,12 +54,11 @@ impl HeatMap {
     #[must_use]
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let left_out = self.cells.iter().filter(|cell| !cell.is_shown(self)).count();
-        let (wide, legend) = (self.render(&svg::WIDE, description)?, self.legend());
         Some(Drawing {
-            file: file(&wide, svg::WIDE.height, &legend, description),
-            wide,
+            wide: self.render(&svg::WIDE, description)?,
             narrow: self.render(&svg::NARROW, description)?,
-            legend,
+            live: None,
+            legend: self.legend(),
             left_out,
             thinned: false,
         })
@@ -83,43 +72,48 @@ impl HeatMap {
         self.shown().map(|cell| cell.value.abs()).fold(0.0, f64::max)
     }
 
-    fn render(&self, canvas: &Canvas, description: &str) -> Option<String> {
+    fn render(&self, canvas: &'static Canvas, description: &str) -> Option<String> {
         let ends = |of: fn(&HeatCell) -> [f64; 2]| self.shown().flat_map(of).collect::<Vec<_>>();
         let (across, along) = (ends(|cell| cell.x), ends(|cell| cell.y));
         let x = self.x.ticks(across.iter().copied(), canvas.x_ticks)?.close_to(across.iter().copied());
         let y = self.y.ticks(along.iter().copied(), canvas.x_ticks.min(6.0))?;
-        let layout = self.layout(canvas, &x, &y);
-        let computed = ComputedLayout::from_layout(&layout);
-        // As with rows of dots: kuva draws the axes around nothing, the cells follow from the same layout.
-        let mut scene = render_multiple(vec![KuvaPlot::Scatter(ScatterPlot::new())], layout);
+        let margins = Margins::around(canvas, y.longest_label());
+        let mut sheet = Sheet::new(canvas, canvas.height, margins, &x, y.ends);
+        sheet.axes((&self.x.label, &self.y.label), Some(&y));
         let largest = self.largest();
         for cell in self.shown() {
-            draw(&mut scene, cell, largest, (&x, &y), &computed);
+            self.draw_cell(&mut sheet, cell, largest, (&x, &y));
         }
-        svg::finish(scene, canvas, canvas.height, description)
+        Some(sheet.finish(description))
     }
 
-    fn layout(&self, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
-        let (label, tick) = (f64::from(canvas.label_size), f64::from(canvas.tick_size));
-        Layout::new(x.ends, y.ends)
-            .with_theme(svg::theme())
-            .with_width(canvas.width)
-            .with_height(canvas.height)
-            .with_label_size(canvas.label_size)
-            .with_tick_size(canvas.tick_size)
-            .with_force_margins(label + 4.2 * tick, RIGHT)
-            .with_force_margins_y(TOP, 26.0 + label + tick)
-            .with_x_axis_min(x.ends.0)
-            .with_x_axis_max(x.ends.1)
-            .with_y_axis_min(y.ends.0)
-            .with_y_axis_max(y.ends.1)
-            .with_x_tick_step(1.0)
-            .with_y_tick_step(1.0)
-            .with_x_tick_format(svg::labels(x))
-            .with_y_tick_format(svg::labels(y))
-            .with_x_label_overlap(AxisLabelOverlap::Thin)
-            .with_x_label(svg::plain(&self.x.label))
-            .with_y_label(svg::plain(&self.y.label))
+    fn draw_cell(&self, sheet: &mut Sheet<'_>, cell: &HeatCell, largest: f64, (x, y): (&Ticks, &Ticks)) {
+        let [left, right] = cell.x.map(|end| sheet.x(x.place(end)));
+        let [bottom, top] = cell.y.map(|end| sheet.y(y.place(end)));
+        let hue = if cell.value < 0.0 { Hue::Oracle } else { Hue::Estimate };
+        let share = if largest > 0.0 { cell.value.abs() / largest } else { 0.0 };
+        let range = |[from, to]: [f64; 2]| {
+            format!("{} to {}", format::significant(from, 3), format::significant(to, 3))
+        };
+        let says = format!(
+            "{}: {}\n{}: {}\n{}{}",
+            self.x.label,
+            range(cell.x),
+            self.y.label,
+            range(cell.y),
+            format::quantity(&format::significant(cell.value, 3), &self.unit),
+            if cell.outlined { format!(", {}", self.outline) } else { String::new() }
+        );
+        let paint = format!("fill=\"{}\" fill-opacity=\"{:.3}\"", hue.light(), opacity(share));
+        sheet.rectangle((left, bottom), (right, top), &paint, &says);
+        if cell.outlined {
+            // No fill and no pointer: the cell beneath says what it holds.
+            let paint = format!(
+                "fill=\"none\" stroke=\"{}\" stroke-width=\"1.2\" pointer-events=\"none\"",
+                Hue::Ink.light()
+            );
+            sheet.rectangle((left + 0.8, bottom - 0.8), (right - 0.8, top + 0.8), &paint, "");
+        }
     }
 
     fn legend(&self) -> Vec<LegendEntry> {
@@ -153,33 +147,6 @@ impl HeatMap {
 /// How opaque a value is, from its share of the largest.
 fn opacity(share: f64) -> f64 {
     FAINTEST + (1.0 - FAINTEST) * share.clamp(0.0, 1.0)
-}
-
-fn draw(
-    scene: &mut Scene,
-    cell: &HeatCell,
-    largest: f64,
-    (x, y): (&Ticks, &Ticks),
-    computed: &ComputedLayout,
-) {
-    let [left, right] = cell.x.map(|end| computed.map_x(x.place(end)));
-    let [bottom, top] = cell.y.map(|end| computed.map_y(y.place(end)));
-    let hue = if cell.value < 0.0 { Hue::Oracle } else { Hue::Estimate };
-    let share = if largest > 0.0 { cell.value.abs() / largest } else { 0.0 };
-    let rectangle = |fill: &str, opacity: Option<f64>, stroke: Option<Hue>, inset: f64| Primitive::Rect {
-        x: left + inset,
-        y: top + inset,
-        width: (right - left - 2.0 * inset).max(0.5),
-        height: (bottom - top - 2.0 * inset).max(0.5),
-        fill: Color::from(fill),
-        stroke: stroke.map(|hue| Color::from(hue.light())),
-        stroke_width: stroke.map(|_| 1.2),
-        opacity,
-    };
-    scene.add(rectangle(hue.light(), Some(opacity(share)), None, 0.0));
-    if cell.outlined {
-        scene.add(rectangle("none", None, Some(Hue::Ink), 0.8));
-    }
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! The colors of every plot, in a light and a dark version.
 //!
-//! kuva writes fixed colors into SVG attributes. Each hue has one such color that nothing else
+//! SVG attributes hold fixed colors. Each hue has one such color that nothing else
 //! uses, and the page's style sheet, generated from the same table, turns it into a variable that
 //! follows the reader's color scheme. A plot taken out of the page keeps its light colors.
 

@@ -9,9 +9,9 @@
 //! names in it, which come from files, are escaped like all other text.
 
 mod axis;
-mod file;
 mod heat;
 mod hue;
+mod live;
 mod rows;
 mod svg;
 mod thin;
@@ -23,6 +23,9 @@ pub use rows::{DotRow, DotRows};
 
 /// Beyond this many points in all its lines, a plot looks the same with fewer.
 const MOST_POINTS: usize = 2_000;
+
+/// A point that interrupts a line where nothing is missing from it.
+pub const BREAK: (f64, f64) = (f64::NAN, f64::NAN);
 
 /// Neighboring points of a series that can all be shown.
 type Run = Vec<(f64, f64)>;
@@ -50,7 +53,7 @@ pub struct Series {
     /// How its points are drawn.
     pub mark: Mark,
     /// Horizontal and vertical coordinates, in the units of the axes. What an axis cannot show
-    /// (not finite; not positive on a logarithmic axis) interrupts a line.
+    /// (not finite; not positive on a logarithmic axis) interrupts a line, and so does [`BREAK`].
     pub points: Vec<(f64, f64)>,
 }
 
@@ -83,12 +86,12 @@ pub struct LegendEntry {
 /// A finished plot.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Drawing {
-    /// SVG for a page that gives it about 720 CSS pixels.
+    /// SVG for a page that gives it about 960 CSS pixels.
     pub wide: String,
     /// SVG for a phone, which gives it about 350.
     pub narrow: String,
-    /// The wide one with its legend as an SVG file.
-    pub file: String,
+    /// Data of the interactive plot as JSON, which holds no `<`; `None` for a plot that stays as it is drawn.
+    pub live: Option<String>,
     /// The entries of the legend, in the order of the series.
     pub legend: Vec<LegendEntry>,
     /// How many points the axes could not show.
@@ -108,7 +111,7 @@ impl Plot {
             .series
             .iter()
             .flat_map(|series| &series.points)
-            .filter(|point| !self.can_show(**point))
+            .filter(|point| !point.0.is_nan() && !self.can_show(**point))
             .count();
         let mut thinned = false;
         let total: usize = runs.iter().flatten().map(Vec::len).sum();
@@ -124,11 +127,15 @@ impl Plot {
                 *run = kept;
             }
         }
-        let (wide, legend) = (svg::render(self, &runs, &svg::WIDE, description)?, self.legend());
+        let legend = self.legend();
+        let entry = |series: &Series| {
+            let swatch = svg::swatch(series);
+            legend.iter().position(|entry| entry.label == series.label && entry.swatch == swatch)
+        };
         Some(Drawing {
-            file: file::file(&wide, svg::WIDE.height, &legend, description),
-            wide,
+            wide: svg::render(self, &runs, &svg::WIDE, description)?,
             narrow: svg::render(self, &runs, &svg::NARROW, description)?,
+            live: self.live(entry),
             legend,
             left_out,
             thinned,

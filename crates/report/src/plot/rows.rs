@@ -3,21 +3,13 @@
 //! On a wide page the names stand left of the axis, on a narrow one each above its own row, where it
 //! has the whole width.
 
-use kuva::plot::ScatterPlot;
-use kuva::render::color::Color;
-use kuva::render::layout::{AxisLabelOverlap, ComputedLayout, Layout, TickFormat};
-use kuva::render::plots::Plot as KuvaPlot;
-use kuva::render::render::{Primitive, Scene, TextAnchor, render_multiple};
-
 use super::axis::Ticks;
-use super::file::file;
-use super::svg::{self, Canvas};
+use super::svg::{self, Canvas, LETTER, Margins, Pen, Sheet};
 use super::{Axis, Drawing, Hue, LegendEntry};
+use crate::format;
 
 /// Between the names and the axis on a wide page, in SVG units.
 const GAP: f64 = 10.0;
-/// About the width of a letter, in units of the font size.
-const LETTER: f64 = 0.56;
 /// Beyond this many letters a name is cut.
 const MOST_LETTERS: usize = 44;
 /// No axis is longer than so many rows: beyond, a table reads better than a plot.
@@ -76,12 +68,11 @@ impl DotRows {
     pub fn draw(&self, description: &str) -> Option<Drawing> {
         let rows = self.rows.get(..self.rows.len().min(MOST_ROWS)).unwrap_or_default();
         let left_out = rows.iter().flat_map(DotRow::values).filter(|value| !self.x.can_show(*value)).count();
-        let (wide, legend) = (self.render(rows, &WIDE, description)?, self.legend());
         Some(Drawing {
-            file: file(&wide, WIDE.height(rows), &legend, description),
-            wide,
+            wide: self.render(rows, &WIDE, description)?,
             narrow: self.render(rows, &NARROW, description)?,
-            legend,
+            live: None,
+            legend: self.legend(),
             left_out,
             thinned: false,
         })
@@ -96,120 +87,51 @@ impl DotRows {
         values.extend(self.level.iter().map(|level| level.1).filter(|level| self.x.can_show(*level)));
         let ticks = self.x.ticks(values.into_iter(), form.canvas.x_ticks)?;
 
-        let height = form.height(rows);
-        let layout = self.layout(rows, form, &ticks, height);
-        let computed = ComputedLayout::from_layout(&layout);
-        // kuva draws axes only around a plot; the marks are drawn below, from the same layout.
-        let mut scene = render_multiple(vec![KuvaPlot::Scatter(ScatterPlot::new())], layout);
+        let mut sheet =
+            Sheet::new(form.canvas, form.height(rows), form.margins(rows), &ticks, (0.0, rows.len() as f64));
+        sheet.axes((&self.x.label, ""), None);
         for (index, row) in rows.iter().enumerate() {
-            self.draw_row(&mut scene, row, place(index, rows.len()), form, &ticks, &computed);
+            self.draw_row(&mut sheet, row, place(index, rows.len()), form, &ticks);
         }
         if let Some((_, level)) = self.level.as_ref().filter(|level| self.x.can_show(level.1)) {
-            let x = computed.map_x(ticks.place(*level));
-            scene.add(Primitive::Line {
-                x1: x,
-                y1: computed.margin_top,
-                x2: x,
-                y2: computed.height - computed.margin_bottom,
-                stroke: Color::from(Hue::Data.light()),
-                stroke_width: form.canvas.line_width,
-                stroke_dasharray: Some(svg::DASHES.to_owned()),
-            });
+            let x = sheet.x(ticks.place(*level));
+            let pen = Pen { hue: Hue::Data, width: form.canvas.line_width, dashes: Some(svg::DASHES) };
+            sheet.line((x, sheet.y(rows.len() as f64)), (x, sheet.y(0.0)), pen);
         }
-        svg::finish(scene, form.canvas, height, description)
+        Some(sheet.finish(description))
     }
 
-    fn layout(&self, rows: &[DotRow], form: &Form, ticks: &Ticks, height: f64) -> Layout {
-        let count = rows.len() as f64;
-        Layout::new(ticks.ends, (0.0, count))
-            .with_theme(svg::theme())
-            .with_width(form.canvas.width)
-            .with_height(height)
-            .with_label_size(form.canvas.label_size)
-            .with_tick_size(form.canvas.tick_size)
-            .with_force_margins(form.left(rows), RIGHT)
-            .with_force_margins_y(TOP, form.bottom())
-            .with_x_axis_min(ticks.ends.0)
-            .with_x_axis_max(ticks.ends.1)
-            .with_y_axis_min(0.0)
-            .with_y_axis_max(count)
-            .with_x_tick_step(1.0)
-            .with_y_tick_step(1.0)
-            .with_x_tick_format(svg::labels(ticks))
-            .with_y_tick_format(TickFormat::Custom(std::sync::Arc::new(|_| String::new())))
-            .with_x_label_overlap(AxisLabelOverlap::Thin)
-            .with_x_label(svg::plain(&self.x.label))
-    }
-
-    fn draw_row(
-        &self,
-        scene: &mut Scene,
-        row: &DotRow,
-        place: f64,
-        form: &Form,
-        ticks: &Ticks,
-        computed: &ComputedLayout,
-    ) {
+    fn draw_row(&self, sheet: &mut Sheet<'_>, row: &DotRow, place: f64, form: &Form, ticks: &Ticks) {
         let size = form.canvas.tick_size;
-        let half_letter = f64::from(size) * 0.36;
-        let middle = computed.map_y(place);
-        let (left, y, anchor, marks) = if form.above {
-            (computed.margin_left + 4.0, middle - 5.0, TextAnchor::Start, middle + form.row_height * 0.24)
+        let (middle, left) = (sheet.y(place), sheet.x(ticks.ends.0));
+        let (x, y, anchor, marks) = if form.above {
+            (left + 4.0, middle - 5.0, "start", middle + form.row_height * 0.24)
         } else {
-            (computed.margin_left - GAP, middle + half_letter, TextAnchor::End, middle)
+            (left - GAP, middle + 0.36 * size, "end", middle)
         };
-        scene.add(Primitive::Text {
-            x: left,
-            y,
-            content: shortened(&row.name),
-            size,
-            anchor,
-            rotate: None,
-            bold: false,
-            color: Some(Color::from(Hue::Ink.light())),
-        });
-        let at = |value: Option<f64>| {
-            value.filter(|v| self.x.can_show(*v)).map(|v| computed.map_x(ticks.place(v)))
-        };
+        sheet.text((x, y), &shortened(&row.name), size, anchor);
+        let at = |value: Option<f64>| value.filter(|v| self.x.can_show(*v)).map(|v| sheet.x(ticks.place(v)));
         let (value, extreme) = (at(row.value), at(row.extreme));
-        let bar = |x1: f64, x2: f64, hue: Hue| Primitive::Line {
-            x1,
-            y1: marks,
-            x2,
-            y2: marks,
-            stroke: Color::from(hue.light()),
-            stroke_width: form.canvas.line_width,
-            stroke_dasharray: None,
-        };
         let ends = row.interval.map(|[low, high]| (at(Some(low)), at(Some(high))));
+        let pen = |hue| Pen { hue, width: form.canvas.line_width, dashes: None };
         if let Some((Some(low), Some(high))) = ends {
-            scene.add(bar(low, high, Hue::Estimate));
+            sheet.line((low, marks), (high, marks), pen(Hue::Estimate));
         }
         let radius = form.canvas.dot_radius;
+        let says = |label: &str, value: Option<f64>| {
+            format!("{}\n{label}: {}", row.name, format::significant(value.unwrap_or(f64::NAN), 4))
+        };
         if let (Some(value), Some(extreme)) = (value, extreme) {
-            scene.add(bar(value, extreme, Hue::Second));
+            sheet.line((value, marks), (extreme, marks), pen(Hue::Second));
         }
         if let Some(x) = extreme {
-            scene.add(Primitive::Circle {
-                cx: x,
-                cy: marks,
-                r: radius + 2.6,
-                fill: Color::from("none"),
-                fill_opacity: None,
-                stroke: Some(Color::from(Hue::Second.light())),
-                stroke_width: Some(form.canvas.line_width),
-            });
+            let ring = Some(form.canvas.line_width);
+            let says = says(&self.extreme_label, row.extreme);
+            sheet.circle((x, marks), radius + 2.6, Hue::Second, ring, &says);
         }
         if let Some(x) = value {
-            scene.add(Primitive::Circle {
-                cx: x,
-                cy: marks,
-                r: radius,
-                fill: Color::from(Hue::Estimate.light()),
-                fill_opacity: None,
-                stroke: None,
-                stroke_width: None,
-            });
+            let says = says(&self.value_label, row.value);
+            sheet.circle((x, marks), radius, Hue::Estimate, None, &says);
         }
     }
 
@@ -239,28 +161,18 @@ impl DotRows {
 
 /// Above the first row.
 const TOP: f64 = 8.0;
-/// Right of the axis: half of the last tick's label.
-const RIGHT: f64 = 24.0;
 
 impl Form {
     fn height(&self, rows: &[DotRow]) -> f64 {
-        rows.len() as f64 * self.row_height + self.bottom() + TOP
+        rows.len() as f64 * self.row_height + svg::below(self.canvas) + TOP
     }
 
-    /// Below the last row: ticks, their labels and the axis's label.
-    fn bottom(&self) -> f64 {
-        26.0 + f64::from(self.canvas.tick_size) + f64::from(self.canvas.label_size)
-    }
-
-    /// Left of the axis.
-    fn left(&self, rows: &[DotRow]) -> f64 {
-        if self.above {
-            // Half of the first tick's label.
-            return 24.0;
-        }
+    /// Right of the axis, and left of it on a narrow page, half of a tick's label.
+    fn margins(&self, rows: &[DotRow]) -> Margins {
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
-        let names = letters as f64 * LETTER * f64::from(self.canvas.tick_size);
-        names + GAP + 4.0
+        let names = letters as f64 * LETTER * self.canvas.tick_size;
+        let left = if self.above { 24.0 } else { names + GAP + 4.0 };
+        Margins { left, top: TOP, right: 24.0, bottom: svg::below(self.canvas) }
     }
 }
 
@@ -270,9 +182,8 @@ fn place(index: usize, count: usize) -> f64 {
 }
 
 fn shortened(name: &str) -> String {
-    let name = name.replace('$', "");
     if name.chars().count() <= MOST_LETTERS {
-        return name;
+        return name.to_owned();
     }
     let mut short: String = name.chars().take(MOST_LETTERS - 1).collect();
     short.push('…');
@@ -345,12 +256,13 @@ mod tests {
     }
 
     #[test]
-    fn long_names_are_cut_and_never_mathematics() {
+    fn long_names_are_cut() {
         let mut plot = rows(&[(Some(1e-9), None)]);
-        plot.rows[0].name = format!("$x$ {}", "y".repeat(100));
+        plot.rows[0].name = format!("x {}", "y".repeat(100));
         let drawing = plot.draw("").unwrap();
-        assert!(drawing.wide.contains("x yyy") && drawing.wide.contains("y…<"));
-        assert!(!drawing.wide.contains(&"y".repeat(44)));
+        assert!(drawing.wide.contains(">x yyy") && drawing.wide.contains("y…<"));
+        // Under the pointer stands the whole name.
+        assert!(drawing.wide.contains(&format!("<title>x {}", "y".repeat(100))));
     }
 
     #[test]

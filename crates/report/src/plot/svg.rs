@@ -1,14 +1,6 @@
-//! From a plot to SVG text, by kuva.
+//! SVG text: a sheet with axes, and the marks that are put upon it.
 
-use std::sync::Arc;
-
-use kuva::backend::svg::SvgBackend;
-use kuva::plot::{LinePlot, ScatterPlot};
-use kuva::render::annotations::ShadedRegion;
-use kuva::render::layout::{AxisLabelOverlap, Layout, TickFormat};
-use kuva::render::plots::Plot as KuvaPlot;
-use kuva::render::render::{Primitive, Scene, render_multiple};
-use kuva::render::theme::Theme;
+use std::fmt::Write;
 
 use super::axis::Ticks;
 use super::{Hue, Mark, Plot, Run, Series};
@@ -19,8 +11,8 @@ pub(super) struct Canvas {
     pub(super) width: f64,
     pub(super) height: f64,
     /// Font sizes of the axis labels and of the ticks.
-    pub(super) label_size: u32,
-    pub(super) tick_size: u32,
+    pub(super) label_size: f64,
+    pub(super) tick_size: f64,
     /// About how many ticks there is room for.
     pub(super) x_ticks: f64,
     y_ticks: f64,
@@ -30,11 +22,11 @@ pub(super) struct Canvas {
 
 pub(super) const WIDE: Canvas = Canvas {
     class: "plot wide",
-    width: 720.0,
+    width: 960.0,
     height: 400.0,
-    label_size: 14,
-    tick_size: 13,
-    x_ticks: 8.0,
+    label_size: 14.0,
+    tick_size: 13.0,
+    x_ticks: 10.0,
     y_ticks: 6.0,
     dot_radius: 3.2,
     line_width: 2.0,
@@ -44,8 +36,8 @@ pub(super) const NARROW: Canvas = Canvas {
     class: "plot narrow",
     width: 360.0,
     height: 290.0,
-    label_size: 13,
-    tick_size: 12,
+    label_size: 13.0,
+    tick_size: 12.0,
     x_ticks: 5.0,
     y_ticks: 5.0,
     dot_radius: 2.6,
@@ -57,142 +49,280 @@ pub(super) const NARROW: Canvas = Canvas {
 pub(super) const DASHES: &str = "8 8";
 const DOTS: &str = "2 3";
 
-/// `runs` holds the points of each series of the plot, in unbroken stretches.
-pub(super) fn render(plot: &Plot, runs: &[Vec<Run>], canvas: &Canvas, description: &str) -> Option<String> {
-    let points = || runs.iter().flatten().flatten();
-    let x_ticks = plot.x.ticks(points().map(|p| p.0), canvas.x_ticks)?.close_to(points().map(|p| p.0));
-    let y_ticks = plot.y.ticks(points().map(|p| p.1), canvas.y_ticks)?;
+/// About the width of a letter, in units of the font size.
+pub(super) const LETTER: f64 = 0.56;
+/// Length of a tick, and the room between a tick and what it says.
+const TICK: f64 = 5.0;
+const ROOM: f64 = 4.0;
 
-    let mut layers = Vec::new();
+/// Room around the axes, in SVG units.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Margins {
+    pub(super) left: f64,
+    pub(super) top: f64,
+    pub(super) right: f64,
+    pub(super) bottom: f64,
+}
+
+impl Margins {
+    /// Beside rows of ticks with labels: `letters` is the length of the longest at the left.
+    pub(super) fn around(canvas: &Canvas, letters: usize) -> Self {
+        let ticks = TICK + ROOM + letters as f64 * LETTER * canvas.tick_size;
+        Self { left: 1.4 * canvas.label_size + ROOM + ticks, top: 10.0, right: 24.0, bottom: below(canvas) }
+    }
+}
+
+/// Room for the ticks of the horizontal axis, their labels and the axis's label.
+pub(super) fn below(canvas: &Canvas) -> f64 {
+    26.0 + canvas.tick_size + canvas.label_size
+}
+
+/// How a line is drawn.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pen {
+    pub(super) hue: Hue,
+    pub(super) width: f64,
+    pub(super) dashes: Option<&'static str>,
+}
+
+/// A drawing in the making. Marks are placed in ticks of its axes, as [`Ticks::place`] has them.
+pub(super) struct Sheet<'a> {
+    canvas: &'static Canvas,
+    height: f64,
+    margins: Margins,
+    x: &'a Ticks,
+    y_ends: (f64, f64),
+    body: String,
+}
+
+impl<'a> Sheet<'a> {
+    pub(super) fn new(
+        canvas: &'static Canvas,
+        height: f64,
+        margins: Margins,
+        x: &'a Ticks,
+        y_ends: (f64, f64),
+    ) -> Self {
+        Self { canvas, height, margins, x, y_ends, body: String::new() }
+    }
+
+    /// Horizontal place in SVG units.
+    pub(super) fn x(&self, place: f64) -> f64 {
+        let width = self.canvas.width - self.margins.left - self.margins.right;
+        self.margins.left + width * (place - self.x.ends.0) / (self.x.ends.1 - self.x.ends.0)
+    }
+
+    /// Vertical place in SVG units.
+    pub(super) fn y(&self, place: f64) -> f64 {
+        let bottom = self.height - self.margins.bottom;
+        bottom - (bottom - self.margins.top) * (place - self.y_ends.0) / (self.y_ends.1 - self.y_ends.0)
+    }
+
+    /// Writes text that has been escaped already, or holds nothing to escape.
+    fn write(&mut self, text: std::fmt::Arguments<'_>) {
+        // Writing to memory does not fail.
+        let _ = self.body.write_fmt(text);
+    }
+
+    /// Axes, their grid and ticks, and their labels; `y` where the vertical axis has values.
+    pub(super) fn axes(&mut self, labels: (&str, &str), y: Option<&Ticks>) {
+        let (left, right) = (self.margins.left, self.canvas.width - self.margins.right);
+        let (top, bottom) = (self.margins.top, self.height - self.margins.bottom);
+        let whole = |ends: (f64, f64)| (ends.0.ceil() as i64..=ends.1.floor() as i64).map(|k| k as f64);
+        let grid = Pen { hue: Hue::Grid, width: 1.0, dashes: None };
+        let axis = Pen { hue: Hue::Axis, width: 1.0, dashes: None };
+        let x_places: Vec<f64> = whole(self.x.ends).collect();
+        for place in &x_places {
+            self.line((self.x(*place), top), (self.x(*place), bottom), grid);
+        }
+        for place in whole(self.y_ends) {
+            self.line((left, self.y(place)), (right, self.y(place)), grid);
+        }
+        self.line((left, top), (left, bottom), axis);
+        self.line((left, bottom), (right, bottom), axis);
+
+        let size = self.canvas.tick_size;
+        let said: Vec<String> = x_places.iter().map(|place| self.x.label(*place)).collect();
+        let widest = said.iter().map(|words| words.chars().count()).max().unwrap_or(0) as f64 * LETTER * size;
+        let spacing = (self.x(1.0) - self.x(0.0)).max(1.0);
+        let every = ((widest + 2.0 * ROOM) / spacing).ceil().max(1.0) as usize;
+        for (place, words) in x_places.iter().zip(&said).step_by(every) {
+            let x = self.x(*place);
+            self.line((x, bottom), (x, bottom + TICK), axis);
+            self.text((x, bottom + TICK + ROOM + 0.8 * size), words, size, "middle");
+        }
+        for place in y.map(|y| whole(y.ends)).into_iter().flatten() {
+            let at = self.y(place);
+            let words = y.map(|y| y.label(place)).unwrap_or_default();
+            self.line((left - TICK, at), (left, at), axis);
+            self.text((left - TICK - ROOM, at + 0.36 * size), &words, size, "end");
+        }
+        let size = self.canvas.label_size;
+        self.text(((left + right) / 2.0, self.height - 0.45 * size), &plain(labels.0), size, "middle");
+        if !labels.1.is_empty() {
+            let (x, y) = (1.1 * size, (top + bottom) / 2.0);
+            let label = escape(&plain(labels.1));
+            self.write(format_args!(
+                "<text x=\"{x:.1}\" y=\"{y:.1}\" font-size=\"{size}\" text-anchor=\"middle\" \
+                 transform=\"rotate(-90 {x:.1} {y:.1})\">{label}</text>"
+            ));
+        }
+    }
+
+    pub(super) fn text(&mut self, at: (f64, f64), words: &str, size: f64, anchor: &str) {
+        self.write(format_args!(
+            "<text x=\"{:.1}\" y=\"{:.1}\" font-size=\"{size}\" text-anchor=\"{anchor}\">{}</text>",
+            at.0,
+            at.1,
+            escape(words)
+        ));
+    }
+
+    pub(super) fn line(&mut self, from: (f64, f64), to: (f64, f64), pen: Pen) {
+        self.write(format_args!(
+            "<line x1=\"{:.2}\" y1=\"{:.2}\" x2=\"{:.2}\" y2=\"{:.2}\" stroke=\"{}\" stroke-width=\"{}\"{} />",
+            from.0,
+            from.1,
+            to.0,
+            to.1,
+            pen.hue.light(),
+            pen.width,
+            dashes(pen.dashes)
+        ));
+    }
+
+    fn path(&mut self, points: &[(f64, f64)], pen: Pen) {
+        self.write(format_args!("<path d=\""));
+        for (index, (x, y)) in points.iter().enumerate() {
+            let (x, y) = (self.x(*x), self.y(*y));
+            self.write(format_args!("{}{x:.2} {y:.2}", if index == 0 { 'M' } else { 'L' }));
+        }
+        self.write(format_args!(
+            "\" fill=\"none\" stroke=\"{}\" stroke-width=\"{}\" stroke-linejoin=\"round\"{} />",
+            pen.hue.light(),
+            pen.width,
+            dashes(pen.dashes)
+        ));
+    }
+
+    /// A circle about a place in SVG units; a ring where `ring` gives its line's width. `says` is shown under the
+    /// pointer.
+    pub(super) fn circle(&mut self, at: (f64, f64), radius: f64, hue: Hue, ring: Option<f64>, says: &str) {
+        let color = hue.light();
+        let paint = match ring {
+            Some(width) => format!("fill=\"none\" stroke=\"{color}\" stroke-width=\"{width}\""),
+            None => format!("fill=\"{color}\""),
+        };
+        self.write(format_args!("<circle cx=\"{:.2}\" cy=\"{:.2}\" r=\"{radius}\" {paint}", at.0, at.1));
+        self.close("circle", says);
+    }
+
+    /// A rectangle between two corners in SVG units.
+    pub(super) fn rectangle(&mut self, one: (f64, f64), other: (f64, f64), paint: &str, says: &str) {
+        self.write(format_args!(
+            "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" {paint}",
+            one.0.min(other.0),
+            one.1.min(other.1),
+            (one.0 - other.0).abs().max(0.5),
+            (one.1 - other.1).abs().max(0.5)
+        ));
+        self.close("rect", says);
+    }
+
+    fn close(&mut self, element: &str, says: &str) {
+        if says.is_empty() {
+            self.write(format_args!(" />"));
+        } else {
+            self.write(format_args!("><title>{}</title></{element}>", escape(says)));
+        }
+    }
+
+    /// The SVG, whose size, font and colors the page chooses.
+    pub(super) fn finish(self, description: &str) -> String {
+        format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{}\" viewBox=\"0 0 {} {}\" \
+             font-family=\"sans-serif\" fill=\"{}\" role=\"img\" aria-label=\"{}\">{}</svg>",
+            self.canvas.class,
+            self.canvas.width,
+            self.height,
+            Hue::Ink.light(),
+            escape(description),
+            self.body
+        )
+    }
+}
+
+fn dashes(pattern: Option<&str>) -> String {
+    pattern.map(|pattern| format!(" stroke-dasharray=\"{pattern}\"")).unwrap_or_default()
+}
+
+/// `runs` holds the points of each series of the plot, in unbroken stretches.
+pub(super) fn render(
+    plot: &Plot,
+    runs: &[Vec<Run>],
+    canvas: &'static Canvas,
+    description: &str,
+) -> Option<String> {
+    let points = || runs.iter().flatten().flatten();
+    let x = plot.x.ticks(points().map(|p| p.0), canvas.x_ticks)?.close_to(points().map(|p| p.0));
+    let y = plot.y.ticks(points().map(|p| p.1), canvas.y_ticks)?;
+    let margins = Margins::around(canvas, y.longest_label());
+    let mut sheet = Sheet::new(canvas, canvas.height, margins, &x, y.ends);
+    let within = |value| x.place(value).clamp(x.ends.0, x.ends.1);
+    for (from, to) in plot.shaded.iter().filter(|(from, to)| plot.x.can_show(*from) && plot.x.can_show(*to)) {
+        let [left, right] = [from, to].map(|end| sheet.x(within(*end)));
+        let paint = format!("fill=\"{}\" fill-opacity=\"0.14\"", Hue::Shade.light());
+        sheet.rectangle((left, sheet.y(y.ends.1)), (right, sheet.y(y.ends.0)), &paint, "");
+    }
+    sheet.axes((&plot.x.label, &plot.y.label), Some(&y));
     for (series, runs) in plot.series.iter().zip(runs) {
         for run in runs {
-            let placed = run.iter().map(|(x, y)| (x_ticks.place(*x), y_ticks.place(*y))).collect();
-            layers.push(layer(series, placed, &x_ticks, canvas));
+            let placed: Run = run.iter().map(|point| (x.place(point.0), y.place(point.1))).collect();
+            put(&mut sheet, series, &placed, x.ends);
         }
     }
-    let mut layout = layout(plot, canvas, &x_ticks, &y_ticks);
-    let within = |x| x_ticks.place(x).clamp(x_ticks.ends.0, x_ticks.ends.1);
-    for (from, to) in &plot.shaded {
-        if plot.x.can_show(*from) && plot.x.can_show(*to) {
-            layout = layout.with_shaded_region(
-                ShadedRegion::vertical(within(*from), within(*to))
-                    .with_color(Hue::Shade.light())
-                    .with_opacity(0.14),
-            );
-        }
-    }
-
-    finish(render_multiple(layers, layout), canvas, canvas.height, description)
+    Some(sheet.finish(description))
 }
 
-/// The scene as SVG whose size, font and colors the page chooses.
-pub(super) fn finish(mut scene: Scene, canvas: &Canvas, height: f64, description: &str) -> Option<String> {
-    // kuva numbers its clip paths with a counter of the process, which would make the text depend
-    // on what was drawn before. Nothing here lies outside the axes, so nothing is to be clipped.
-    scene.defs.clear();
-    scene.elements.retain(|e| !matches!(e, Primitive::ClipStart { .. } | Primitive::ClipEnd));
-    let svg = SvgBackend::new().render_scene(&scene);
-
-    // kuva's opening tag fixes the size and the font; the page is to choose both.
-    let body = svg.split_once('>').map(|(_, body)| body)?;
-    Some(format!(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"{}\" viewBox=\"0 0 {} {}\" \
-         font-family=\"sans-serif\" fill=\"{}\" role=\"img\" aria-label=\"{}\">{body}",
-        canvas.class,
-        canvas.width,
-        height,
-        Hue::Ink.light(),
-        escape(description),
-    ))
-}
-
-/// kuva's theme in the hues that the page's style sheet knows.
-pub(super) fn theme() -> Theme {
-    Theme {
-        background: "none".into(),
-        axis_color: Hue::Axis.light().into(),
-        tick_color: Hue::Axis.light().into(),
-        grid_color: Hue::Grid.light().into(),
-        text_color: Hue::Ink.light().into(),
-        ..Theme::light()
-    }
-}
-
-pub(super) fn labels(ticks: &Ticks) -> TickFormat {
-    let ticks = ticks.clone();
-    TickFormat::Custom(Arc::new(move |position| ticks.label(position)))
-}
-
-fn layout(plot: &Plot, canvas: &Canvas, x: &Ticks, y: &Ticks) -> Layout {
-    Layout::new(x.ends, y.ends)
-        .with_theme(theme())
-        .with_width(canvas.width)
-        .with_height(canvas.height)
-        .with_label_size(canvas.label_size)
-        .with_tick_size(canvas.tick_size)
-        .with_x_axis_min(x.ends.0)
-        .with_x_axis_max(x.ends.1)
-        .with_y_axis_min(y.ends.0)
-        .with_y_axis_max(y.ends.1)
-        .with_x_tick_step(1.0)
-        .with_y_tick_step(1.0)
-        .with_x_tick_format(labels(x))
-        .with_y_tick_format(labels(y))
-        .with_x_label_overlap(AxisLabelOverlap::Thin)
-        .with_x_label(plain(&plot.x.label))
-        .with_y_label(plain(&plot.y.label))
-}
-
-fn layer(series: &Series, points: Run, x: &Ticks, canvas: &Canvas) -> KuvaPlot {
-    let level = || {
-        let height = points.first().map_or(0.0, |point| point.1);
-        vec![(x.ends.0, height), (x.ends.1, height)]
-    };
-    let line = |points: Run, width: f64, dashes: Option<&str>| {
-        let line = LinePlot::new().with_data(points).with_color(series.hue.light()).with_stroke_width(width);
-        KuvaPlot::Line(match dashes {
-            Some(dashes) => line.with_line_style(kuva::plot::LineStyle::Custom(dashes.to_owned())),
-            None => line,
-        })
-    };
-    let width = canvas.line_width;
+/// Draws an unbroken stretch of a series.
+fn put(sheet: &mut Sheet<'_>, series: &Series, points: &[(f64, f64)], ends: (f64, f64)) {
+    let pen = |dashes| Pen { hue: series.hue, width: sheet.canvas.line_width, dashes };
+    let height = points.first().map_or(0.0, |point| point.1);
+    let level = [(ends.0, height), (ends.1, height)];
     match series.mark {
-        Mark::Level => line(level(), width, Some(DASHES)),
-        Mark::DottedLevel => line(level(), width, Some(DOTS)),
-        // A line needs two points; a single one is to be seen all the same.
-        Mark::Dots | Mark::Line | Mark::Dashes | Mark::DottedLine
-            if series.mark == Mark::Dots || points.len() == 1 =>
-        {
-            KuvaPlot::Scatter(
-                ScatterPlot::new()
-                    .with_data(points)
-                    .with_color(series.hue.light())
-                    .with_size(canvas.dot_radius),
-            )
+        Mark::Level => sheet.path(&level, pen(Some(DASHES))),
+        Mark::DottedLevel => sheet.path(&level, pen(Some(DOTS))),
+        Mark::Line | Mark::Dashes | Mark::DottedLine if points.len() > 1 => {
+            sheet.path(points, pen(pattern(series.mark)));
         }
-        Mark::Dashes => line(points, width, Some(DASHES)),
-        Mark::DottedLine => line(points, width, Some(DOTS)),
-        Mark::Dots | Mark::Line => line(points, width, None),
+        // A line needs two points; a single one is to be seen all the same.
+        Mark::Dots | Mark::Line | Mark::Dashes | Mark::DottedLine => {
+            for point in points {
+                let at = (sheet.x(point.0), sheet.y(point.1));
+                sheet.circle(at, sheet.canvas.dot_radius, series.hue, None, "");
+            }
+        }
     }
 }
 
-/// What stands before a series' name in the legend.
+fn pattern(mark: Mark) -> Option<&'static str> {
+    match mark {
+        Mark::Dashes | Mark::Level => Some(DASHES),
+        Mark::DottedLine | Mark::DottedLevel => Some(DOTS),
+        Mark::Dots | Mark::Line => None,
+    }
+}
+
+/// Sample of a series' mark, for the legend.
 pub(super) fn swatch(series: &Series) -> String {
     let color = series.hue.light();
-    let line = |width: &str, dashes: &str| {
-        format!(
-            "<line x1=\"1\" y1=\"6\" x2=\"27\" y2=\"6\" stroke=\"{color}\" \
-             stroke-width=\"{width}\"{dashes} />"
-        )
-    };
-    let dashed = |pattern: &str| line("2", &format!(" stroke-dasharray=\"{pattern}\""));
-    let shape = match series.mark {
+    swatch_of(&match series.mark {
         Mark::Dots => format!("<circle cx=\"14\" cy=\"6\" r=\"3.5\" fill=\"{color}\" />"),
-        Mark::Line => line("2", ""),
-        Mark::Dashes | Mark::Level => dashed(DASHES),
-        Mark::DottedLine | Mark::DottedLevel => dashed(DOTS),
-    };
-    swatch_of(&shape)
+        mark => format!(
+            "<line x1=\"1\" y1=\"6\" x2=\"27\" y2=\"6\" stroke=\"{color}\" stroke-width=\"2\"{} />",
+            dashes(pattern(mark))
+        ),
+    })
 }
 
 pub(super) fn swatch_of(shape: &str) -> String {
@@ -202,11 +332,11 @@ pub(super) fn swatch_of(shape: &str) -> String {
     )
 }
 
-/// Axis labels may quote a unit from a file. kuva escapes them, but reads `$…$` as mathematics.
-pub(super) fn plain(label: &str) -> String {
-    label.chars().filter(|c| *c != '$').take(60).collect()
+/// An axis label of bearable length: it may quote a unit from a file.
+fn plain(label: &str) -> String {
+    label.chars().take(60).collect()
 }
 
-pub(super) fn escape(text: &str) -> String {
+fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

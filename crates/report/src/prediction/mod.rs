@@ -16,7 +16,7 @@ use runs::result::{
 };
 
 use crate::figures::Figure;
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::parse::Prediction;
 use crate::plot::Hue;
 use crate::tables::{Fact, fact, whole};
@@ -60,9 +60,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, prediction: &Prediction) -> Result<St
             verdict: headline(result),
             origin: origin(result),
             warnings: absences(result),
+            next: Vec::new(),
             pipelines: Vec::new(),
             data: Vec::new(),
-            findings: &[],
+            findings: Vec::new(),
             files: [
                 ("Resolved configuration (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -73,7 +74,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, prediction: &Prediction) -> Result<St
         reading: scores::READING,
         problems: result.problems.iter().map(|row| view(row, prediction)).collect(),
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 fn view<'a>(row: &'a ProblemRow, prediction: &Prediction) -> ProblemView<'a> {

@@ -1,4 +1,4 @@
-//! The plots of many runs: oracle gap by setting, damping ratio by run.
+//! The plots of many runs: distance from the reference by setting, damping ratio by run.
 
 use runs::result::{RunTable, RunTableRow};
 
@@ -85,7 +85,7 @@ fn gaps(table: &RunTable) -> Option<Figure> {
     let mut tolerances: Vec<f64> = table.rows.iter().filter_map(|row| row.tolerance_percent).collect();
     tolerances.dedup();
     let plot = DotRows {
-        x: Axis::log("oracle gap: difference from least squares in ζ (%)"),
+        x: Axis::log("distance from the reference (least squares) in ζ (%)"),
         rows: groups
             .iter()
             .map(|group| DotRow {
@@ -111,11 +111,11 @@ fn gaps(table: &RunTable) -> Option<Figure> {
     let mut notes = Vec::new();
     if groups.iter().any(|group| middle(group) < LEAST_PERCENT || worst(group) < LEAST_PERCENT) {
         notes.push(format!(
-            "Gaps below {}, where the digits of a double end, are drawn there, zero among them.",
+            "Distances below {}, where the digits of a double end, are drawn there, zero among them.",
             format::percent(LEAST_PERCENT)
         ));
     }
-    figure("gaps", "Oracle gap by setting", explanation, &plot, notes, table)
+    figure("gaps", "Distance from the reference by setting", explanation, &plot, notes, table)
 }
 
 fn ratios(table: &RunTable) -> Option<Figure> {
@@ -141,7 +141,7 @@ fn ratios(table: &RunTable) -> Option<Figure> {
         },
     };
     let explanation = "One row for each run. Where the dashed line is missing, the runs have different envelopes, and \
-                       so different oracles.";
+                       so different references.";
     let header = ["run", "setting", "zeta", "low_95", "high_95", "oracle_zeta"];
     let text = csv(&header, &rows, |row| {
         let [low, high] = row.zeta_interval_95.map_or([None, None], |ends| ends.map(Some));

@@ -11,7 +11,7 @@ use runs::result::{RunState, RunTable, SweepAxis};
 
 use crate::figures::Figure;
 use crate::format::count;
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::plot::Hue;
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
@@ -25,8 +25,8 @@ const MOST_ROWS: usize = 2_000;
 const MOST_TEXT: usize = 300_000;
 
 /// How to read the table.
-const READING: &str = "The oracle gap is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same envelope; the \
-     worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
+const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
+     envelope; the worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
      residuals. A run passes where every seed is within its stated tolerance.";
 
 #[derive(Template)]
@@ -58,9 +58,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
             verdict: headline(table),
             origin: origin(table),
             warnings: warnings(table),
+            next: Vec::new(),
             pipelines: Vec::new(),
             data: Vec::new(),
-            findings: &[],
+            findings: Vec::new(),
             files: [
                 ("Configuration that every run starts from (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -79,7 +80,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
         numbers: cells::NUMBERS.len(),
         rows: table.rows.iter().take(shown).map(|row| cells::row(table, row)).collect(),
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 fn headline(table: &RunTable) -> Verdict {

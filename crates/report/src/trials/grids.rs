@@ -57,7 +57,7 @@ fn by_size(
     };
     Grid {
         title: String::new(),
-        corner: "Hidden, size in noise units",
+        corner: "Hidden, size in × noise",
         columns: sizes.iter().map(|value| size(*value)).collect(),
         rows: names.iter().map(row).collect(),
     }
@@ -223,7 +223,7 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
                     .map(str::to_owned)
                     .to_vec(),
                 rows: [
-                    ("Held-out error over floor, of right answers with a name", ratio, ""),
+                    ("Held-out error, × noise, of right answers with a name", ratio, ""),
                     ("Wall time of an answer", seconds, "s"),
                 ]
                 .map(|(name, of, unit)| {

@@ -11,10 +11,10 @@ use runs::result::{BarRow, FailureRow, TrialsResult};
 
 use crate::figures::Figure;
 use crate::format::{count, fixed, interval, quantity, significant};
-use crate::frame::Frame;
+use crate::frame::{Frame, finish};
 use crate::plot::Hue;
 use crate::verdict::{Origin, Tone, Verdict};
-use crate::{ReportError, RunTexts};
+use crate::{ReportError, RunTexts, remarks};
 
 /// Failures shown; `cases.csv` has all.
 const MOST_FAILURES: usize = 300;
@@ -67,7 +67,7 @@ struct BarView<'a> {
     bar: String,
     measured: String,
     cases: String,
-    state: String,
+    state: &'a str,
     class: &'static str,
 }
 
@@ -94,9 +94,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
                 note: "Made by the program; where measured records or a physics engine take part, the bank says so.",
             },
             warnings: warnings(result),
+            next: next(result),
             pipelines: Vec::new(),
             data: Vec::new(),
-            findings: &[],
+            findings: Vec::new(),
             files: [
                 ("Resolved configuration (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
@@ -122,7 +123,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
         },
         failures: result.failures.iter().take(shown).map(failure).collect(),
     };
-    Ok(page.render()?)
+    finish(&page)
 }
 
 /// A share in percent.
@@ -155,13 +156,20 @@ fn bar(row: &BarRow) -> BarView<'_> {
         }
         (true, _) => number(row.value),
     };
-    let (class, state) = match (row.state.as_str(), row.missed_beyond_chance) {
-        ("met", _) => ("good", "met".to_owned()),
-        ("not met", true) => ("bad", "not met".to_owned()),
-        ("not met", false) => ("caution", "not met, within chance".to_owned()),
-        (other, _) => ("absent", other.to_owned()),
+    let class = match (row.state.as_str(), row.missed_beyond_chance) {
+        ("met", _) => "good",
+        ("not met", true) => "bad",
+        ("not met", false) => "caution",
+        _ => "absent",
     };
-    BarView { metric: &row.metric, bar, measured, cases: count(row.cases), state, class }
+    BarView {
+        metric: &row.metric,
+        bar,
+        measured,
+        cases: count(row.cases),
+        state: remarks::bar_state(row),
+        class,
+    }
 }
 
 fn failure(row: &FailureRow) -> FailureView<'_> {
@@ -198,6 +206,17 @@ fn headline(result: &TrialsResult) -> Verdict {
             result.bars.len()
         ),
     }
+}
+
+/// A look at a case that went wrong.
+fn next(result: &TrialsResult) -> Vec<String> {
+    let first = result.failures.first();
+    first
+        .map(|case| {
+            format!("Diagnose a case that was answered wrongly, {}, alone: {}", case.id, case.command)
+        })
+        .into_iter()
+        .collect()
 }
 
 fn warnings(result: &TrialsResult) -> Vec<String> {

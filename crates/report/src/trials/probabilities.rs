@@ -71,7 +71,7 @@ pub(super) fn unknown(result: &TrialsResult) -> Section {
         ],
         grids: vec![Grid {
             title: String::new(),
-            corner: "Size in noise units",
+            corner: "Size in × noise",
             columns: ["Positives", "Negatives", "Area under the curve", "95 % interval"]
                 .map(str::to_owned)
                 .to_vec(),

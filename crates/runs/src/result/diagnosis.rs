@@ -467,6 +467,9 @@ pub struct SeriesRow {
     /// What the repaired simulator says, fitted elsewhere.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
+    /// Torque (force) of the input, in the third of [`DiagnosisResult::units`]; `None` where the record has no input.
+    #[serde(default)]
+    pub input_torque: Option<f64>,
 }
 
 /// What a batch came to.

@@ -323,6 +323,7 @@ fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCe
 pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
     let mut rows = Vec::with_capacity(series.time_s.len());
     let mut segment = 0;
+    let driven = series.input_torque.iter().any(|torque| *torque != 0.0);
     for (index, (&time_s, &observed)) in series.time_s.iter().zip(&series.observed).enumerate() {
         while series.segment_starts.get(segment).is_some_and(|start| *start <= index) {
             segment += 1;
@@ -337,6 +338,7 @@ pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
             nominal: less(&series.nominal_residual),
             recalibrated: less(&series.recalibrated_residual),
             repaired: less(&series.repaired_residual),
+            input_torque: series.input_torque.get(index).copied().filter(|_| driven),
         });
     }
     rows

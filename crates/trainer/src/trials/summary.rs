@@ -66,12 +66,7 @@ fn bar(row: &BarRow) -> Vec<String> {
         (true, ends) if ends[0].is_finite() => format!("{} {}", number(row.value), interval(ends)),
         (true, _) => number(row.value),
     };
-    let state = match (row.state.as_str(), row.missed_beyond_chance) {
-        ("not met", true) => "NOT MET",
-        ("not met", false) => "not met, within chance",
-        (state, _) => state,
-    };
-    vec![row.metric.clone(), bar, measured, row.cases.to_string(), state.to_owned()]
+    vec![row.metric.clone(), bar, measured, row.cases.to_string(), report::bar_state(row).to_owned()]
 }
 
 fn banks(result: &TrialsResult) -> String {

@@ -1,0 +1,130 @@
+//! Sentences that a page and the terminal share: one function makes each.
+
+use runs::result::{BarRow, DataSummary, OracleSummary};
+
+use crate::format;
+
+/// Lag-one autocorrelation of residuals beyond which their standard error misleads.
+const CORRELATED: f64 = 0.5;
+/// Share of the variance of ln A that a line leaves over, below which the residuals are too small to matter, whatever
+/// their pattern: a thousandth of the fall, by its root.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// Findings about a record file: its time stamps first, then what reading it brought up.
+#[must_use]
+pub fn noticed(data: &DataSummary) -> Vec<String> {
+    let mut sentences = Vec::new();
+    if data.believed_clock == data.clock {
+        sentences.push(format!("Time stamps: {}.", ended(&data.believed_clock_reason)));
+    } else {
+        sentences.push(format!(
+            "Time stamps: {}. They speak for the {} clock; in force is the {} clock ({}).",
+            ended(&data.believed_clock_reason),
+            data.believed_clock,
+            data.clock,
+            ended(&data.clock_reason)
+        ));
+    }
+    sentences.extend(data.findings.iter().cloned());
+    sentences
+}
+
+/// A sentence without the full stop that is about to follow.
+fn ended(sentence: &str) -> &str {
+    sentence.strip_suffix('.').unwrap_or(sentence)
+}
+
+/// Whether a line through ln A leaves nothing over that would matter: rounding and the placing of peaks leave
+/// patterns of their own, which say nothing about the decay.
+#[must_use]
+pub fn is_exponential(r_squared: f64) -> bool {
+    1.0 - r_squared < NEGLIGIBLE
+}
+
+/// Reasons to take care with the reference's standard errors.
+#[must_use]
+pub fn warnings(reference: &OracleSummary) -> Vec<String> {
+    let correlation = reference.residual_autocorrelation;
+    if correlation.abs() <= CORRELATED || is_exponential(reference.r_squared) {
+        return Vec::new();
+    }
+    let consequence = if correlation > 0.0 { "are therefore too small" } else { "therefore do not hold" };
+    vec![format!(
+        "Neighboring residuals of ln A are correlated (lag-one autocorrelation {}): the standard errors and intervals \
+         stated here assume independent residuals and {consequence}.",
+        format::fixed(correlation, 2)
+    )]
+}
+
+/// State of a bar in words: `within chance` only where the interval holds the bar.
+#[must_use]
+pub fn bar_state(row: &BarRow) -> &str {
+    let [low, high] = row.interval_95;
+    let excludes = row.at_least.is_some_and(|bar| high < bar) || row.at_most.is_some_and(|bar| low > bar);
+    match (row.state.as_str(), row.missed_beyond_chance) {
+        ("not met", false) if excludes => "not met, by no more than scatter adds",
+        ("not met", false) if low.is_finite() && high.is_finite() => "not met, within chance",
+        (state, _) => state,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::Sample;
+
+    #[test]
+    fn correlated_residuals_are_warned_about() {
+        let mut reference = Sample::new().result.oracle;
+        reference.residual_autocorrelation = 0.5;
+        assert!(warnings(&reference).is_empty());
+        reference.residual_autocorrelation = 0.61;
+        assert!(warnings(&reference)[0].contains("0.61): the standard errors"));
+        assert!(warnings(&reference)[0].contains("too small"));
+        reference.residual_autocorrelation = -0.7;
+        assert!(warnings(&reference)[0].contains("do not hold"));
+    }
+
+    #[test]
+    fn residuals_of_rounding_size_are_passed_over() {
+        let mut reference = Sample::new().result.oracle;
+        reference.residual_autocorrelation = 0.99;
+        reference.r_squared = 1.0 - 1e-5;
+        assert_eq!(warnings(&reference).len(), 1);
+        reference.r_squared = 1.0 - 1e-9;
+        assert!(warnings(&reference).is_empty());
+    }
+
+    #[test]
+    fn repeated_stamps_are_noticed() {
+        let mut data = Sample::new().result.data;
+        data.findings.clear();
+        data.believed_clock_reason = "7134 of 7606 stamps (94 %) repeat the one before".into();
+        let text = noticed(&data).join(" ");
+        assert_eq!(text, "Time stamps: 7134 of 7606 stamps (94 %) repeat the one before.");
+        data.clock = "host".into();
+        data.clock_reason = "set in the configuration".into();
+        let text = noticed(&data).join(" ");
+        assert!(text.ends_with("in force is the host clock (set in the configuration)."), "{text}");
+    }
+
+    #[test]
+    fn a_bar_outside_the_interval_is_not_within_chance() {
+        let bar = |low: f64, high: f64, beyond: bool| BarRow {
+            metric: String::new(),
+            at_least: None,
+            at_most: Some(0.03),
+            unit: String::new(),
+            value: 0.05,
+            interval_95: [low, high],
+            cases: 100,
+            state: "not met".into(),
+            missed_beyond_chance: beyond,
+        };
+        assert_eq!(bar_state(&bar(0.02, 0.07, false)), "not met, within chance");
+        assert_eq!(bar_state(&bar(0.04, 0.07, true)), "not met");
+        assert_eq!(bar_state(&bar(0.04, 0.07, false)), "not met, by no more than scatter adds");
+        assert_eq!(bar_state(&bar(f64::NAN, f64::NAN, false)), "not met");
+        assert_eq!(bar_state(&BarRow { state: "met".into(), ..bar(0.0, 0.01, false) }), "met");
+    }
+}
