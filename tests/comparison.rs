@@ -101,3 +101,28 @@ fn threads_do_not_change_a_bit() {
     };
     assert_eq!(run("1"), run("2"));
 }
+
+/// A noiseless exponential has residuals too, of how peaks are placed: they are correlated, and of a size that says
+/// nothing about the decay.
+#[test]
+fn of_an_exponential_without_noise_no_pattern_is_reported() {
+    let scratch = tempfile::tempdir().unwrap();
+    let record = scratch.path().join("exponential.csv");
+    let rows = (0..5200).map(|index| {
+        let time = f64::from(index) / 260.0;
+        format!("{time:.6},{:.12}\n", 0.6 * (-0.21 * time).exp() * (21.0 * time).cos())
+    });
+    std::fs::write(&record, format!("time_s,angle_rad\n{}", rows.collect::<String>())).unwrap();
+    let path = format!("data.path={}", record.display());
+    for (config, pipeline) in [("configs/ols.toml", "paper"), ("configs/compare.toml", "recommended")] {
+        let out = scratch.path().join(pipeline);
+        let pipeline = format!("envelope.pipeline={pipeline}");
+        let output = trainer(&[config, &path, &pipeline, "data.clock=host", "--out", out.to_str().unwrap()]);
+        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        for text in [String::from_utf8_lossy(&output.stdout).into_owned(), page] {
+            for phrase in ["are correlated", "not exponential", "not independent"] {
+                assert!(!text.contains(phrase), "{config} {pipeline}: {phrase}");
+            }
+        }
+    }
+}

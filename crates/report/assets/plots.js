@@ -19,7 +19,7 @@
 
   // Ticks with as many digits as their spacing asks for.
   const ticks = (axis) => (u, splits, at, space, step) => {
-    if (axis.log) return splits.map((v) => (Number.isInteger(v) ? (v === 0 ? "1" : `10${power(v)}`) : say(10 ** v, 3)));
+    if (axis.log) return splits.map((v) => (Number.isInteger(v) ? (v === 0 ? "1" : v === 1 ? "10" : `10${power(v)}`) : say(10 ** v, 3)));
     const largest = Math.max(...splits.map(Math.abs));
     const lowest = Math.floor(Math.log10(step) + 1e-9);
     const half = Math.abs(step / 10 ** lowest - Math.round(step / 10 ** lowest)) > 1e-6 ? 1 : 0; // of 2.5, 0.25, …

@@ -7,8 +7,9 @@ use crate::format;
 /// Lag-one autocorrelation of residuals beyond which their standard error misleads.
 const CORRELATED: f64 = 0.5;
 /// Share of the variance of ln A that a line leaves over, below which the residuals are too small to matter, whatever
-/// their pattern: a thousandth of the fall, by its root.
-const NEGLIGIBLE: f64 = 1e-6;
+/// their pattern. Of an exponential without noise the pipelines leave 3e-6 and less; at 1e-5 the standard error of λ is
+/// below a thousandth.
+const NEGLIGIBLE: f64 = 1e-5;
 
 /// Findings about a record file: its time stamps first, then what reading it brought up.
 #[must_use]
@@ -86,12 +87,12 @@ mod tests {
     }
 
     #[test]
-    fn residuals_of_rounding_size_are_passed_over() {
+    fn residuals_that_the_pipeline_leaves_of_an_exponential_are_passed_over() {
         let mut reference = Sample::new().result.oracle;
         reference.residual_autocorrelation = 0.99;
-        reference.r_squared = 1.0 - 1e-5;
+        reference.r_squared = 1.0 - 1e-4;
         assert_eq!(warnings(&reference).len(), 1);
-        reference.r_squared = 1.0 - 1e-9;
+        reference.r_squared = 1.0 - 2.8e-6;
         assert!(warnings(&reference).is_empty());
     }
 

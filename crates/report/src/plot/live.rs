@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::{Axis, Mark, Plot, Scale, Series};
 
 /// Values of all series together, beyond which every stretch keeps its lowest and highest only.
-const MOST_VALUES: usize = 24_000;
+const MOST_VALUES: usize = 16_000;
 /// Steps across the range of a column.
 const STEPS: f64 = 1e6;
 
