@@ -309,8 +309,8 @@ fn one_of(document: &Document, table: &str, keys: &[&str]) -> Result<String, Set
 }
 
 fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, SettingsError> {
-    let by_stiffness = one_of(document, table, &NOMINAL_SWINGS)? == "stiffness";
     let by_damping = one_of(document, table, &NOMINAL_DECAYS)? == "damping";
+    let by_stiffness = one_of(document, table, &NOMINAL_SWINGS)? == "stiffness";
     let missing = |key: &str| {
         let field = FIELDS.iter().find(|field| field.key == key);
         SettingsError::Missing {

@@ -176,10 +176,12 @@ pub(super) struct CoefficientView {
 
 pub(super) fn coefficients(result: &DiagnosisResult) -> Vec<CoefficientView> {
     let view = |(name, row): (String, &CalibratedRow)| {
+        // Parameters of the simulator's own effects are held where it asks for that.
+        let held = if name.contains('.') { "held" } else { "held: these data cannot tell it" };
         let estimate = |found: &Option<WithInterval>| {
             found
                 .as_ref()
-                .map_or_else(|| "held".to_owned(), |found| estimate(found.value, found.interval_95, ""))
+                .map_or_else(|| held.to_owned(), |found| estimate(found.value, found.interval_95, ""))
         };
         CoefficientView {
             name: name.replace("rest_angle", "rest position").replace('_', " ").replace('.', ": "),

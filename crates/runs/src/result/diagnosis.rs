@@ -124,8 +124,8 @@ pub struct ParameterRow {
     /// 95 % interval, widened for the residual's autocorrelation; an end that is not finite is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub interval_95: [f64; 2],
-    /// Whether these data determine it; of older files it is taken to be so.
-    #[serde(default = "yes")]
+    /// Whether these data determine it: `false`, or absent.
+    #[serde(default = "yes", skip_serializing_if = "bool::clone")]
     pub determined: bool,
 }
 
