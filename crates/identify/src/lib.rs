@@ -113,11 +113,16 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
     if values.windows(2).all(|pair| pair.first() == pair.last()) {
         return Err(IdentifyError::NoMotion { samples: values.len() });
     }
-    let free = if record.input().is_none() { decay::oscillator(record, clock) } else { None };
+    let free = if input(record).is_none() { decay::oscillator(record, clock) } else { None };
     match free {
         Some(oscillator) => Ok(oscillator),
         None => weak::oscillator(record, clock),
     }
+}
+
+/// The input where it drives anything: one that never changes tells no gain.
+fn input(record: &Record) -> Option<&[f64]> {
+    record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))
 }
 
 /// How often the observed quantity was differentiated.

@@ -8,7 +8,7 @@
 //! Each window gives one equation that is linear in the coefficients. A velocity obeys the same equation with u̇ for u,
 //! an acceleration with ü: the derivatives fall on φ again.
 
-use crate::{Basis, Estimated, IdentifyError, LinearOscillator, order};
+use crate::{Basis, Estimated, IdentifyError, LinearOscillator, input, order};
 use nalgebra::{DMatrix, DVector};
 use record::{Clock, Record};
 use std::f64::consts::TAU;
@@ -109,7 +109,7 @@ impl<'a> Samples<'a> {
             times: &clock.times_s,
             values: record.values().iter().map(|value| value - mean).collect(),
             mean,
-            input: record.input(),
+            input: input(record),
             order: order(record.quantity()),
             step: 1.0 / clock.sample_rate_hz,
         }

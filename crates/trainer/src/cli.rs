@@ -4,6 +4,7 @@ use crate::cite::CiteArguments;
 use crate::configured::ConfigArguments;
 use crate::diagnose::arguments::DiagnoseArguments;
 use crate::explain::ExplainArguments;
+use crate::init::InitArguments;
 use crate::schema::Purpose;
 use crate::side_by_side::arguments::CompareArguments;
 use crate::sweep::arguments::SweepArguments;
@@ -23,6 +24,7 @@ use std::path::PathBuf;
     arg_required_else_help = true,
     after_help = "\
 Examples:
+  trainer init log.csv                            looks at your log and says how to go on
   trainer configs/pinn.toml                       the shipped, simulated record
   trainer configs/paper.toml                      all of the paper's methods
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
@@ -126,6 +128,8 @@ pub(crate) enum Command {
     Diagnose(Box<DiagnoseArguments>),
     /// Explains a configuration's values: what they mean and where they were set
     Explain(ExplainArguments),
+    /// Looks at a log and writes a nominal simulator and a configuration to go on from
+    Init(Box<InitArguments>),
     /// Lists estimators, effects or runs
     List {
         /// What to list

@@ -8,6 +8,7 @@ use crate::trials::TrialsError;
 use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
 use estimator::FitError;
+use identify::IdentifyError;
 use oracle::OracleError;
 use record::RecordError;
 use report::ReportError;
@@ -98,6 +99,12 @@ pub(crate) enum TrainerError {
         "{folder}: there is no case in it; expected a folder for each, holding record-*.csv and nominal.toml"
     )]
     NoCases { folder: String },
+    #[error("{file}: {source}")]
+    Identify { file: String, source: IdentifyError },
+    #[error(
+        "{log}: its name has no ending, so that a folder of that name cannot stand beside it; name one with --out"
+    )]
+    NoFolder { log: String },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
@@ -149,6 +156,8 @@ impl TrainerError {
             | Self::Kept(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
+            | Self::Identify { .. }
+            | Self::NoFolder { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
             | Self::Sweep(_)

@@ -26,6 +26,7 @@ mod estimate;
 mod everywhere;
 mod explain;
 mod fit;
+mod init;
 mod input;
 mod interrupt;
 mod known_truth;
@@ -112,6 +113,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Cite(arguments)) => cite::command(&arguments),
         Some(Command::Explain(arguments)) => explain::command(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
+        Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),

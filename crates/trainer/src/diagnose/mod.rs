@@ -4,7 +4,7 @@ pub(crate) mod arguments;
 mod batch;
 mod kept;
 mod nominal;
-mod read;
+pub(crate) mod read;
 mod repair;
 mod result;
 mod sentence;

@@ -34,7 +34,7 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Re
     }
     let bytes =
         std::fs::read(path).map_err(|error| fault(Fault::Unreadable { problem: error.to_string() }))?;
-    let options = options(reading, stated);
+    let options = read_options(reading, Some(stated.nominal.coordinate()), stated.driven);
     let (record, source) =
         record::read_text(&name, &bytes, &options).map_err(TrainerError::DiagnosedRecord)?;
     check_unit(&name, &record, stated.nominal.coordinate())?;
@@ -74,7 +74,8 @@ fn header(bytes: &[u8]) -> String {
     lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default().to_owned()
 }
 
-fn options(reading: &Reading, stated: &StatedNominal) -> ReadOptions {
+/// Options as the reader takes them; what moves, where that is known; and whether an input drives it.
+pub(crate) fn read_options(reading: &Reading, coordinate: Option<Coordinate>, driven: bool) -> ReadOptions {
     ReadOptions {
         format: match reading.format {
             FormatChoice::Auto => Format::Auto,
@@ -93,11 +94,19 @@ fn options(reading: &Reading, stated: &StatedNominal) -> ReadOptions {
             missing: word(&reading.missing).unwrap_or_default(),
         },
         quantity: reading.quantity.map(super::arguments::QuantityChoice::quantity),
-        coordinate: Some(match stated.nominal.coordinate() {
+        coordinate: coordinate.map(|coordinate| match coordinate {
             Coordinate::Angle => record::Coordinate::Angle,
             Coordinate::Displacement => record::Coordinate::Displacement,
         }),
-        driven: stated.driven,
+        driven,
+    }
+}
+
+/// What a simulator calls what moves in a record.
+pub(crate) fn coordinate_of(coordinate: record::Coordinate) -> Coordinate {
+    match coordinate {
+        record::Coordinate::Angle => Coordinate::Angle,
+        record::Coordinate::Displacement => Coordinate::Displacement,
     }
 }
 
@@ -125,7 +134,7 @@ fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(),
 }
 
 /// The record with the means of the observed column and of the input taken away.
-fn centered(record: &Record) -> Result<Record, Fault> {
+pub(crate) fn centered(record: &Record) -> Result<Record, Fault> {
     let center = |values: &[f64]| -> Vec<f64> {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         values.iter().map(|value| value - mean).collect()

@@ -307,7 +307,12 @@ mod tests {
             parameters: parameters
                 .iter()
                 .map(|(name, value)| {
-                    let row = ParameterRow { value: *value, unit: String::new(), interval_95: [0.0, 1.0] };
+                    let row = ParameterRow {
+                        determined: true,
+                        value: *value,
+                        unit: String::new(),
+                        interval_95: [0.0, 1.0],
+                    };
                     ((*name).to_owned(), row)
                 })
                 .collect(),
