@@ -29,6 +29,7 @@ mod listing;
 mod measured_records;
 mod nist;
 mod prediction;
+mod reading;
 mod recipe;
 mod resuming;
 mod run_folders;

@@ -237,6 +237,8 @@ impl Roles<'_> {
                 })
             }
             [(_, at), ..] => Ok(Pick { at: *at, because: BY_NAME }),
+            // Words under such a name are a fault of their line, which is told where they are read.
+            [] if let Some(at) = self.text_with_such_a_name() => Ok(Pick { at, because: BY_NAME }),
             [] => {
                 let other: Vec<usize> =
                     left.iter().filter(|(_, column)| !drives(&column.heading)).map(|(at, _)| *at).collect();
@@ -246,6 +248,10 @@ impl Roles<'_> {
                 }
             }
         }
+    }
+
+    fn text_with_such_a_name(&self) -> Option<usize> {
+        self.columns.iter().position(|column| column.kind == Kind::Text && self.score(&column.heading).is_some())
     }
 
     /// How well a column suits as the observed one, the best least: first of the nominal's dimension, then positions
