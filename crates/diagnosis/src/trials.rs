@@ -367,7 +367,7 @@ fn a_bank_of_hidden_effects() {
 fn silverbox() {
     let columns = CsvColumns {
         sample_rate_hz: Some(610.35),
-        angle: Some("output_v".to_owned()),
+        value: Some("output_v".to_owned()),
         input: Some("input_v".to_owned()),
         ..CsvColumns::default()
     };

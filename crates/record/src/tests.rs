@@ -219,7 +219,10 @@ fn files_that_do_not_say_enough_get_the_key_to_set() {
         assert!(message.starts_with("r.csv:1: the first line holds numbers, `"), "{message}");
     }
     for (text, expected) in [
-        ("my angle\n0.5\n", "there is no column `time` or `t`; the header has `my angle`. Set `data.time`"),
+        (
+            "my angle\n0.5\n",
+            "the header has `my angle`. Set `data.time` to the column's name, or `data.sample_rate_hz`",
+        ),
         ("t,foo,bar\n0,1,2\n1,2,3\n", "the header has `t`, `foo`, `bar`. Set `data.value`"),
         ("time_s,angle_deg\n0,01,29,20\n", "r.csv:2: 4 fields under a header of 2; "),
         ("time_s,angle_deg\n0,1\n1,x\n2,2\n", "r.csv:3: `x` in column `angle_deg` is not a number"),
