@@ -356,6 +356,14 @@ fn another_system_and_other_units_are_refused() {
     let other = NOMINAL.replace("484.0", "100.0");
     refused(&decay(800, 0.7), &other, &[], "this is not the same system, or the units are wrong");
     refused(&decay(800, 0.7), NOMINAL, &["--time-unit", "ms"], "this is not the same system");
+    let hertz = NOMINAL.replace("484.0", "12.26");
+    refused(&decay(800, 0.7), &hertz, &[], "near 2 pi: is a frequency in Hz");
+    refused(
+        &decay(800, 0.7).replace("time_s,angle_rad", "foo,angle_rad"),
+        NOMINAL,
+        &[],
+        "or --sample-rate where",
+    );
     refused(&decay(800, 40.0), NOMINAL, &[], "look like degrees. Set --unit deg");
     let drive = format!("coordinate = \"displacement\"\n{NOMINAL}");
     refused(
@@ -378,7 +386,7 @@ fn a_driven_system_needs_its_input() {
 #[test]
 fn files_that_cannot_be_used_are_refused_with_their_place() {
     refused("time_s,angle_rad\n0,0.5\n0.01,x\n", NOMINAL, &[], "record.csv:3: `x` in column `angle_rad`");
-    refused("t,theta\n0,0.5\n", NOMINAL, &[], "Set --angle to the column's name");
+    refused("t,foo,bar\n0,0.5,1\n", NOMINAL, &[], "Set --value to the column's name");
     refused("", NOMINAL, &[], "record.csv: is empty");
     refused(&decay(800, 0.7), &format!("{NOMINAL}mass = 2\n"), &[], "nominal.toml:5:1: unknown key `mass`");
     refused(&decay(800, 0.7), "inertia = 1.0\n", &[], "`damping` is missing");

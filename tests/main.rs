@@ -31,6 +31,7 @@ mod measured_records;
 mod nist;
 mod nominal;
 mod prediction;
+mod reading;
 mod recipe;
 mod resuming;
 mod run_folders;

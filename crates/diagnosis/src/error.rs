@@ -64,7 +64,7 @@ pub enum DiagnosisError {
     #[error(
         "record {record} swings with a period of {measured_s:.4} s, the nominal simulator with {nominal_s:.4} s, \
          {ratio:.1} times off: this is not the same system, or the units are wrong. Check the unit of time, the \
-         nominal inertia and stiffness"
+         nominal inertia and stiffness{}", known_factor(*ratio)
     )]
     AnotherPeriod {
         /// Which record, from 1.
@@ -106,6 +106,23 @@ pub enum DiagnosisError {
     /// The dynamics refuse.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+}
+
+/// The mistake that a factor between two periods is known for. Periods of one system differ by a few percent at most, so a
+/// tenth to either side leaves room for that.
+fn known_factor(ratio: f64) -> &'static str {
+    let near = |factor: f64| (ratio / factor - 1.0).abs() < 0.1;
+    match () {
+        () if near(std::f64::consts::TAU) => {
+            ". The factor is near 2 pi: is a frequency in Hz where rad/s is asked for?"
+        }
+        () if near(1e3) => ". The factor is near 1000: are the stamps in ms? Set --time-unit ms",
+        () if near(1e6) => ". The factor is near a million: are the stamps in us? Set --time-unit us",
+        () if near(1e3_f64.sqrt()) => {
+            ". Its square is near 1000: is the inertia or the stiffness a thousand times off, for example in g or mm?"
+        }
+        () => "",
+    }
 }
 
 /// How little the values of a record move.

@@ -70,6 +70,17 @@ pub enum Fault {
         /// The configuration key that names the column.
         key: &'static str,
     },
+    /// Neither a time column nor a rate.
+    #[error(
+        "there is no column that is a time by its name or its unit; the header has {found}. Set `data.time` to the column's \
+         name, or `data.sample_rate_hz` where the samples are even and have no stamps"
+    )]
+    NoTime {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The header's names.
+        found: String,
+    },
     /// Several columns could each be the one that is looked for.
     #[error("{found} could each be {what}; set `{key}` to the name of one")]
     Ambiguous {
@@ -207,6 +218,7 @@ impl Fault {
         match self {
             Self::BadHeader { line, .. }
             | Self::NoHeader { line, .. }
+            | Self::NoTime { line, .. }
             | Self::Ambiguous { line, .. }
             | Self::SeveralValues { line, .. }
             | Self::MissingCells { line, .. }

@@ -203,7 +203,7 @@ impl Roles<'_> {
             Some((score, at)) if score % 200 < 100 => Ok(Some(Pick { at, because: BY_NAME })),
             Some((_, at)) => Ok(Some(Pick { at, because: BY_UNIT })),
             None if self.asked().sample_rate_hz.is_some() => Ok(None),
-            None => Err(self.missing("time` or `t".to_owned(), "data.time")),
+            None => Err(Fault::NoTime { line: self.line, found: self.titles(|_| true) }),
         }
     }
 
@@ -237,6 +237,8 @@ impl Roles<'_> {
                 })
             }
             [(_, at), ..] => Ok(Pick { at: *at, because: BY_NAME }),
+            // Words under such a name are a fault of their line, which is told where they are read.
+            [] if let Some(at) = self.text_with_such_a_name() => Ok(Pick { at, because: BY_NAME }),
             [] => {
                 let other: Vec<usize> =
                     left.iter().filter(|(_, column)| !drives(&column.heading)).map(|(at, _)| *at).collect();
@@ -246,6 +248,12 @@ impl Roles<'_> {
                 }
             }
         }
+    }
+
+    fn text_with_such_a_name(&self) -> Option<usize> {
+        self.columns
+            .iter()
+            .position(|column| column.kind == Kind::Text && self.score(&column.heading).is_some())
     }
 
     /// How well a column suits as the observed one, the best least: first of the nominal's dimension, then positions

@@ -185,7 +185,7 @@ pub(crate) fn in_options(text: &str) -> String {
     let mut told = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('`').unwrap_or((part, ""));
-        told.push_str(&format!("--{}{rest}", key.replace('_', "-")));
+        told.push_str(&format!("--{}{rest}", key.trim_end_matches("_hz").replace('_', "-")));
     }
     told.replace("data.format = \"csv\"", "--format csv")
 }
