@@ -146,6 +146,7 @@ impl Default for Reading {
 
 /// Format of a record file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum FormatChoice {
     /// By the first line
     Auto,
@@ -157,6 +158,7 @@ pub(crate) enum FormatChoice {
 
 /// What the sensor observes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub(crate) enum QuantityChoice {
     /// Angle or displacement
     Position,

@@ -193,7 +193,7 @@ fn given(reading: &Reading) -> String {
         match value {
             Value::Bool(_) => format!(" --{name}"),
             Value::String(text) => {
-                format!(" --{name} {}", word(&text.replace("HostLog", "host-log").to_owned()))
+                format!(" --{name} {}", word(text))
             }
             other => format!(" --{name} {other}"),
         }
