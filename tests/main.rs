@@ -25,6 +25,7 @@ mod explain;
 mod exports;
 mod fuzz_regressions;
 mod honesty;
+mod init;
 mod json_schema;
 mod listing;
 mod measured_records;

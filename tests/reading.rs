@@ -5,10 +5,10 @@ use serde_json::Value;
 use std::path::Path;
 
 /// Samples of the swing.
-const SAMPLES: usize = 1000;
+pub(crate) const SAMPLES: usize = 1000;
 
 /// Time in seconds and angle in radians of a sample: 22 rad/s, a damping of 0.3 per unit of inertia.
-fn swing(index: usize) -> (f64, f64) {
+pub(crate) fn swing(index: usize) -> (f64, f64) {
     let time = index as f64 / 100.0;
     // Noise without a generator, so that the files hold a record and no formula.
     let noise = (index as f64 * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5;
@@ -27,7 +27,7 @@ fn comma(number: f64) -> String {
 }
 
 /// Name of the way of writing, the text, the nominal's coordinate, and the options that it takes.
-fn files() -> Vec<(&'static str, String, &'static str, &'static [&'static str])> {
+pub(crate) fn files() -> Vec<(&'static str, String, &'static str, &'static [&'static str])> {
     let deg = f64::to_degrees;
     let iso = |i: usize| format!("2024-05-01T12:00:{:02}.{:03}Z", i / 100, i % 100 * 10);
     vec![
@@ -80,7 +80,7 @@ fn files() -> Vec<(&'static str, String, &'static str, &'static [&'static str])>
     ]
 }
 
-fn write(folder: &Path, name: &str, text: &str) -> String {
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     std::fs::write(&path, text).unwrap();
     path.to_str().unwrap().to_owned()
