@@ -107,7 +107,7 @@ impl RecommendedPipeline {
             indices.iter().filter_map(|&at| turning_point(&clock.times_s, values, at, half_width)).collect();
 
         let offset = center(&turns).ok_or_else(|| too_few(turns.len()))?;
-        let decay = free_decay(&turns, offset, floor);
+        let decay = free_decay(&turns, offset, floor, coarse_period);
         if decay.len() < FEWEST_PEAKS {
             return Err(too_few(decay.len()));
         }
@@ -256,10 +256,11 @@ fn center(turns: &[Turn]) -> Option<f64> {
     )
 }
 
-/// The turning points from the largest one on, up to where they fall to the floor, by a running median, or one does not lie
-/// on the other side of the center.
-fn free_decay(turns: &[Turn], center: f64, floor: f64) -> Vec<Turn> {
+/// The turning points from the largest one on, up to where they fall to the floor, by a running median, or the motion
+/// stays on one side of the center for longer than a period.
+fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn> {
     let size = |turn: &Turn| (turn.value - center).abs();
+    let turns = alternating(turns, center, period);
     let largest = turns
         .iter()
         .enumerate()
@@ -270,21 +271,56 @@ fn free_decay(turns: &[Turn], center: f64, floor: f64) -> Vec<Turn> {
         let near = turns.iter().take(at + NEIGHBORS + 1).skip(at.saturating_sub(NEIGHBORS));
         median(near.map(size).collect()).is_some_and(|size| size > floor)
     };
-    let mut side: Option<bool> = None;
-    turns
-        .iter()
-        .enumerate()
-        .take_while(|(at, turn)| {
-            let above = turn.value > center;
-            side.replace(above) != Some(above) && is_above_floor(*at)
-        })
-        .map(|(_, turn)| *turn)
-        .collect()
+    turns.iter().enumerate().take_while(|(at, _)| is_above_floor(*at)).map(|(_, turn)| *turn).collect()
+}
+
+/// One turning point for each swing to a side, the outermost: a wrong reading makes others beside it. Ends where those of
+/// one side follow each other for longer than a period: nothing swings there. Further apart than a period they are
+/// of different swings, with a gap between.
+fn alternating(turns: &[Turn], center: f64, period: f64) -> Vec<Turn> {
+    let mut found: Vec<Turn> = Vec::new();
+    let (mut begun, mut latest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for turn in turns {
+        let same = |last: &Turn| (last.value > center) == (turn.value > center);
+        match found.last_mut().filter(|last| same(last) && turn.time - latest <= period) {
+            Some(_) if turn.time - begun > period => break,
+            Some(last) if (last.value - center).abs() < (turn.value - center).abs() => *last = *turn,
+            Some(_) => {}
+            None => {
+                begun = turn.time;
+                found.push(*turn);
+            }
+        }
+        latest = turn.time;
+    }
+    found
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{prominent, refine};
+    use super::{Turn, alternating, prominent, refine};
+
+    fn turns(points: &[(f64, f64)]) -> Vec<Turn> {
+        let turn =
+            |&(time, value): &(f64, f64)| Turn { time, value, leverage: 0.0, lift: 0.0, scatter: None };
+        points.iter().map(turn).collect()
+    }
+
+    /// Found on a measured swing in air: one wrong reading beside a top ended a decay of 158 tops after five.
+    #[test]
+    fn a_wrong_reading_beside_a_top_is_no_swing_of_its_own() {
+        let seen =
+            turns(&[(0.0, 1.0), (0.5, -0.9), (0.9, 0.7), (1.0, 0.8), (1.5, -0.7), (4.5, -0.5), (5.0, 0.4)]);
+        let kept: Vec<f64> = alternating(&seen, 0.0, 1.0).iter().map(|turn| turn.time).collect();
+        assert_eq!(kept, [0.0, 0.5, 1.0, 1.5, 4.5, 5.0]);
+    }
+
+    #[test]
+    fn what_stays_on_one_side_ends_the_decay() {
+        let stuck = (0..20).map(|i| (1.0 + 0.1 * f64::from(i), 0.1));
+        let seen: Vec<(f64, f64)> = [(0.0, 1.0), (0.5, -0.5)].into_iter().chain(stuck).collect();
+        assert_eq!(alternating(&turns(&seen), 0.0, 1.0).len(), 3);
+    }
 
     /// Found by simulated decays: readings of one top that happened to be equal ended the decay there.
     #[test]

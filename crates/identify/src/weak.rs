@@ -73,8 +73,8 @@ fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], Ide
     let inverse = normal.try_inverse().ok_or(IdentifyError::Undetermined)?;
     let solution = &inverse * design.tr_mul(&target);
     let freedom = (rows.len().saturating_sub(free.len())).max(1) as f64;
-    // Windows overlap by half, so that two neighbors count for little more than one.
-    let variance = 2.0 * (&target - &design * &solution).norm_squared() / freedom;
+    // Windows overlap by three quarters, so that four neighbors count for little more than one.
+    let variance = 4.0 * (&target - &design * &solution).norm_squared() / freedom;
     let mut found = [Estimated { value: 0.0, std_error: 0.0 }; 4];
     for (number, (column, size)) in free.iter().zip(&sizes).enumerate() {
         let value = solution.get(number).copied().unwrap_or(f64::NAN) / size;
@@ -142,11 +142,11 @@ impl<'a> Samples<'a> {
         best.map_or(longest, |(_, number)| period(number))
     }
 
-    /// The equations of all windows of a width in seconds that hold no gap, each half a width after the last.
+    /// The equations of all windows of a width in seconds that hold no gap, each a quarter of a width after the last.
     fn rows(&self, width: f64) -> Vec<Row> {
         let Some(&first) = self.times.first() else { return Vec::new() };
-        let count = (2.0 * (self.duration() / width - 1.0)).floor().max(-1.0) as i64 + 1;
-        (0..count).filter_map(|number| self.row(first + 0.5 * width * number as f64, width)).collect()
+        let count = (4.0 * (self.duration() / width - 1.0)).floor().max(-1.0) as i64 + 1;
+        (0..count).filter_map(|number| self.row(first + 0.25 * width * number as f64, width)).collect()
     }
 
     fn row(&self, start: f64, width: f64) -> Option<Row> {
