@@ -2,7 +2,7 @@
 
 use crate::simulation::simulate;
 use crate::support::{result, root};
-use envelope::{Envelope, PaperPipeline};
+use envelope::{Envelope, RecommendedPipeline};
 use estimator::{Cancel, FitContext, Silent};
 use record::{Clock, ClockChoice, ReadOptions, read_file};
 use registry::ESTIMATORS;
@@ -17,9 +17,10 @@ fn section<T: serde::de::DeserializeOwned>(section: Section<'_>) -> T {
 
 fn envelope(record: &Path) -> Envelope {
     let (record, _) = read_file(record, &ReadOptions::default()).unwrap();
-    let clock = Clock::new(&record, ClockChoice::Host).unwrap();
-    let paper = experiment::SECTIONS.iter().find(|section| section.name == "envelope.paper").unwrap();
-    section::<PaperPipeline>(*paper).extract(&record, &clock).unwrap().envelope
+    let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+    let recommended =
+        experiment::SECTIONS.iter().find(|section| section.name == "envelope.recommended").unwrap();
+    section::<RecommendedPipeline>(*recommended).extract(&record, &clock).unwrap().envelope
 }
 
 /// λ of every learned method as a comparison writes it.

@@ -53,7 +53,9 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
         if !(0.5..2.0).contains(&ratio) {
             findings.push(Finding {
                 effect: None,
-                text: format!("the values lie on steps of {found:e}, the nominal sensor resolves {stated:e}"),
+                text: format!(
+                    "the values lie on steps of {found:.4e}, the nominal sensor resolves {stated:.4e}"
+                ),
             });
         }
     }
@@ -229,7 +231,7 @@ pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option
     (matters(share, data.samples()) && !stated).then(|| Finding {
         effect: Some("sensor_quantization"),
         text: format!(
-            "the values lie on steps of {step:e}, whose rounding makes up {:.1} % of the noise variance",
+            "the values lie on steps of {step:.4e}, whose rounding makes up {:.1} % of the noise variance",
             100.0 * share.min(1.0)
         ),
     })

@@ -30,6 +30,12 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
     sentences
 }
 
+/// Manner in which a file was read, without the words `read as`; `None` in results of versions that did not say it.
+pub(crate) fn read_as(sentence: &str) -> Option<&str> {
+    let text = sentence.strip_prefix("read as: ").unwrap_or(sentence);
+    (!text.is_empty()).then_some(text)
+}
+
 /// A sentence without the full stop that is about to follow.
 fn ended(sentence: &str) -> &str {
     sentence.strip_suffix('.').unwrap_or(sentence)

@@ -115,7 +115,7 @@ pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
 /// Where the record came from.
 pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
     let rate = with_uncertainty(data.sample_rate_hz, data.sample_rate_std_error_hz);
-    vec![
+    let mut facts = vec![
         fact("File", data.path.clone()),
         fact("Digest", data.digest.clone()),
         fact("Samples", whole(data.samples)),
@@ -130,7 +130,9 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
                 |step| quantity(&significant(step, 6), &data.unit),
             ),
         ),
-    ]
+    ];
+    facts.extend(crate::remarks::read_as(&data.reading.sentence).map(|text| fact("Read as", text)));
+    facts
 }
 
 /// One seed's fit, as it stands in its table.

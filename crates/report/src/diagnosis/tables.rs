@@ -6,6 +6,7 @@ use super::title;
 use crate::format::{
     self, UNDETERMINED, estimate, fixed, interval, quantity, share_with_interval, significant, unit,
 };
+use crate::remarks::read_as;
 use crate::tables::{Fact, fact, whole};
 
 /// A simulator and how far it is off.
@@ -235,19 +236,17 @@ pub(super) struct RecordView<'a> {
 
 pub(super) fn records(result: &DiagnosisResult) -> Vec<RecordView<'_>> {
     fn view(record: &RecordRow) -> RecordView<'_> {
-        let RecordRow { path, digest, origin, samples, duration_s, clock, clock_reason, findings, .. } =
+        let RecordRow { path, digest, origin, samples, duration_s, clock, clock_reason, findings, reading } =
             record;
-        RecordView {
-            path,
-            facts: vec![
-                fact("Samples", whole(*samples)),
-                fact("Length", quantity(&significant(*duration_s, 4), "s")),
-                fact("Clock", format!("{clock}: {clock_reason}")),
-                fact("Origin", origin.as_str()),
-                fact("Digest", digest.as_str()),
-            ],
-            findings,
-        }
+        let mut facts = vec![
+            fact("Samples", whole(*samples)),
+            fact("Length", quantity(&significant(*duration_s, 4), "s")),
+            fact("Clock", format!("{clock}: {clock_reason}")),
+            fact("Origin", origin.as_str()),
+            fact("Digest", digest.as_str()),
+        ];
+        facts.extend(read_as(&reading.sentence).map(|text| fact("Read as", text)));
+        RecordView { path, facts, findings }
     }
     result.records.iter().map(view).collect()
 }

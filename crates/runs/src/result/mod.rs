@@ -4,6 +4,7 @@
 //! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
 //! is not.
 
+mod calibration;
 mod comparison;
 mod diagnosis;
 mod prediction;
@@ -11,12 +12,13 @@ mod simulation;
 mod sweep;
 mod trials;
 
+pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
-    Backbone, BackbonePoint, BatchResult, BudgetShares, CalibratedRow, Calibration, ChainFinding,
-    ChainSummary, DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
-    EffectRow, Equation, FailedCase, GapMaps, GapSummary, KnownEffectRow, MapCell, NextExperiment,
-    ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+    Backbone, BackbonePoint, BatchResult, BudgetShares, ChainFinding, ChainSummary, DIAGNOSIS_SCHEMA,
+    DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation, FailedCase,
+    GapMaps, GapSummary, MapCell, NextExperiment, ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow,
+    StageRow, SurfaceCell, WithInterval,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
