@@ -397,7 +397,10 @@ fn interrupted_it_keeps_what_is_done_and_exits_with_130() {
 fn another_configuration_is_refused_with_the_difference() {
     let (folder, out) = scratch();
     let config = folder.path().join("own.toml");
+    // Paths start from the file's own folder.
+    let shipped = format!("{}/experiments", root().display());
     let text = std::fs::read_to_string(root().join("configs/lstm.toml")).unwrap();
+    let text = text.replace("../experiments", &shipped);
     std::fs::write(&config, &text).unwrap();
     let own = config.to_str().unwrap();
     assert_eq!(code(&sweep(&["sweep", own, "seed=0,1"], &out, &["--quiet"])), 0);

@@ -114,7 +114,7 @@ fn known_factor(ratio: f64) -> &'static str {
     let near = |factor: f64| (ratio / factor - 1.0).abs() < 0.1;
     match () {
         () if near(std::f64::consts::TAU) => {
-            ". The factor is near 2 pi: is a frequency in Hz where rad/s is asked for?"
+            ". The factor is near 2 pi: is a frequency stated in Hz that is in rad/s, or the other way round?"
         }
         () if near(1e3) => ". The factor is near 1000: are the stamps in ms? Set --time-unit ms",
         () if near(1e6) => ". The factor is near a million: are the stamps in us? Set --time-unit us",

@@ -13,7 +13,7 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     let extraction = RecommendedPipeline::default().extract(record, clock).ok()?;
     let envelope = &extraction.envelope;
     let line = oracle::decay_rate(envelope).ok()?;
-    let half_period = half_period(envelope)?;
+    let half_period = half_period(envelope, 0.5 * extraction.period_s)?;
     let damped = PI / half_period.value;
     let decay = line.decay_rate.max(0.0);
     let stiffness = Estimated {
@@ -34,13 +34,23 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     })
 }
 
-/// Slope of the turning points' times on their number, in seconds, by least squares.
-fn half_period(envelope: &Envelope) -> Option<Estimated> {
+/// Slope of the turning points' times on their number, in seconds, by least squares. They are counted by a rough value, so
+/// that one that is missed shifts none of the others.
+fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     let times = envelope.times_s();
     let count = times.len() as f64;
-    let middle = (count - 1.0) / 2.0;
+    let numbers: Vec<f64> = times
+        .windows(2)
+        .scan(0.0, |number, pair| {
+            *number +=
+                pair.last().zip(pair.first()).map_or(0.0, |(next, one)| ((next - one) / rough).round());
+            Some(*number)
+        })
+        .collect();
+    let numbers = || std::iter::once(0.0).chain(numbers.iter().copied());
+    let middle = numbers().sum::<f64>() / count;
     let mean = times.iter().sum::<f64>() / count;
-    let centered = || times.iter().enumerate().map(|(number, time)| (number as f64 - middle, time - mean));
+    let centered = || numbers().zip(times).map(|(number, time)| (number - middle, time - mean));
     let squares: f64 = centered().map(|(number, _)| number * number).sum();
     let slope = centered().map(|(number, time)| number * time).sum::<f64>() / squares;
     let rest: f64 = centered().map(|(number, time)| (time - slope * number).powi(2)).sum();

@@ -64,7 +64,7 @@ pub const TERMS: &[Term] = &[
     Term {
         name: "Damping ratio ζ",
         spellings: &["damping ratio"],
-        definition: "Damping as a share of critical damping: ζ = λ/ω. A free swing loses about the share 2πζ of its \
+        definition: "Damping as a share of critical damping: ζ = λ/√(λ² + ω²), near λ/ω where it is small. A free swing loses about the share 2πζ of its \
                      amplitude in each period.",
     },
     Term {

@@ -16,7 +16,7 @@ struct RunPage<'a> {
     estimator: &'a str,
     comparison: Vec<ComparisonRow>,
     /// Titles and facts.
-    cards: [(&'static str, Vec<Fact>); 3],
+    cards: Vec<(&'static str, Vec<Fact>)>,
     seeds: Vec<SeedView>,
     figures: Vec<Figure>,
     has_trace: bool,
@@ -39,7 +39,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
             ("Training", tables::training(result)),
             ("Envelope", tables::envelope(result)),
             ("Reference", tables::oracle(result)),
-        ],
+        ]
+        .into_iter()
+        .chain(result.truth.as_ref().map(|known| ("Truth of the simulated record", tables::truth(known))))
+        .collect(),
         seeds: tables::seeds(&result.seeds),
         figures: figures(run),
         has_trace: !run.trace.is_empty(),

@@ -1,6 +1,6 @@
 //! Sentences that a page and the terminal share: one function makes each.
 
-use runs::result::{BarRow, DataSummary, OracleSummary};
+use runs::result::{BarRow, DataSummary, DiagnosisResult, OracleSummary, TruthComparison};
 
 use crate::format;
 
@@ -28,6 +28,31 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
     }
     sentences.extend(data.findings.iter().cloned());
     sentences
+}
+
+/// Whether all that a diagnosis names lies in the measurement chain, and nothing in the equation of motion: `none` is then
+/// more probable than not beside the effects.
+#[must_use]
+pub fn is_of_the_chain_only(result: &DiagnosisResult) -> bool {
+    let none = result.effects.iter().find(|row| row.id == "none");
+    result.verdict.status == "effect" && none.is_some_and(|row| row.probability > 0.5)
+}
+
+/// Rows about the truth of a simulated record and how far the answer is from it: a name and a sentence each.
+#[must_use]
+pub fn truth_rows(known: &TruthComparison) -> Vec<(&'static str, String)> {
+    let mut rows = Vec::new();
+    if let (Some(omega), Some(off)) = (known.omega_rad_s, known.omega_off_percent) {
+        rows.push(("true ω", format!("{omega:.6} rad/s; found {off:+.2} % from it")));
+    }
+    if let (Some(zeta), Some(off)) = (known.zeta, known.zeta_off_percent) {
+        let errors = known
+            .zeta_off_std_errors
+            .map_or_else(String::new, |errors| format!(", {errors:+.1} standard errors"));
+        rows.push(("true ζ", format!("{}; found {off:+.2} % from it{errors}", format::significant(zeta, 6))));
+    }
+    rows.push(("of the truth", known.meaning.clone()));
+    rows
 }
 
 /// Manner in which a file was read, without the words `read as`; `None` in results of versions that did not say it.

@@ -1,6 +1,6 @@
 //! The tables of the page: which number stands where, and to how many digits.
 
-use runs::result::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow};
+use runs::result::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
 
@@ -110,6 +110,11 @@ pub(crate) fn oracle(result: &EstimationResult) -> Vec<Fact> {
         fact("Condition number, columns scaled", significant(oracle.condition, 3)),
         fact("Autocorrelation of the residuals at lag one", fixed(oracle.residual_autocorrelation, 3)),
     ]
+}
+
+/// The truth of a simulated record, and how far the answer is from it.
+pub(crate) fn truth(known: &TruthComparison) -> Vec<Fact> {
+    crate::remarks::truth_rows(known).into_iter().map(|(name, value)| fact(name, value)).collect()
 }
 
 /// Where the record came from.

@@ -212,7 +212,9 @@ fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
     let oracle = &run.input.oracle;
     let omega = run.input.extraction.envelope.omega_rad_s();
     let period = run.input.extraction.period_s;
-    let stiffness = scoring::stiffness(inertia, omega);
+    // Whichever way ζ was defined, λ/ζ is the frequency that belongs to the stiffness.
+    let natural = if oracle.zeta == 0.0 { omega } else { oracle.decay_rate / oracle.zeta };
+    let stiffness = scoring::stiffness(inertia, natural);
     Derived {
         period_s: period,
         frequency_hz: 1.0 / period,
@@ -222,7 +224,7 @@ fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
         damping_n_m_s_per_rad: scoring::damping_coefficient(inertia, oracle.decay_rate),
         critical_damping_n_m_s_per_rad: scoring::critical_damping(inertia, stiffness),
         quality_factor: scoring::quality_factor(oracle.zeta),
-        cycles_to_one_over_e: scoring::cycles_to_one_over_e(oracle.zeta),
+        cycles_to_one_over_e: scoring::cycles_to_one_over_e(oracle.decay_rate / omega),
         half_life_s: scoring::half_life(oracle.decay_rate),
         time_constant_s: scoring::time_constant(oracle.decay_rate),
     }

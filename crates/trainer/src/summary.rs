@@ -99,23 +99,8 @@ fn numbers(result: &EstimationResult) -> String {
 
 /// The truth of a simulated record, and how far the answer is from it.
 fn truth(known: Option<&TruthComparison>) -> Vec<Vec<String>> {
-    let Some(known) = known else { return Vec::new() };
-    let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let mut rows = Vec::new();
-    if let (Some(omega), Some(off)) = (known.omega_rad_s, known.omega_off_percent) {
-        rows.push(row("true ω", format!("{omega:.6} rad/s; found {off:+.2} % from it")));
-    }
-    if let (Some(zeta), Some(off)) = (known.zeta, known.zeta_off_percent) {
-        let errors = known
-            .zeta_off_std_errors
-            .map_or_else(String::new, |errors| format!(", {errors:+.1} standard errors"));
-        rows.push(row(
-            "true ζ",
-            format!("{}; found {off:+.2} % from it{errors}", format::significant(zeta, 6)),
-        ));
-    }
-    rows.push(row("of the truth", known.meaning.clone()));
-    rows
+    let rows = known.map(report::truth_rows).unwrap_or_default();
+    rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect()
 }
 
 /// A comparison as a person wants to read it: the paper's Tables 3 to 5 in one screen or two.
@@ -259,13 +244,20 @@ fn pipelines(pipelines: &[PipelineRow]) -> String {
                         format!("{r_squared:.5}"),
                     ]);
                 }
-                PipelineOutcome::Failed { reason } => cells.push(reason.clone()),
+                PipelineOutcome::Failed { .. } => cells.push("none".to_owned()),
             }
             cells
         })
         .collect();
     let header = ["", "pipeline", "clock", "peaks", "ω rad/s", "λ 1/s", "ζ", "R²"];
-    format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows))
+    let mut text =
+        format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows));
+    for row in pipelines {
+        if let PipelineOutcome::Failed { reason } = &row.outcome {
+            text.push_str(&format!("\n{}, {}: {reason}", row.pipeline, row.clock));
+        }
+    }
+    text
 }
 
 fn ending(folder: &Path) -> String {

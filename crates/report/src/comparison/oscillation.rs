@@ -28,8 +28,8 @@ pub(super) fn parameters(result: &ComparisonResult) -> WordTable {
     WordTable {
         id: "oscillation",
         title: "Table 3: oscillation parameters".to_owned(),
-        note: "By certified least squares of ln A on t; λ = −slope, ζ = λ/ω, and A₀ is the amplitude at \
-               the first peak. The standard errors and the interval assume independent residuals and \
+        note: "By certified least squares of ln A on t; λ = −slope, ζ = λ/√(λ² + ω²) (in the paper's pipeline λ/ω), and A₀ is \
+               the amplitude at the first peak. The standard errors and the interval assume independent residuals and \
                take ω as known."
             .to_owned(),
         columns: ["Parameter", "Value ± standard error", "Unit"],
@@ -61,21 +61,21 @@ pub(super) fn derived(result: &ComparisonResult) -> WordTable {
     let critical = significant(derived.critical_damping_n_m_s_per_rad, 4);
     let mechanical = if derived.per_unit_of_inertia {
         vec![
-            ("Stiffness per unit of inertia", stiffness, "1/s²", "k/I = ω²"),
+            ("Stiffness per unit of inertia", stiffness, "1/s²", "k/I = (λ/ζ)²"),
             ("Damping per unit of inertia", damping, "1/s", "c/I = 2·λ"),
-            ("Critical damping per unit of inertia", critical, "1/s", "2·ω"),
+            ("Critical damping per unit of inertia", critical, "1/s", "2·λ/ζ"),
         ]
     } else {
         vec![
             ("Moment of inertia I", significant(derived.inertia_kg_m2, 4), "kg·m²", "as configured"),
-            ("Stiffness k", stiffness, "N·m/rad", "k = I·ω²"),
+            ("Stiffness k", stiffness, "N·m/rad", "k = I·(λ/ζ)²"),
             ("Damping coefficient c", damping, "N·m·s/rad", "c = 2·I·λ"),
             ("Critical damping", critical, "N·m·s/rad", "c_crit = 2·√(k·I)"),
         ]
     };
     let others = [
         ("Quality factor Q", with(derived.quality_factor), "", "Q = 1/(2ζ)"),
-        ("Cycles to 1/e of the amplitude", with(derived.cycles_to_one_over_e), "", "ω/(2π·λ) = Q/π"),
+        ("Cycles to 1/e of the amplitude", with(derived.cycles_to_one_over_e), "", "ω/(2π·λ)"),
         ("Half-life of the amplitude", with(derived.half_life_s), "s", "ln 2/λ"),
         ("Time constant of the amplitude", with(derived.time_constant_s), "s", "1/λ"),
     ];

@@ -16,6 +16,7 @@ use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
 use crate::plot::Hue;
+use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
 use crate::verdict::{self, Origin, Tone, Verdict, in_a_sentence};
 use crate::{ReportError, RunTexts, format};
@@ -93,6 +94,7 @@ fn headline(result: &DiagnosisResult) -> Verdict {
     let (tone, label) = match result.verdict.status.as_str() {
         "none" => (explained, "Nothing is missing"),
         "calibration" => (explained, "Only calibration"),
+        "effect" if is_of_the_chain_only(result) => (explained, "Nothing is missing in the motion"),
         "effect" => (explained, "Missing effect"),
         "unknown" => (Tone::Caution, "Unknown: a gap without a name"),
         _ => (Tone::Caution, "Verdict not known to this report"),

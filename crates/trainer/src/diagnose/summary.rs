@@ -33,6 +33,7 @@ fn verdict(result: &DiagnosisResult) -> String {
     let label = match result.verdict.status.as_str() {
         "none" => "NOTHING IS MISSING",
         "calibration" => "CALIBRATION",
+        "effect" if report::is_of_the_chain_only(result) => "NOTHING IS MISSING IN THE MOTION",
         "effect" => "MISSING EFFECT",
         _ => "UNKNOWN",
     };
@@ -50,6 +51,7 @@ fn gap(result: &DiagnosisResult) -> String {
     let closed = |of: &WithInterval| format!("closes {}", share_with_interval(of));
     let same = gap.repaired == gap.recalibrated;
     let nothing = result.verdict.status == "none";
+    let [low, high] = gap.closure.interval_95;
     let mut rows = vec![
         row("simulator as given", gap.nominal, String::new()),
         row("recalibrated", gap.recalibrated, String::new()),
@@ -58,6 +60,8 @@ fn gap(result: &DiagnosisResult) -> String {
             gap.repaired,
             if nothing {
                 "there is no gap to close".to_owned()
+            } else if high - low >= 1.0 {
+                "the gap is too small beside the noise to say how much of it closes".to_owned()
             } else {
                 format!("{} of the whole gap", closed(&gap.closure))
             },
@@ -65,7 +69,9 @@ fn gap(result: &DiagnosisResult) -> String {
         row("ceiling: a free torque on top", gap.ceiling, String::new()),
         row("noise floor", gap.noise_floor, format!("95 %: {}", interval(gap.noise_floor_interval_95))),
     ];
-    if let Some(note) = rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing) {
+    if let Some(note) =
+        rows.get_mut(2).and_then(|row| row.last_mut()).filter(|_| !same && !nothing && high - low < 1.0)
+    {
         note.push_str(&format!(
             ", {} of what recalibration leaves",
             share_with_interval(&gap.closure_of_recalibrated)
@@ -122,15 +128,15 @@ fn apart(result: &DiagnosisResult) -> String {
         .map(|class| format!("not distinguishable on these data: {}", class.join(" ~ ")))
         .collect();
     if lines.is_empty() {
-        lines.push(match result.rivals.first() {
-            Some(rival) if rival.distance.is_finite() => format!(
+        lines.extend(result.rivals.first().map(|rival| match rival {
+            rival if rival.distance.is_finite() => format!(
                 "distinguishable: {} is closest to {}, {} noise standard deviations away ({DISTINCT_DISTANCE} are enough)",
                 rival.rival,
                 rival.effect,
                 significant(rival.distance, 2)
             ),
             _ => "every effect that was found is distinguishable from the others".to_owned(),
-        });
+        }));
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
         let enough = if distance < DISTINCT_DISTANCE { ", too little by itself" } else { "" };

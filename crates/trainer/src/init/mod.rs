@@ -149,10 +149,11 @@ impl Found {
         ];
         match (self.oscillator.natural_frequency_hz(), self.oscillator.damping_ratio()) {
             (Some(frequency), Some(ratio)) => {
-                rows.push(row("swing", format!("{} Hz", uncertain(frequency))));
+                rows.push(row("natural frequency", format!("{} Hz, undamped", uncertain(frequency))));
                 rows.push(row("damping ratio", uncertain(ratio)));
             }
-            _ => rows.push(row("swing", "none: nothing pulls it back to a rest position".to_owned())),
+            _ => rows
+                .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
         }
         rows.push(row("", files::basis(&self.oscillator)));
         rows.extend(self.findings().into_iter().map(|finding| row("note", finding)));
