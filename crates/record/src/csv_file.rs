@@ -253,6 +253,8 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         asked.unit.or(heading.unit()).unwrap_or_else(|| assumed_unit(heading, quantity, options.coordinate));
     let (stamps, time_reading, mut findings) = stamps(&table, &chosen, options, &samples);
     findings.extend(note);
+    let stated = [asked.unit, heading.unit()].map(|unit| unit.map(Unit::symbol));
+    findings.extend(contradiction(heading, stated, "data.unit"));
     let (input_factor, input_reading) = input_scale(&table, input, unit, options, &mut findings);
     let reading = Reading {
         format: "csv".to_owned(),
@@ -405,13 +407,27 @@ fn stamps(
     if from_first {
         because.push_str(", counted from the first");
     }
-    let findings = if how == Told::Assumed { odd_rate(&seconds) } else { None };
+    let stated = [asked.time_unit, named.filter(|_| !dates)].map(|unit| unit.map(TimeUnit::name));
+    let findings = if how == Told::Assumed {
+        odd_rate(&seconds)
+    } else {
+        contradiction(heading, stated, "data.time_unit")
+    };
     let reading = ColumnReading {
         column: heading.title.clone(),
         unit: Some(unit.name().to_owned()),
         because: format!("{}; {because}", time.because),
     };
     (seconds, Some(reading), findings.into_iter().collect())
+}
+
+/// A sentence where an option states another unit than the header does.
+fn contradiction(heading: &Heading, [asked, written]: [Option<&str>; 2], key: &str) -> Option<String> {
+    let (asked, written) = asked.zip(written).filter(|(asked, written)| asked != written)?;
+    Some(format!(
+        "the header `{}` states {written}, the options say {asked} and are followed; leave out `{key}` if the header is right",
+        heading.title
+    ))
 }
 
 /// A sentence where stamps that are taken to be seconds make a rate that hardly any logger has.

@@ -260,3 +260,23 @@ fn a_look_tells_columns_and_rate() {
     assert!((found.clock.sample_rate_hz - 100.0).abs() < 1e-6);
     std::fs::remove_file(&folder).unwrap();
 }
+
+/// Options are obeyed; where the header states another unit, that is said.
+#[test]
+fn a_unit_that_contradicts_the_header_is_told() {
+    let text = file("timestamp_ms,displacement_m", |index, _, angle| format!("{},{angle:.6}", 10 * index));
+    let told = |columns: CsvColumns| read_with(&text, columns).1.findings.join(" ");
+    let unit = told(CsvColumns { unit: Some(Unit::Millimeter), ..CsvColumns::default() });
+    assert!(
+        unit.contains("the header `displacement_m` states m, the options say mm and are followed"),
+        "{unit}"
+    );
+    let time = told(CsvColumns { time_unit: Some(TimeUnit::Second), ..CsvColumns::default() });
+    assert!(time.contains("the header `timestamp_ms` states ms, the options say s"), "{time}");
+    let same = CsvColumns {
+        unit: Some(Unit::Meter),
+        time_unit: Some(TimeUnit::Millisecond),
+        ..CsvColumns::default()
+    };
+    assert_eq!(told(same), "");
+}
