@@ -1,8 +1,8 @@
 //! The linear oscillator nearest to a record: a first guess of a nominal simulator where nobody has one.
 //!
 //! Per unit of inertia, θ̈ + 2ζω₀·θ̇ + ω₀²·(θ − θ_rest) = g·u(t). A free decay is read from its turning points
-//! ([`decay`]): these know the damping best. A record with an input, or without turning points enough, is read by
-//! a regression in weak form ([`weak`]), which differentiates smooth windows in place of noisy samples.
+//! (`decay`): these know the damping best. A record with an input, or without turning points enough, is read by
+//! a regression in weak form (`weak`), which differentiates smooth windows in place of noisy samples.
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

@@ -32,7 +32,9 @@ pub enum Fault {
         needed: usize,
     },
     /// The text is not UTF-8.
-    #[error("is not UTF-8 text (byte {offset}); expected a text file with columns")]
+    #[error(
+        "is not UTF-8 text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1"
+    )]
     NotText {
         /// Offset of the first byte that is not text.
         offset: usize,
@@ -49,8 +51,8 @@ pub enum Fault {
     },
     /// Numbers where the columns' names should be.
     #[error(
-        "the first line holds numbers, `{found}`; expected a header with the columns' names above them, for example \
-         time_s,angle_rad"
+        "the first line holds numbers, `{found}`; expected a header with the columns' names above them: put a line \
+         such as time_s,angle_rad in front"
     )]
     NoHeader {
         /// The first line's number, from 1.

@@ -9,6 +9,7 @@ use crate::statement::Statements;
 use crate::unit::{Dimension, Unit};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// Format of a record file.
@@ -76,10 +77,9 @@ pub fn read_file(path: &Path, options: &ReadOptions) -> Result<(Record, Source),
 /// As [`read_file`].
 pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Record, Source), RecordError> {
     let parse = || {
-        let text =
-            std::str::from_utf8(bytes).map_err(|error| Fault::NotText { offset: error.valid_up_to() })?;
+        let text = text_of(bytes)?;
         // Spreadsheets put a byte-order mark in front.
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
         if text.trim().is_empty() {
             return Err(Fault::Empty { needed: crate::FEWEST_SAMPLES });
         }
@@ -93,6 +93,24 @@ pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Rec
     let (record, statements, findings, reading) = parse().map_err(|fault| fault.in_file(name))?;
     let source = Source { path: name.to_owned(), digest: digest(bytes), statements, findings, reading };
     Ok((record, source))
+}
+
+/// The text that bytes are in UTF-8, in UTF-16 where they begin with its byte-order mark, else in Latin-1, which older
+/// loggers and spreadsheets write. Bytes that no text holds are none.
+pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
+    let error = match std::str::from_utf8(bytes) {
+        Ok(text) => return Ok(Cow::Borrowed(text)),
+        Err(error) => Fault::NotText { offset: error.valid_up_to() },
+    };
+    let units = |from: fn([u8; 2]) -> u16| -> Vec<u16> {
+        bytes.chunks_exact(2).filter_map(|pair| Some(from(pair.try_into().ok()?))).collect()
+    };
+    match bytes {
+        [0xff, 0xfe, ..] => String::from_utf16(&units(u16::from_le_bytes)).map(Cow::Owned).map_err(|_| error),
+        [0xfe, 0xff, ..] => String::from_utf16(&units(u16::from_be_bytes)).map(Cow::Owned).map_err(|_| error),
+        _ if bytes.iter().any(|byte| byte.is_ascii_control() && !byte.is_ascii_whitespace()) => Err(error),
+        _ => Ok(Cow::Owned(bytes.iter().map(|byte| char::from(*byte)).collect())),
+    }
 }
 
 /// Whether the first line is that of a host log and the options name no column.

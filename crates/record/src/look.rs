@@ -3,7 +3,7 @@
 use crate::clock::{Clock, ClockChoice};
 use crate::csv_file::Table;
 use crate::error::RecordError;
-use crate::file::{ReadOptions, Source, bytes_of, read_text};
+use crate::file::{ReadOptions, Source, bytes_of, read_text, text_of};
 use crate::record::Record;
 use crate::roles::Kind;
 use std::path::Path;
@@ -46,7 +46,7 @@ pub fn look(path: &Path, options: &ReadOptions) -> Result<Look, RecordError> {
     let bytes = bytes_of(path)?;
     let (record, source) = read_text(&name, &bytes, options)?;
     let clock = Clock::new(&record, ClockChoice::Auto).map_err(|fault| fault.in_file(&name))?;
-    let text = String::from_utf8_lossy(&bytes);
+    let text = text_of(&bytes).map_err(|fault| fault.in_file(&name))?;
     let columns = match source.reading.format.as_str() {
         "csv" => columns(text.trim_start_matches('\u{feff}'), &source),
         _ => Vec::new(),

@@ -280,3 +280,16 @@ fn a_unit_that_contradicts_the_header_is_told() {
     };
     assert_eq!(told(same), "");
 }
+
+/// Spreadsheets and older loggers write the sign for degrees in one byte, or everything in two.
+#[test]
+fn latin_and_utf_16_are_read() {
+    let text = file("time_s;angle [°]", |_, time, angle| format!("{time:.2};{:.6}", angle.to_degrees()));
+    let latin: Vec<u8> = text.chars().map(|sign| u8::try_from(u32::from(sign)).unwrap()).collect();
+    let wide: Vec<u8> =
+        std::iter::once(0xfeff).chain(text.encode_utf16()).flat_map(u16::to_le_bytes).collect();
+    for bytes in [latin, wide] {
+        let read = read_text("r.csv", &bytes, &ReadOptions::default()).unwrap();
+        holds_the_swing(&read, 1e-7);
+    }
+}
