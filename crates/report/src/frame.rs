@@ -31,6 +31,12 @@ pub(crate) struct Frame<'a> {
 }
 
 impl<'a> Frame<'a> {
+    /// The frame with a sentence on pipelines or clocks that disagree before all other warnings.
+    pub(crate) fn disagreeing(mut self, disagreement: Option<&String>) -> Self {
+        self.warnings.splice(0..0, disagreement.cloned());
+        self
+    }
+
     pub(crate) fn new(
         texts: &RunTexts<'a>,
         kicker: &'static str,

@@ -32,7 +32,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportEr
             &result.data,
             &result.oracle,
             &result.pipelines,
-        ),
+        )
+        .disagreeing(result.disagreement.as_ref()),
         estimator: &result.estimator_title,
         comparison: tables::comparison(result),
         cards: [
@@ -55,6 +56,15 @@ mod tests {
     use crate::plot::Hue;
     use crate::sample::Sample;
     use crate::scripts;
+
+    #[test]
+    fn pipelines_that_disagree_are_the_first_warning() {
+        let mut sample = Sample::new();
+        sample.result.disagreement = Some("The paper pipeline puts the frequency 3.7 % away.".into());
+        let page = sample.render().unwrap();
+        let told = page.find("3.7 % away").unwrap();
+        assert!(told < page.find("Key numbers</h2>").unwrap());
+    }
 
     #[test]
     fn two_renders_are_equal_bytes() {

@@ -60,7 +60,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<St
             &result.data,
             &result.oracle,
             &result.pipelines,
-        ),
+        )
+        .disagreeing(result.disagreement.as_ref()),
         oscillation: [oscillation::parameters(result), oscillation::derived(result)],
         methods: methods::tables(result),
         reading: methods::READING,
