@@ -357,7 +357,7 @@ fn another_system_and_other_units_are_refused() {
     refused(&decay(800, 0.7), &other, &[], "this is not the same system, or the units are wrong");
     refused(&decay(800, 0.7), NOMINAL, &["--time-unit", "ms"], "this is not the same system");
     let hertz = NOMINAL.replace("484.0", "12.26");
-    refused(&decay(800, 0.7), &hertz, &[], "near 2 pi: is a frequency in Hz");
+    refused(&decay(800, 0.7), &hertz, &[], "near 2 pi: is a frequency stated in Hz");
     refused(
         &decay(800, 0.7).replace("time_s,angle_rad", "foo,angle_rad"),
         NOMINAL,
