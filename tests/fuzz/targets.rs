@@ -100,7 +100,7 @@ fn record(data: &[u8], options: &ReadOptions) {
             peak_distance: 5,
             prominence: 0.01,
         };
-        let recommended = RecommendedPipeline { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 };
+        let recommended = RecommendedPipeline::DEFAULT;
         let _ = paper.extract(&record, &clock);
         let _ = recommended.extract(&record, &clock);
     }

@@ -24,11 +24,9 @@ pub struct RecommendedPipeline {
     pub floor_in_noise: f64,
 }
 
-impl Default for RecommendedPipeline {
-    /// What a configuration has that says nothing.
-    fn default() -> Self {
-        Self { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 }
-    }
+impl RecommendedPipeline {
+    /// Settings of a configuration that states none.
+    pub const DEFAULT: Self = Self { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 };
 }
 
 /// Most iterations of a singular value decomposition with at most five columns; some ten are usual.

@@ -1,5 +1,6 @@
 //! The configuration keys of an experiment, apart from the estimator's own.
 
+use envelope::RecommendedPipeline;
 use record::{ClockChoice, Format, Missing, Origin, TimeUnit, Unit};
 use settings::{Default, Field, Kind, Section};
 
@@ -249,7 +250,7 @@ pub(crate) const RECOMMENDED: &[Field] = &[
     Field {
         key: "half_width_periods",
         kind: Kind::Float { min: 1e-3, max: 0.25 },
-        default: Default::Float(1.0 / 6.0),
+        default: Default::Float(RecommendedPipeline::DEFAULT.half_width_periods),
         unit: "periods",
         meaning: "Half-width of the stretch around a turning point that a polynomial is fitted to.",
         source: "a quartic follows a sine over this stretch to 3e-4 of its height",
@@ -257,7 +258,7 @@ pub(crate) const RECOMMENDED: &[Field] = &[
     Field {
         key: "floor_in_noise",
         kind: Kind::Float { min: 0.0, max: 1e6 },
-        default: Default::Float(8.0),
+        default: Default::Float(RecommendedPipeline::DEFAULT.floor_in_noise),
         unit: "noise standard deviations",
         meaning: "Smallest amplitude that is used.",
         source: "the logarithm of a height known to 1/8 is known to 0.13 at worst",

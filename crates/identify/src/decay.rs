@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 /// Turning points follow each other by half a period π/ω_d, so that ω_d is π over the slope of their times on their
 /// number; λ is the slope of the logarithms of their heights. Then ω₀² = ω_d² + λ² and 2ζω₀ = 2λ.
 pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscillator> {
-    let extraction = RecommendedPipeline::default().extract(record, clock).ok()?;
+    let extraction = RecommendedPipeline::DEFAULT.extract(record, clock).ok()?;
     let envelope = &extraction.envelope;
     let line = oracle::decay_rate(envelope).ok()?;
     let half_period = half_period(envelope, 0.5 * extraction.period_s)?;

@@ -10,8 +10,7 @@ use seed::Seed;
 use std::f64::consts::TAU;
 
 /// As the configuration has them by default.
-const RECOMMENDED: RecommendedPipeline =
-    RecommendedPipeline { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 };
+const RECOMMENDED: RecommendedPipeline = RecommendedPipeline::DEFAULT;
 
 /// A free decay of a linear oscillator and how it is observed.
 #[derive(Debug)]

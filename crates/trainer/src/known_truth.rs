@@ -146,7 +146,7 @@ fn known(keys: Keys, input: &Input) -> Result<Known, TrainerError> {
 fn equivalent(input: &Input, times: Vec<f64>, positions: Vec<f64>) -> Option<f64> {
     let record = Record::new(times, positions, None, Quantity::Position, input.record.unit()).ok()?;
     let clock = Clock::new(&record, ClockChoice::Host).ok()?;
-    let pipeline = RecommendedPipeline { half_width_periods: 1.0 / 6.0, floor_in_noise: 8.0 };
+    let pipeline = RecommendedPipeline::DEFAULT;
     let clean = pipeline.extract(&record, &clock).ok()?;
     // Half of a half-cycle to either side: the same turning points and no others.
     let margin = clean.period_s / 4.0;
