@@ -1,6 +1,6 @@
 //! The answer of a diagnosis, as plain data.
 
-use crate::noise::NoiseFloor;
+use crate::noise::floor::NoiseFloor;
 use dynamics::{Active, Nominal};
 use serde::Serialize;
 

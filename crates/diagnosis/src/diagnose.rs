@@ -1,30 +1,35 @@
 //! From observations to an answer, stage by stage.
 
 use crate::answer::{Budget, Cell, Diagnosis, Finding, MeasuringChain, Series, SetScore, Stage, Where};
-use crate::budget::budget;
-use crate::calibrate::{Baseline, better_hold};
-use crate::candidate::Candidate;
-use crate::coefficients::{calibration, known};
-use crate::conclusion::{Parts, probabilities, verdict};
-use crate::dictionary::Dictionary;
+use crate::data::observations::Observations;
+use crate::data::release;
+use crate::data::segments::{Data, MOST_SEARCHED, cut};
+use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
-use crate::fit::{Effort, Fit, Moving, Point, fit};
-use crate::gap::{Stages, gap, paired};
-use crate::held_out::HeldOut;
-use crate::horizon::Horizon;
-use crate::observations::Observations;
-use crate::pool::Pool;
-use crate::refine::refine;
-use crate::repaired::repaired as repaired_simulator;
-use crate::search::{Breadth, search};
-use crate::segments::{Data, MOST_SEARCHED, cut};
-use crate::stand_ins::Question;
-use crate::tangent::Path;
-use crate::unexplained::unexplained;
-use crate::unnamed::unnamed;
-use crate::verdict::{acts, by_members, unknown, weigh, without_passed_over};
-use crate::work::{Thin, Unjoined, Work};
-use crate::{chain_statistics, experiment, latent, maps, noise, null, reading, release, stand_ins};
+use crate::evidence::conclusion::{Parts, probabilities, verdict};
+use crate::evidence::context::{Context, Thin, Unjoined};
+use crate::evidence::discrepancy;
+use crate::evidence::held_out::HeldOut;
+use crate::evidence::left_over::unexplained;
+use crate::evidence::weights::{acts, by_members, unknown, weigh, without_passed_over};
+use crate::explain::attribution::budget;
+use crate::explain::coefficients::{calibration, known};
+use crate::explain::gap::{Stages, gap, paired};
+use crate::explain::position_torque::unnamed;
+use crate::explain::repaired::repaired as repaired_simulator;
+use crate::explain::{maps, next_experiment};
+use crate::fit::calibrate::{Baseline, better_hold};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::measurement::{encoder_hysteresis, signatures};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::Dictionary;
+use crate::model::tangent::Path;
+use crate::noise::floor as noise;
+use crate::search::archive::Archive;
+use crate::search::beam::{Breadth, search};
+use crate::search::refine::refine;
+use crate::search::surrogates::Question;
+use crate::search::{null, surrogates};
 use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
 use seed::Seed;
@@ -90,10 +95,10 @@ pub fn diagnose(
         stages.push(Stage { name, seconds: now - last });
         last = now;
     };
-    let kept: Vec<Vec<bool>> = records.iter().map(chain_statistics::kept).collect();
+    let kept: Vec<Vec<bool>> = records.iter().map(signatures::kept).collect();
     let (free, unreleased) = free(records, &kept);
     let all = cut(records, &free, simulator)?;
-    let unseen = chain_statistics::without_motion(&free, all.samples());
+    let unseen = signatures::without_motion(&free, all.samples());
     let sparser = all.sparser(MOST_SEARCHED);
     let data = sparser.thinned(MOST_SEARCHED);
     let is_whole = data.samples() == sparser.samples();
@@ -107,8 +112,13 @@ pub fn diagnose(
     candidates.retain(|candidate| settings.considers(candidate.id()));
     let coarse = data.strided();
     let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
-    let coarse_base =
-        fit(&coarse, &base.calibrated.hypothesis, base.calibrated.point.clone(), Moving::All, Effort::FINAL)?;
+    let coarse_base = fit(
+        &coarse,
+        &base.calibrated.hypothesis,
+        base.calibrated.point.clone(),
+        Moving::All,
+        Stopping::FINAL,
+    )?;
     let dictionary = Dictionary::at(&coarse, &coarse_base, &candidates)?;
     let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
     lap("null");
@@ -127,7 +137,7 @@ pub fn diagnose(
     let data = &data.joined(horizon.by);
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
-    let mut pool = refine(data, &Pool::of(&base.calibrated), &found, &candidates, finer);
+    let mut pool = refine(data, &Archive::of(&base.calibrated), &found, &candidates, finer);
     if let Some((known, others)) = found.misled(&pool, &candidates) {
         found = search(coarse, coarse_base, known, &others, &breadth, enough);
         pool = refine(data, &pool, &found, &others, finer);
@@ -141,12 +151,12 @@ pub fn diagnose(
     if let Some(part) = question.better_part(&leader)? {
         pool.admit(data, part.clone());
         weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, vocabulary));
-        weighed = stand_ins::remaining(weighed, &leader.hypothesis.candidates, &part);
+        weighed = surrogates::remaining(weighed, &leader.hypothesis.candidates, &part);
     }
     lap("stand-ins");
 
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
-    let work = Work { data, base, segments, pool: &pool, thin, time, settings };
+    let work = Context { data, base, segments, pool: &pool, thin, time, settings };
     let held = work.held_out(&weighed)?;
     let repaired = held.repaired;
     let weighed = without_passed_over(weighed, repaired);
@@ -161,7 +171,7 @@ pub fn diagnose(
     let floors = noise::squares(segments.data, &fitted.residuals);
     let floor = noise::of_squares(&floors);
     let paths = Path::of(segments.data, fitted)?;
-    let ceiling = latent::ceiling(segments.data, fitted, &paths)?;
+    let ceiling = discrepancy::ceiling(segments.data, fitted, &paths)?;
     lap("latent torque");
     let unit = records.first().map_or("", |record| record.unit);
     let figures = gap(
@@ -206,7 +216,7 @@ pub fn diagnose(
     let noise_coarse = floor.value * time.sqrt();
     let next_experiment = closest
         .filter(|rival| !rival.hypothesis.candidates.is_empty())
-        .and_then(|rival| experiment::next(coarse, repaired, rival, noise_coarse / finer.sqrt()));
+        .and_then(|rival| next_experiment::next(coarse, repaired, rival, noise_coarse / finer.sqrt()));
     lap("identifiability");
 
     let beyond = (after.mean_square() - noise_square).max(0.0) * data.samples() as f64;
@@ -226,7 +236,7 @@ pub fn diagnose(
     lap("maps");
 
     let mut measuring_chain = chain(records, &kept, &seen(simulator)?, segments.data, fitted, floor.value);
-    let behind = reading::finding(data, complete);
+    let behind = encoder_hysteresis::finding(data, complete);
     measuring_chain.findings.extend(unreleased.into_iter().chain(unseen).chain(behind));
     let is_known = |id: &str| simulator.effects().iter().any(|known| known.active.id() == id);
     for finding in &mut measuring_chain.findings {
@@ -251,7 +261,7 @@ pub fn diagnose(
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
     let calibration = calibration(&work, complete);
     let is_rounded = measuring_chain.findings.iter().any(|own| own.effect == Some("sensor_quantization"));
-    let own = Horizon { by: horizon.by, data: data.clone(), calibrated: complete.clone() };
+    let own = ShootingInterval { by: horizon.by, data: data.clone(), calibrated: complete.clone() };
     // Parts that were left out of long records have nothing to go on through.
     let followed = if is_whole { segments.data } else { data };
     let repaired = repaired_simulator(own, followed, simulator, is_rounded)?;
@@ -297,17 +307,17 @@ fn explore(
     breadth: &Breadth,
     threshold: f64,
     is_whole: bool,
-) -> (Horizon, Pool) {
-    let begin = |horizon: &Horizon| {
+) -> (ShootingInterval, Archive) {
+    let begin = |horizon: &ShootingInterval| {
         search(&horizon.data, &horizon.calibrated, Vec::new(), candidates, breadth, threshold)
     };
-    let shortest = Horizon::shortest(segments, calibrated);
+    let shortest = ShootingInterval::shortest(segments, calibrated);
     // Parts that were left out of long records have nothing to go on through.
     if !is_whole {
         let pool = begin(&shortest);
         return (shortest, pool);
     }
-    let mut horizon = Horizon::longest(segments, calibrated);
+    let mut horizon = ShootingInterval::longest(segments, calibrated);
     let mut pool = begin(&horizon);
     if horizon.by > 1 && !horizon.is_followed(segments, &pool) {
         pool = begin(&shortest);
@@ -322,7 +332,11 @@ fn explore(
 }
 
 /// The given and the recalibrated simulator on every sample of a horizon.
-fn followed(data: &Data, segments: &Unjoined<'_>, horizon: &Horizon) -> Result<Baseline, DiagnosisError> {
+fn followed(
+    data: &Data,
+    segments: &Unjoined<'_>,
+    horizon: &ShootingInterval,
+) -> Result<Baseline, DiagnosisError> {
     if horizon.by == 1 {
         return Ok(segments.base.clone());
     }
@@ -330,9 +344,9 @@ fn followed(data: &Data, segments: &Unjoined<'_>, horizon: &Horizon) -> Result<B
     let firsts = data.firsts();
     let starts = firsts.iter().filter_map(|&first| segments.base.nominal.point.starts.get(first).cloned());
     let point = Point { globals: hypothesis.nominal_point(), starts: starts.collect() };
-    let nominal = fit(data, hypothesis, point, Moving::Starts, Effort::FINAL)?;
+    let nominal = fit(data, hypothesis, point, Moving::Starts, Stopping::FINAL)?;
     let point = horizon.calibrated.point.clone();
-    let calibrated = fit(data, hypothesis, point, Moving::All, Effort::FINAL)?;
+    let calibrated = fit(data, hypothesis, point, Moving::All, Stopping::FINAL)?;
     Ok(Baseline { nominal, calibrated })
 }
 
@@ -348,7 +362,7 @@ fn free(records: &[Observations], kept: &[Vec<bool>]) -> (Vec<Vec<bool>>, Vec<Fi
 }
 
 fn refit(data: &Data, found: &Fit) -> Result<Fit, DiagnosisError> {
-    Ok(fit(data, &found.hypothesis, found.point.clone(), Moving::All, Effort::HELD_OUT)?)
+    Ok(fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::HELD_OUT)?)
 }
 
 /// The nominal oscillator with the sensor's step, also where the simulator states that as an effect.
@@ -389,14 +403,14 @@ fn chain(
     let mut findings: Vec<Finding> = records
         .iter()
         .zip(kept)
-        .flat_map(|(record, kept)| chain_statistics::findings(record, kept, nominal))
+        .flat_map(|(record, kept)| signatures::findings(record, kept, nominal))
         .collect();
-    findings.extend(chain_statistics::quantization(data, noise, nominal));
-    findings.extend(chain_statistics::frequencies(records));
+    findings.extend(signatures::quantization(data, noise, nominal));
+    findings.extend(signatures::frequencies(records));
     let host = records.iter().any(|record| record.clock == ClockKind::Host);
     let known = findings.iter().any(|finding| finding.effect == Some("timestamp_jitter"));
     if host && !known {
-        findings.extend(chain_statistics::noise_with_speed(data, repaired));
+        findings.extend(signatures::noise_with_speed(data, repaired));
     }
     let first = records.first();
     MeasuringChain {

@@ -1,0 +1,8 @@
+//! Records as the fits see them: observations, segments and the scales they set.
+
+pub(crate) mod observations;
+pub(crate) mod period;
+pub(crate) mod release;
+pub(crate) mod scales;
+pub(crate) mod segments;
+pub(crate) mod shooting_interval;

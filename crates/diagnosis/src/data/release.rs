@@ -1,0 +1,71 @@
+//! Where a record begins to swing freely.
+//!
+//! Whoever logs a release starts the log first: a hand holds the body, or draws it back, until it lets go. A free swing passes
+//! its middle twice in a period, so that what goes before the first passage by more than half a period was no
+//! free swing.
+
+use crate::answer::Finding;
+use crate::data::observations::Observations;
+use crate::data::period::swing;
+
+/// Part of a period before the first passage that is no free swing any more; half of it, with room for a period that is
+/// longer at large amplitude.
+const TOO_LONG: f64 = 0.75;
+
+/// Cycles that a swing has to go on for afterwards.
+const FEWEST_CYCLES: f64 = 3.0;
+
+/// The time in seconds up to which a record is not swinging freely; `None` where it does from the beginning, or is driven.
+/// The last quarter period before the first passage is free, but where it begins is not known.
+pub(crate) fn held_until(record: &Observations) -> Option<f64> {
+    let found = swing(&record.times_s, &record.values).filter(|_| record.input.is_none())?;
+    let is_held = found.first_s > TOO_LONG * found.period_s && found.cycles >= FEWEST_CYCLES;
+    is_held.then_some(found.first_s)
+}
+
+/// What is said of it.
+pub(crate) fn finding(until_s: f64) -> Finding {
+    Finding {
+        effect: None,
+        text: format!(
+            "the first {until_s:.2} s are no free swing and are left out: until the release something held the body"
+        ),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::held_until;
+    use crate::data::observations::Observations;
+    use record::{Clock, ClockChoice, Quantity, Record};
+
+    /// 20 s at 100 samples a second: what is given until some second, and from there on a swing of one period a
+    /// second, released at rest.
+    fn record(until: f64, before: impl Fn(f64) -> f64) -> Observations {
+        let times: Vec<f64> = (0..2000).map(|i| f64::from(i) / 100.0).collect();
+        let swing = |t: f64| 0.5 * (-0.1 * t).exp() * (std::f64::consts::TAU * t).cos();
+        let values = times.iter().map(|&t| if t < until { before(t) } else { swing(t - until) }).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap())
+    }
+
+    #[test]
+    fn what_goes_before_the_release_is_seen() {
+        for until in [0.0, 0.1, 0.3] {
+            assert_eq!(held_until(&record(until, |_| 0.5)), None, "{until}");
+        }
+        for until in [0.6, 3.0] {
+            let quarter = until + 0.25;
+            let drawn_back = |t: f64| 0.4 + 0.1 * t / until;
+            for found in [held_until(&record(until, |_| 0.5)), held_until(&record(until, drawn_back))] {
+                assert!((found.unwrap() - quarter).abs() < 0.03, "{until} {found:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_struck_at_rest_swings_from_its_first_turn_on() {
+        let found = held_until(&record(2.0, |_| 0.0)).unwrap();
+        assert!((found - 2.25).abs() < 0.02, "{found}");
+    }
+}

@@ -1,0 +1,483 @@
+//! Records cut into segments with start states of their own: multiple shooting.
+//!
+//! A single start for a whole record lets the phase wrap and falls into local minima; a segment of a few periods
+//! does not. Each segment forgets what went before it, so that what is fitted is the law, not the history.
+
+use crate::data::observations::Observations;
+use crate::data::period::swing;
+use crate::data::scales::Scales;
+use crate::error::DiagnosisError;
+use crate::model::matrices::element;
+use crate::noise::statistics::{median, quantile};
+use dynamics::{Coordinate, Hold, Input, NominalSimulator};
+use record::Quantity;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Periods in a segment.
+pub(crate) const PERIODS: f64 = 6.0;
+
+/// Time constants I/c in a segment where there is no spring.
+const TIME_CONSTANTS: f64 = 3.0;
+
+/// Fewest samples of a segment.
+const FEWEST_PER_SEGMENT: usize = 24;
+
+/// Fewest samples and cycles of a record.
+const FEWEST_SAMPLES: usize = 50;
+const FEWEST_CYCLES: f64 = 3.0;
+
+/// Most samples that are looked at; of more, every so many are taken for as long as a swing is still well sampled, and
+/// longer data are thinned by whole segments, so that the time of an answer is bounded.
+pub(crate) const MOST_SEARCHED: usize = 20_000;
+
+/// Samples in a period that a search looks at.
+const SEARCHED_PER_PERIOD: f64 = 20.0;
+
+/// Steps of the sensor that a motion has to span to be seen.
+const FEW_STEPS: f64 = 2.5;
+
+/// Part of its largest excursion that a motion counts as visible.
+const VISIBLE: f64 = 0.02;
+
+/// Factor between measured and nominal period from which on they are not the same system.
+const ANOTHER_SYSTEM: f64 = 2.0;
+
+/// A stretch of a record.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Segment {
+    /// Which record.
+    pub(crate) record: usize,
+    /// Whether the record begins with it: hidden states are relaxed then.
+    pub(crate) first: bool,
+    pub(crate) times: Vec<f64>,
+    pub(crate) values: Vec<f64>,
+    /// Whether no reading differs from the one before: it is at rest.
+    pub(crate) still: bool,
+    /// Where in it each of the segments begins that it was joined from; `[0]` for one as it was cut.
+    pub(crate) parts: Vec<usize>,
+    /// A start state to begin a fit from: position and velocity.
+    pub(crate) guess: [f64; 2],
+}
+
+/// All segments, and what is common to them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Data {
+    pub(crate) segments: Vec<Segment>,
+    /// Each record's input.
+    pub(crate) inputs: Vec<Option<Input>>,
+    pub(crate) quantity: Quantity,
+    pub(crate) facts: Scales,
+    /// Measured period in seconds, of a free swing.
+    pub(crate) period_s: Option<f64>,
+    /// The sensor's step, where there is one.
+    pub(crate) resolution: Option<f64>,
+}
+
+impl Segment {
+    /// From the first sample to the last, in seconds.
+    pub(crate) fn span(&self) -> f64 {
+        match self.times.as_slice() {
+            [first, .., last] => last - first,
+            _ => 0.0,
+        }
+    }
+
+    /// The samples of each of the segments that it was joined from.
+    pub(crate) fn part_ranges(&self) -> impl Iterator<Item = Range<usize>> {
+        let ends = self.parts.iter().skip(1).copied().chain([self.times.len()]);
+        self.parts.iter().copied().zip(ends).map(|(from, to)| from..to)
+    }
+}
+
+impl Data {
+    /// Span of the longest segment, in seconds.
+    pub(crate) fn longest_span(&self) -> f64 {
+        self.segments.iter().map(Segment::span).fold(0.0, f64::max)
+    }
+
+    pub(crate) fn samples(&self) -> usize {
+        self.segments.iter().map(|segment| segment.times.len()).sum()
+    }
+
+    /// Only some of the segments.
+    pub(crate) fn only(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let segments = self.segments.iter().enumerate().filter(|(index, _)| keep(*index));
+        Self { segments: segments.map(|(_, segment)| segment.clone()).collect(), ..self.clone() }
+    }
+
+    /// Mean time between the samples of a segment: longer than between those of the record where only every
+    /// so many are taken.
+    pub(crate) fn interval(&self) -> f64 {
+        let steps: usize = self.segments.iter().map(|segment| segment.times.len().saturating_sub(1)).sum();
+        let spans = self.segments.iter().filter_map(|s| Some(s.times.last()? - s.times.first()?));
+        spans.sum::<f64>() / steps.max(1) as f64
+    }
+
+    /// Every second sample or fewer, to at most so many, but no fewer in a period than a search looks at.
+    pub(crate) fn sparser(&self, most: usize) -> Self {
+        let wanted = self.samples().div_ceil(most.max(1));
+        self.every(wanted.min(self.spare()))
+    }
+
+    /// How many times more samples there are in a period, and in the shortest segment, than a search looks at.
+    fn spare(&self) -> usize {
+        let per_period = TAU / (self.facts.frequency * self.facts.interval);
+        let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
+        ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
+    }
+
+    fn every(&self, stride: usize) -> Self {
+        let segments = self.segments.iter().map(|segment| Segment {
+            times: segment.times.iter().copied().step_by(stride).collect(),
+            values: segment.values.iter().copied().step_by(stride).collect(),
+            ..segment.clone()
+        });
+        Self { segments: segments.collect(), ..self.clone() }
+    }
+
+    /// Thinned by whole segments, evenly spaced in pairs of neighbors (so that even and odd ones stay both), to at
+    /// most so many samples.
+    pub(crate) fn thinned(&self, most: usize) -> Self {
+        let samples = self.samples();
+        if samples <= most {
+            return self.clone();
+        }
+        let pairs = self.segments.len().div_ceil(2);
+        let wanted = ((pairs * most / samples).max(2)).min(pairs);
+        let kept: Vec<usize> = (0..wanted).map(|at| at * pairs / wanted).collect();
+        self.only(|index| kept.binary_search(&(index / 2)).is_ok())
+    }
+
+    /// Every so many samples only, for a search: a swing sampled 75 times a period says hardly more about which
+    /// law it follows than one sampled 20 times.
+    pub(crate) fn strided(&self) -> Self {
+        self.every(self.spare())
+    }
+
+    /// The same, integrated as accurately as a noise of this size asks for.
+    pub(crate) fn for_noise(&self, noise: f64) -> Self {
+        let values = || self.segments.iter().flat_map(|segment| segment.values.iter().copied());
+        let span = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+        Self { facts: self.facts.with_noise(noise, 0.5 * span), ..self.clone() }
+    }
+
+    pub(crate) fn driven(&self) -> bool {
+        self.inputs.iter().any(Option::is_some)
+    }
+
+    /// The same with another belief about the input between its samples.
+    pub(crate) fn holding(&self, hold: Hold) -> Result<Self, DiagnosisError> {
+        let inputs = self.inputs.iter().map(|input| {
+            input.as_ref().map(|i| Input::new(i.times().to_vec(), i.values().to_vec(), hold)).transpose()
+        });
+        Ok(Self { inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
+    }
+}
+
+/// Checks records against the nominal simulator and cuts them. `kept` tells which samples are no outliers.
+pub(crate) fn cut(
+    records: &[Observations],
+    kept: &[Vec<bool>],
+    simulator: &NominalSimulator,
+) -> Result<Data, DiagnosisError> {
+    let first = records.first().ok_or(DiagnosisError::NoRecord)?;
+    let mut swings = Vec::new();
+    for (index, record) in records.iter().enumerate() {
+        swings.push(check(index + 1, record, first, simulator)?);
+    }
+    let measured: Vec<f64> = swings.iter().flatten().copied().collect();
+    let period_s = (!measured.is_empty()).then(|| median(&measured));
+    let facts = facts(records, simulator, period_s);
+    let mut segments = Vec::new();
+    let mut inputs = Vec::new();
+    for (number, (record, kept)) in records.iter().zip(kept).enumerate() {
+        inputs.push(input(record)?);
+        let times: Vec<f64> = only(&record.times_s, kept);
+        let values: Vec<f64> = only(&record.values, kept);
+        let (count, length, end) = cuts(record, simulator, period_s, &times, &values);
+        let mut own: Vec<(Vec<f64>, Vec<f64>)> = vec![(Vec::new(), Vec::new()); count];
+        for (&time, &value) in times.iter().zip(&values).take_while(|(time, _)| **time <= end) {
+            let at = ((time / length) as usize).min(count - 1);
+            if let Some((times, values)) = own.get_mut(at) {
+                times.push(time);
+                values.push(value);
+            }
+        }
+        for (at, (times, values)) in own.into_iter().enumerate() {
+            // Dropouts may empty a segment; what is left of it says nothing against two free start values.
+            if times.len() < FEWEST_PER_SEGMENT / 2 {
+                continue;
+            }
+            if at > 1 && swings_within(&values, record.resolution) {
+                continue;
+            }
+            let guess = guess(&times, &values, record.quantity, &facts, period_s, simulator);
+            let still = values.iter().zip(values.iter().skip(1)).all(|(before, after)| before == after);
+            let first = at == 0 && kept.first() == Some(&true);
+            segments.push(Segment { record: number, first, times, values, still, parts: vec![0], guess });
+        }
+    }
+    if segments.is_empty() {
+        let reason =
+            format!("no stretch of {PERIODS} periods holds {} samples in motion", FEWEST_PER_SEGMENT / 2);
+        return Err(DiagnosisError::NotFitted { reason });
+    }
+    let resolution = first.resolution;
+    Ok(Data { segments, inputs, quantity: first.quantity, facts, period_s, resolution })
+}
+
+/// Whether all values lie on a few neighboring steps of the sensor: what the motion does between them is not seen, and
+/// rounding follows it instead of being noise. What does not change at all is at rest, and that says something.
+fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    highest > lowest && resolution.is_some_and(|step| highest - lowest <= FEW_STEPS * step)
+}
+
+fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
+    values.iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
+}
+
+/// Refuses a record that says nothing; gives its period where it swings freely.
+fn check(
+    number: usize,
+    record: &Observations,
+    first: &Observations,
+    simulator: &NominalSimulator,
+) -> Result<Option<f64>, DiagnosisError> {
+    if record.quantity != first.quantity || record.unit != first.unit {
+        return Err(DiagnosisError::MixedQuantities { record: number });
+    }
+    if record.len() < FEWEST_SAMPLES {
+        return Err(DiagnosisError::TooFewSamples {
+            record: number,
+            found: record.len(),
+            needed: FEWEST_SAMPLES,
+        });
+    }
+    let highest = record.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = record.values.iter().copied().fold(f64::INFINITY, f64::min);
+    let nominal = simulator.nominal();
+    let resolution = record.resolution.or(nominal.sensor_resolution()).unwrap_or(0.0);
+    if highest - lowest <= 3.0 * resolution || highest <= lowest {
+        return Err(DiagnosisError::NoMotion {
+            record: number,
+            span: highest - lowest,
+            resolution,
+            unit: record.unit,
+        });
+    }
+    if record.input.is_some() {
+        return Ok(None);
+    }
+    let omega = simulator.angular_frequency();
+    if omega == 0.0 {
+        return Err(DiagnosisError::MissingInput { record: number });
+    }
+    if nominal.damping() / nominal.inertia() > 1.5 * omega {
+        return Ok(None);
+    }
+    let nominal_s = TAU / omega;
+    let swing = swing(&record.times_s, &record.values);
+    let cycles = swing.map_or(0.0, |swing| swing.cycles);
+    let spans = record.duration_s() / nominal_s;
+    if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
+        return Err(DiagnosisError::TooFewCycles {
+            record: number,
+            found: cycles.max(spans),
+            needed: FEWEST_CYCLES,
+            period_s: nominal_s,
+        });
+    }
+    // A swing that friction stops within a few half periods has no period of its own to compare.
+    let Some(measured_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
+    else {
+        return Ok(None);
+    };
+    let ratio = (measured_s / nominal_s).max(nominal_s / measured_s);
+    if ratio >= ANOTHER_SYSTEM {
+        return Err(DiagnosisError::AnotherPeriod { record: number, nominal_s, measured_s, ratio });
+    }
+    let largest = 0.5 * (highest - lowest);
+    let turns = largest / TAU;
+    if nominal.coordinate() == Coordinate::Angle && record.quantity == Quantity::Position && turns > 1.0 {
+        return Err(DiagnosisError::LooksLikeDegrees { record: number, largest, turns });
+    }
+    Ok(Some(measured_s))
+}
+
+fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
+    let Some(values) = &record.input else { return Ok(None) };
+    // Equal times carry no function of time; the last of each group stands.
+    let mut times: Vec<f64> = Vec::new();
+    let mut kept: Vec<f64> = Vec::new();
+    for (&time, &value) in record.times_s.iter().zip(values) {
+        if times.last() == Some(&time) {
+            times.pop();
+            kept.pop();
+        }
+        times.push(time);
+        kept.push(value);
+    }
+    Ok(Some(Input::new(times, kept, Hold::Linear)?))
+}
+
+/// Number of segments of a record, their length, and where the last ends.
+///
+/// A swing that comes to rest within two segments is cut into two all the same, and of the rest that follows
+/// only as much is kept as there was motion: a body at rest says once what holds it.
+fn cuts(
+    record: &Observations,
+    simulator: &NominalSimulator,
+    period_s: Option<f64>,
+    times: &[f64],
+    values: &[f64],
+) -> (usize, f64, f64) {
+    let (nominal, omega) = (simulator.nominal(), simulator.angular_frequency());
+    let wanted = match period_s {
+        Some(period) => PERIODS * period,
+        None if omega > 0.0 => PERIODS * TAU / omega,
+        None if nominal.damping() > 0.0 => TIME_CONSTANTS * nominal.inertia() / nominal.damping(),
+        None => record.duration_s() / 20.0,
+    };
+    let moving = moving_until(record, times, values);
+    let most = (times.len() / FEWEST_PER_SEGMENT).max(2);
+    if record.input.is_none() && moving < 1.5 * wanted && 2.0 * moving < record.duration_s() {
+        return (2, 0.5 * moving, 2.0 * moving);
+    }
+    let count = ((record.duration_s() / wanted).round() as usize).min(most).max(2);
+    (count, record.duration_s() / count as f64, record.duration_s())
+}
+
+/// When the last visible motion ends.
+fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
+    let last = values.get(values.len() - values.len() / 10..).unwrap_or_default();
+    let rest = median(last);
+    let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
+    let visible = (3.0 * record.resolution.unwrap_or(0.0)).max(VISIBLE * span);
+    let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
+    moving.map_or(0.0, |(time, _)| *time)
+}
+
+fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Option<f64>) -> Scales {
+    let (nominal, omega) = (simulator.nominal(), simulator.angular_frequency());
+    let frequency = match period_s {
+        Some(period) => TAU / period,
+        None if omega > 0.0 => omega,
+        None => (nominal.damping() / nominal.inertia()).max(1e-9),
+    };
+    let quantity = records.first().map_or(Quantity::Position, |record| record.quantity);
+    let to_position = match quantity {
+        Quantity::Position => 1.0,
+        Quantity::Velocity => 1.0 / frequency,
+        Quantity::Acceleration => 1.0 / (frequency * frequency),
+    };
+    let (rest, _) = simulator.equilibrium();
+    // Rates swing about zero, positions about where the spring rests.
+    let center = if quantity == Quantity::Position { 0.0 } else { rest };
+    let values = || records.iter().flat_map(|record| record.values.iter().copied());
+    let highest = center + to_position * values().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = center + to_position * values().fold(f64::INFINITY, f64::min);
+    let amplitude = (highest - rest).abs().max((lowest - rest).abs());
+    let steps: Vec<f64> = records
+        .iter()
+        .flat_map(|r| r.times_s.iter().zip(r.times_s.iter().skip(1)).map(|(a, b)| b - a))
+        .filter(|step| *step > 0.0)
+        .collect();
+    let interval = median(&steps).max(f64::MIN_POSITIVE);
+    let input = records.iter().filter_map(|record| record.input.as_ref()).flatten();
+    let gain = nominal.input_gain().abs();
+    let inertia = nominal.inertia();
+    let stiffness = inertia * frequency * frequency;
+    let reading = values().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let speed = match quantity {
+        _ if omega != 0.0 => amplitude * frequency,
+        Quantity::Position => speed(records),
+        Quantity::Velocity => reading,
+        Quantity::Acceleration => reading / frequency,
+    };
+    Scales {
+        amplitude,
+        highest,
+        lowest,
+        reading,
+        speed,
+        frequency,
+        torque: stiffness * amplitude,
+        input_torque: input.fold(0.0, |most: f64, u| most.max(u.abs())) * gain,
+        duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
+        interval,
+        rest_moved: rest - nominal.rest_angle(),
+        friction_known: simulator
+            .effects()
+            .iter()
+            .any(|known| known.recalibrate && known.active.id() == "coulomb_friction"),
+        inertia,
+        stiffness,
+        resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
+        rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
+        tolerance: Scales::UNKNOWN_NOISE,
+    }
+}
+
+/// Large speeds of a drive without a spring, from differences of positions over stretches of samples.
+fn speed(records: &[Observations]) -> f64 {
+    let mut speeds = Vec::new();
+    for record in records {
+        let stride = (record.len() / 500).max(1);
+        let points: Vec<(f64, f64)> =
+            record.times_s.iter().copied().zip(record.values.iter().copied()).step_by(stride).collect();
+        let steps = points.iter().zip(points.iter().skip(1)).filter(|(a, b)| b.0 > a.0);
+        speeds.extend(steps.map(|(a, b)| ((b.1 - a.1) / (b.0 - a.0)).abs()));
+    }
+    quantile(&speeds, 0.95).max(f64::MIN_POSITIVE)
+}
+
+/// Position and velocity at a segment's begin: a harmonic with an offset through its first period, or a parabola
+/// through its first samples where nothing swings.
+fn guess(
+    times: &[f64],
+    values: &[f64],
+    quantity: Quantity,
+    facts: &Scales,
+    period_s: Option<f64>,
+    simulator: &NominalSimulator,
+) -> [f64; 2] {
+    let start = times.first().copied().unwrap_or_default();
+    let omega = facts.frequency;
+    let (rest, stiffness) = simulator.equilibrium();
+    let reach = match period_s {
+        Some(period) => 0.6 * period,
+        None if stiffness > 0.0 => 0.25 * TAU / omega,
+        None => 12.0 * facts.interval,
+    };
+    let points: Vec<(f64, f64)> = times
+        .iter()
+        .zip(values)
+        .map(|(time, value)| (time - start, *value))
+        .enumerate()
+        .take_while(|(index, (time, _))| *index < 6 || *time <= reach)
+        .map(|(_, point)| point)
+        .collect();
+    let columns = |time: f64| match period_s {
+        Some(_) => [1.0, (omega * time).cos(), (omega * time).sin()],
+        None => [1.0, time, time * time],
+    };
+    let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
+        points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
+    });
+    let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));
+    let fit = design.svd(true, true).solve(&right, 1e-12).unwrap_or_else(|_| nalgebra::DVector::zeros(3));
+    let [offset, cosine, sine] = [0, 1, 2].map(|index| element(&fit, index));
+    match (quantity, period_s.is_some()) {
+        (Quantity::Position, true) => [offset + cosine, omega * sine],
+        (Quantity::Position, false) => [offset, cosine],
+        // v = −A·ω·sin + B·ω·cos about the rest angle.
+        (Quantity::Velocity, true) => [rest - sine / omega, cosine],
+        (Quantity::Velocity, false) => [rest, offset],
+        (Quantity::Acceleration, true) => [rest - cosine / (omega * omega), -sine / omega],
+        // Nothing swings: an acceleration says where the spring pulls and nothing of the speed.
+        (Quantity::Acceleration, false) => [rest - offset / (omega * omega), 0.0],
+    }
+}

@@ -1,0 +1,353 @@
+//! How far a fit follows the motion from one start state.
+//!
+//! A segment of a few periods forgets what went before it: fits cannot lose count of the swings, and a
+//! disturbance spoils one segment only. But forgetting costs sight. An effect that shows in how swings add up
+//! over the whole record (a frequency or a decay that changes little by little) all but vanishes where every
+//! segment has a start state of its own. So segments are joined, two by two, for as long as a model follows:
+//! at the end a record has one start state.
+
+use crate::data::segments::{Data, Segment};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
+use crate::model::predictor::{Derivatives, Simulator};
+use crate::search::archive::{Archive, vanished};
+use dynamics::DynamicsError;
+use nalgebra::DVector;
+use rayon::prelude::*;
+
+/// Factor by which the recalibrated simulator's error may grow on a longer horizon: it is not the whole truth.
+const RECALIBRATED: f64 = 2.0;
+
+/// Factor by which the error of a set that is to be judged there may grow.
+const JUDGED: f64 = 1.1;
+
+/// Error relative to the motion up to which linearizations hold: a phase error in radians.
+const LINEAR: f64 = 0.05;
+
+/// Sets that are tried on a longer horizon.
+const TRIED: usize = 6;
+
+impl Data {
+    /// Neighboring segments of each record joined by so many.
+    pub(crate) fn joined(&self, by: usize) -> Self {
+        let mut segments: Vec<Segment> = Vec::new();
+        let mut members = 0;
+        for segment in &self.segments {
+            match segments.last_mut() {
+                Some(last) if last.record == segment.record && members < by => {
+                    last.parts.extend(segment.parts.iter().map(|part| part + last.times.len()));
+                    last.times.extend(&segment.times);
+                    last.values.extend(&segment.values);
+                    last.still &= segment.still;
+                    members += 1;
+                }
+                _ => {
+                    segments.push(segment.clone());
+                    members = 1;
+                }
+            }
+        }
+        Self { segments, ..self.clone() }
+    }
+
+    /// For each segment of this horizon, which of the unjoined data's it begins with.
+    pub(crate) fn firsts(&self) -> Vec<usize> {
+        let counts = self.segments.iter().map(|segment| segment.parts.len());
+        counts.scan(0, |at, count| Some(std::mem::replace(at, *at + count))).collect()
+    }
+
+    /// The joined parts that `keep` names, numbered as the unjoined segments are, and of every segment its
+    /// very first sample, where its start state stands. Segments of one part are kept or left out as a whole.
+    /// Gives the kept segments' numbers too.
+    pub(crate) fn masked(&self, keep: &dyn Fn(usize) -> bool) -> (Self, Vec<usize>) {
+        let mut segments = Vec::new();
+        let mut numbers = Vec::new();
+        for (number, (segment, first)) in self.segments.iter().zip(self.firsts()).enumerate() {
+            let wanted = |sample: usize| keep(first + segment.part_of(sample));
+            if (0..segment.parts.len()).all(|part| !keep(first + part)) {
+                continue;
+            }
+            let kept: Vec<usize> =
+                (0..segment.times.len()).filter(|&sample| sample == 0 || wanted(sample)).collect();
+            let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
+            segments.push(Segment {
+                times: pick(&segment.times),
+                values: pick(&segment.values),
+                parts: vec![0],
+                ..segment.clone()
+            });
+            numbers.push(number);
+        }
+        (Self { segments, ..self.clone() }, numbers)
+    }
+
+    /// Residuals on this horizon by unjoined segment.
+    pub(crate) fn by_part(&self, residuals: &[DVector<f64>]) -> Vec<DVector<f64>> {
+        let mut all = Vec::new();
+        for (segment, residual) in self.segments.iter().zip(residuals) {
+            all.extend(segment.part_ranges().map(|part| residual.rows(part.start, part.len()).clone_owned()));
+        }
+        all
+    }
+
+    /// Whether any segment is a joined one.
+    pub(crate) fn is_joined(&self) -> bool {
+        self.segments.iter().any(|segment| segment.parts.len() > 1)
+    }
+}
+
+impl Segment {
+    fn part_of(&self, sample: usize) -> usize {
+        self.parts.partition_point(|&from| from <= sample).saturating_sub(1)
+    }
+}
+
+fn mean_square(fit: &Fit) -> f64 {
+    fit.squares / fit.samples().max(1) as f64
+}
+
+/// Mean square of the observed values about their mean.
+fn motion(data: &Data) -> f64 {
+    let values: Vec<f64> = data.segments.iter().flat_map(|segment| segment.values.iter().copied()).collect();
+    let center = crate::noise::statistics::mean(&values);
+    values.iter().map(|value| (value - center).powi(2)).sum::<f64>() / values.len().max(1) as f64
+}
+
+/// A fit on a horizon twice as long, begun where each joined segment begins. It is given up where its mean square,
+/// for each degree of freedom, will not come below a bound.
+fn lengthened(longer: &Data, shorter: &Data, found: &Fit, below: f64) -> Option<Fit> {
+    let places = shorter.firsts();
+    let starts = longer
+        .firsts()
+        .iter()
+        .map(|first| {
+            let place = places.iter().position(|own| own == first)?;
+            found.point.starts.get(place).cloned()
+        })
+        .collect::<Option<_>>()?;
+    let point = Point { globals: found.point.globals.clone(), starts };
+    let effort = Stopping::FINAL.below(below * point.freedom(longer.samples()));
+    fit(longer, &found.hypothesis, point, Moving::All, effort).ok()
+}
+
+/// A fit on the unjoined segments that passes through the states of a fit on a longer horizon; only start states are
+/// fitted.
+pub(crate) fn shortened(segments: &Data, longer: &Data, found: &Fit) -> Result<Fit, DynamicsError> {
+    if !longer.is_joined() {
+        return Ok(found.clone());
+    }
+    let mut simulator = Simulator::new(longer, &found.hypothesis, &found.point.globals, Derivatives::None)?;
+    let mut starts = Vec::with_capacity(segments.segments.len());
+    for (segment, start) in longer.segments.iter().zip(&found.point.starts) {
+        let motion = simulator.motion(segment, start)?;
+        for &at in &segment.parts {
+            let state = motion.position.get(at).zip(motion.velocity.get(at));
+            let state = state.map_or([0.0; 2], |(position, velocity)| [*position, *velocity]);
+            starts.push(extended(&state, &found.hypothesis));
+        }
+    }
+    let point = Point { globals: found.point.globals.clone(), starts };
+    fit(segments, &found.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)
+}
+
+/// Data joined by some number, and the recalibrated simulator on them.
+#[derive(Debug, Clone)]
+pub(crate) struct ShootingInterval {
+    pub(crate) by: usize,
+    pub(crate) data: Data,
+    pub(crate) calibrated: Fit,
+}
+
+impl ShootingInterval {
+    /// The shortest: the segments as they were cut.
+    pub(crate) fn shortest(data: &Data, calibrated: &Fit) -> Self {
+        Self { by: 1, data: data.clone(), calibrated: calibrated.clone() }
+    }
+
+    /// Twice as long; `None` where there is nothing left to join or the fits fail.
+    fn doubled(&self, segments: &Data) -> Option<Self> {
+        let by = 2 * self.by;
+        let data = segments.joined(by);
+        if data.segments.len() == self.data.segments.len() {
+            return None;
+        }
+        let calibrated = lengthened(&data, &self.data, &self.calibrated, f64::INFINITY)?;
+        Some(Self { by, data, calibrated })
+    }
+
+    /// The longest on which the recalibrated simulator is still a model to linearize at.
+    pub(crate) fn longest(segments: &Data, calibrated: &Fit) -> Self {
+        let mut horizon = Self::shortest(segments, calibrated);
+        let (shortest, motion) = (mean_square(calibrated), motion(segments));
+        while let Some(longer) = horizon.doubled(segments) {
+            let square = mean_square(&longer.calibrated);
+            if square > RECALIBRATED * RECALIBRATED * shortest || square > LINEAR * LINEAR * motion {
+                break;
+            }
+            horizon = longer;
+        }
+        horizon
+    }
+
+    /// The longest on which the fit follows the motion as well as on this one, but for chance.
+    pub(crate) fn farthest(self, segments: &Data) -> Self {
+        let mut horizon = self;
+        let each = |own: &Self| own.calibrated.squares / own.calibrated.freedom();
+        while let Some(longer) = horizon.doubled(segments) {
+            // Two standard errors of a mean square of so many samples that say something new.
+            let worth = horizon.calibrated.freedom() / horizon.calibrated.autocorrelation_time();
+            let by_chance = 1.0 + 2.0 * (2.0 / worth).sqrt();
+            if each(&longer) > by_chance * each(&horizon) {
+                break;
+            }
+            horizon = longer;
+        }
+        horizon
+    }
+
+    /// Whether the best set of a pool on this horizon follows the motion as well as it does segment by segment.
+    pub(crate) fn is_followed(&self, segments: &Data, pool: &Archive) -> bool {
+        let time = pool.autocorrelation_time();
+        pool.ranked(time).first().is_some_and(|best| {
+            let short = shortened(segments, &self.data, best);
+            let short = short.and_then(|short| {
+                fit(segments, &short.hypothesis, short.point, Moving::All, Stopping::HELD_OUT)
+            });
+            // Every start state takes its two degrees of freedom out of the squares.
+            short.is_ok_and(|short| {
+                best.squares / best.freedom() <= JUDGED * JUDGED * short.squares / short.freedom()
+            })
+        })
+    }
+
+    /// The longest horizon on which the best of a pool's sets still follow, with these sets on it; `None` where that is
+    /// this one.
+    pub(crate) fn beyond(&self, segments: &Data, pool: &Archive) -> Option<(Self, Vec<Fit>)> {
+        let time = pool.autocorrelation_time();
+        let best: Vec<Fit> = pool
+            .ranked(time)
+            .into_iter()
+            .filter(|fit| !fit.hypothesis.candidates.is_empty())
+            .take(TRIED)
+            .cloned()
+            .collect();
+        let first = best.first().map(|fit| fit.squares / fit.freedom())?;
+        let mut reached: Option<(Self, Vec<Fit>)> = None;
+        let mut sets = best;
+        let mut horizon = self.clone();
+        while let Some(longer) = horizon.doubled(segments) {
+            let most = JUDGED * JUDGED * first;
+            // What ends there as something else, or as nothing, does not follow.
+            let kept: Vec<Fit> = sets
+                .par_iter()
+                .filter_map(|set| lengthened(&longer.data, &horizon.data, set, most))
+                .filter(|fit| !vanished(&longer.data, fit))
+                .collect();
+            let smallest = kept.iter().map(|fit| fit.squares / fit.freedom()).fold(f64::INFINITY, f64::min);
+            if smallest > most {
+                break;
+            }
+            sets.clone_from(&kept);
+            horizon = longer.clone();
+            reached = Some((longer, kept));
+        }
+        reached
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{ShootingInterval, shortened};
+    use crate::data::observations::Observations;
+    use crate::data::segments::{Data, cut};
+    use crate::fit::calibrate::baseline;
+    use crate::{Settings, Status, diagnose};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use nalgebra::DVector;
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    fn nominal() -> Nominal {
+        Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap()
+    }
+
+    /// 20 s of a swing at 3.5 Hz, 100 samples a second, noise of 1 mrad, with some effects.
+    fn observed(effects: &[(&str, &[f64])]) -> Observations {
+        let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+        let system = System::new(nominal(), active).unwrap();
+        let times: Vec<f64> = (0..2000).map(|i| f64::from(i) * 0.01).collect();
+        let motion = simulate(&system, Start::release(0.6), None, &times, &Tolerance::default()).unwrap();
+        let mut generator = Seed::new(5).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = motion.position.iter().map(|x| x + 1e-3 * noise()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        Observations::new(&record, &clock)
+    }
+
+    fn data(observations: &Observations) -> Data {
+        cut(std::slice::from_ref(observations), &[vec![true; observations.len()]], &(&nominal()).into())
+            .unwrap()
+    }
+
+    #[test]
+    fn joined_segments_are_the_record_and_come_apart_again() {
+        let data = data(&observed(&[]));
+        let count = data.segments.len();
+        assert!(count > 8, "{count}");
+        let whole = data.joined(count);
+        assert_eq!(whole.segments.len(), 1);
+        assert_eq!(whole.samples(), data.samples());
+        let segment = &whole.segments[0];
+        assert_eq!(segment.parts.len(), count);
+        let parts = whole.by_part(&[DVector::from_vec(segment.values.clone())]);
+        for (part, original) in parts.iter().zip(&data.segments) {
+            assert_eq!(part.as_slice(), original.values.as_slice());
+        }
+        let pairs = data.joined(2);
+        assert_eq!(pairs.segments.len(), count.div_ceil(2));
+        assert_eq!(pairs.firsts(), (0..count).step_by(2).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn a_mask_leaves_the_parts_named_and_the_first_sample() {
+        let data = data(&observed(&[]));
+        let whole = data.joined(data.segments.len());
+        let (odd, numbers) = whole.masked(&|part| part % 2 == 1);
+        assert_eq!(numbers, [0]);
+        let expected: usize = data.segments.iter().skip(1).step_by(2).map(|s| s.times.len()).sum();
+        assert_eq!(odd.samples(), expected + 1);
+        assert_eq!(odd.segments[0].times[0], data.segments[0].times[0]);
+        assert_eq!(odd.segments[0].times[1], data.segments[1].times[0]);
+        let (none, numbers) = data.masked(&|_| false);
+        assert!(none.segments.is_empty() && numbers.is_empty());
+    }
+
+    /// Where nothing is missing the whole record follows from one start state, and the states along it fit
+    /// each segment.
+    #[test]
+    fn a_record_without_effects_is_followed_as_a_whole() {
+        let data = data(&observed(&[]));
+        let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
+        let horizon = ShootingInterval::longest(&data, &base);
+        assert_eq!(horizon.data.segments.len(), 1);
+        let noise = (horizon.calibrated.squares / horizon.calibrated.freedom()).sqrt();
+        assert!((noise / 1e-3 - 1.0).abs() < 0.05, "{noise}");
+        let short = shortened(&data, &horizon.data, &horizon.calibrated).unwrap();
+        assert_eq!(short.point.starts.len(), data.segments.len());
+        assert!((short.squares / horizon.calibrated.squares - 1.0).abs() < 0.05);
+    }
+
+    /// A softening whose frequency shift adds up over the record: 8e-4 of the spring's torque at most, next
+    /// to nothing within six periods.
+    #[test]
+    fn what_adds_up_over_a_record_is_seen() {
+        let observations = observed(&[("cubic_stiffness", &[-1.0])]);
+        let seconds = || 0.0;
+        let answer = diagnose(&[observations], &nominal(), &Settings::default(), &seconds).unwrap();
+        assert_eq!(answer.verdict.status, Status::Effect, "{:?}", answer.verdict);
+        let class = answer.verdict.equivalent.iter().flatten().chain(&answer.verdict.effects);
+        assert!(class.into_iter().any(|id| *id == "cubic_stiffness"), "{:?}", answer.verdict);
+    }
+}

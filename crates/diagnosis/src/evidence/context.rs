@@ -1,0 +1,357 @@
+//! What the later stages share: the fits, and what follows from comparing them.
+
+use crate::answer::{Detectability, Interval, Rivalry};
+use crate::data::segments::Data;
+use crate::data::shooting_interval::shortened;
+use crate::diagnose::Settings;
+use crate::error::DiagnosisError;
+use crate::evidence::held_out::{Both, HeldOut};
+use crate::evidence::weights::{Weighed, ratio, significant};
+use crate::explain::attribution::shapley;
+use crate::fit::calibrate::Baseline;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
+use crate::model::matrices::entry;
+use crate::noise::statistics::normal_above;
+use crate::search::archive::Archive;
+use crate::search::refine::without;
+use rayon::prelude::*;
+
+/// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's
+/// name and adds to the false alarms.
+pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
+const SHIFTED_BY_CHANCE: f64 = 0.001;
+
+/// Standard errors of a clock's rate, squared in the stiffness, within which a stiffness may be the clock's doing.
+const STANDARD_ERRORS: f64 = 3.0;
+
+/// What the later stages share.
+pub(crate) struct Context<'a> {
+    /// On the longest horizon that the best sets follow.
+    pub(crate) data: &'a Data,
+    pub(crate) base: &'a Baseline,
+    /// The segments as they were cut.
+    pub(crate) segments: Unjoined<'a>,
+    pub(crate) pool: &'a Archive,
+    pub(crate) thin: Thin<'a>,
+    pub(crate) time: f64,
+    pub(crate) settings: &'a Settings,
+}
+
+/// The segments as they were cut, each with a start state of its own.
+#[derive(Clone, Copy)]
+pub(crate) struct Unjoined<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) base: &'a Baseline,
+}
+
+/// The same on fewer samples: enough for shares, and many times as fast.
+pub(crate) struct Thin<'a> {
+    pub(crate) data: &'a Data,
+    pub(crate) calibrated: &'a Fit,
+    pub(crate) pool: &'a Archive,
+}
+
+/// Sets that are asked for their held-out error, and the factor in its mean square from which on one is clearly worse.
+const HELD_OUT: usize = 5;
+const CLEARLY_WORSE: f64 = 1.5;
+
+/// Held-out residuals, and the set that they and the evidence speak for.
+pub(crate) struct Held<'a> {
+    pub(crate) nominal: HeldOut,
+    pub(crate) recalibrated: HeldOut,
+    pub(crate) after: HeldOut,
+    /// Mean squares on the last third, recalibrated and repaired.
+    pub(crate) last_third: [f64; 2],
+    /// The set on the horizon that it was judged on.
+    pub(crate) repaired: &'a Fit,
+    /// The same on the segments as they were cut.
+    pub(crate) fitted: Fit,
+}
+
+/// A shift of the rest angle and nothing else.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Shift {
+    /// Torque that shifts it.
+    pub(crate) torque: Interval,
+}
+
+/// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it
+/// goes on from what was fitted; or from start states, and going on no worse than what these parameters'
+/// scatter costs. What shows only where a record begins, as a mode that is struck there or a stop that the
+/// first swings reach, has nothing to go on from.
+fn predicts(after: &HeldOut, recalibrated: &HeldOut, further: usize, samples: usize) -> bool {
+    // Fitted to one half of the samples, each parameter adds two parts in so many to the mean square of the other.
+    let scatter = 1.0 + 2.0 * further as f64 / samples.max(1) as f64;
+    after.continued < recalibrated.continued
+        || after.continued < scatter * recalibrated.continued
+            && after.mean_square() < recalibrated.mean_square()
+}
+
+impl<'a> Context<'a> {
+    /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does:
+    /// that is a constant torque.
+    pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
+        let own = &repaired.hypothesis;
+        let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
+        if !own.calibrated.contains(&Coefficient::RestAngle) {
+            return None;
+        }
+        // Effects that cannot be followed beside the given coefficients do not go with a mere shift.
+        let with = |calibrated: Vec<Coefficient>| {
+            let hypothesis = Hypothesis { calibrated, ..own.clone() };
+            let globals = [hypothesis.nominal_point().as_slice(), effects].concat();
+            let from = if effects.is_empty() { &self.base.nominal } else { repaired };
+            let point = Point { globals, starts: from.point.starts.clone() };
+            fit(self.data, &hypothesis, point, Moving::All, Stopping::FINAL).ok()
+        };
+        let time = repaired.autocorrelation_time();
+        let is_all = |part: &Fit| {
+            let others = own.calibrated.len() - part.hypothesis.calibrated.len();
+            !significant(repaired, part, time, others, OFF_BY_CHANCE)
+        };
+        let mut shifted = with(vec![Coefficient::RestAngle])?;
+        if !is_all(&shifted) {
+            // A clock whose rate is not known exactly is a spring that is not.
+            let allowed = STANDARD_ERRORS * 2.0 * self.data.facts.rate_error;
+            let both = [Coefficient::RestAngle, Coefficient::Stiffness];
+            let has_both = both.iter().all(|which| own.calibrated.contains(which));
+            let freed = if has_both && allowed > 0.0 { with(both.to_vec()) } else { None };
+            let is_the_clock = |freed: &Fit| {
+                let stiffness = freed.point.globals.get(1).copied().unwrap_or_default();
+                (stiffness / own.nominal.stiffness() - 1.0).abs() < allowed
+            };
+            shifted = freed.filter(|freed| is_the_clock(freed) && is_all(freed))?;
+        }
+        // The same without the shift.
+        let others = shifted.hypothesis.calibrated.iter().skip(1).copied().collect::<Vec<_>>();
+        let bare =
+            if effects.is_empty() && others.is_empty() { self.base.nominal.clone() } else { with(others)? };
+        if !significant(&shifted, &bare, time, 1, SHIFTED_BY_CHANCE) {
+            return None;
+        }
+        let nominal = &own.nominal;
+        let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
+        let angle = shifted.point.globals.first().copied().unwrap_or_default();
+        let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
+        let reach = normal_above(0.025) * error;
+        let interval_95 = [torque(angle - reach), torque(angle + reach)];
+        Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
+    }
+
+    /// What a recalibration moves: nothing of a simulator whose effects explain the records as it is given. Its many
+    /// coefficients, fitted to half of a short record, would predict the other half worse.
+    fn calibrating(&self) -> Moving {
+        let has_effects = !self.base.calibrated.hypothesis.known.is_empty();
+        if has_effects && !self.base.is_off() { Moving::Starts } else { Moving::All }
+    }
+
+    /// Goes through the sets in the order of their probability and takes the first that also predicts
+    /// held-out parts: better than the calibrated simulator, and not clearly worse than any other of the best
+    /// sets.
+    pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
+        let own = |followed: &'a Fit, fitted: &'a Fit| Both {
+            longer: self.data,
+            followed,
+            segments: self.segments.data,
+            fitted,
+        };
+        let short = self.segments.base;
+        let unjoined = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
+        let nominal = unjoined.interleaved(Moving::Starts)?;
+        let moving = self.calibrating();
+        let recalibrated_both = match moving {
+            Moving::All => own(&self.base.calibrated, &short.calibrated),
+            Moving::Starts => own(&self.base.nominal, &short.nominal),
+        };
+        let recalibrated = recalibrated_both.interleaved(moving)?;
+        let third = recalibrated_both.last_third(moving)?;
+        let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
+        let of = |w: &Weighed<'a>| {
+            // A set whose motion cannot be followed from parts of the data predicts nothing.
+            let fitted = shortened(self.segments.data, self.data, w.fit).ok()?;
+            let both =
+                Both { longer: self.data, followed: w.fit, segments: self.segments.data, fitted: &fitted };
+            let (after, later) =
+                rayon::join(|| both.interleaved(Moving::All), || both.last_third(Moving::All));
+            let (after, later) = (after.ok()?, later.ok()?);
+            let further = w.fit.globals() - self.base.calibrated.globals();
+            predicts(&after, &recalibrated, further, self.data.samples()).then(|| {
+                let last_third = [third, later];
+                let (nominal, recalibrated) = (nominal.clone(), recalibrated.clone());
+                Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted }
+            })
+        };
+        let asked: Vec<&Weighed<'a>> = weighed
+            .iter()
+            .take(HELD_OUT)
+            .take_while(|weighed| !weighed.fit.hypothesis.candidates.is_empty())
+            .collect();
+        let tried: Vec<Held<'a>> = asked.into_par_iter().filter_map(of).collect();
+        let least = tried.iter().map(|held| held.after.mean_square()).fold(f64::INFINITY, f64::min);
+        if let Some(held) = tried.into_iter().find(|held| held.after.mean_square() <= CLEARLY_WORSE * least) {
+            return Ok(held);
+        }
+        let repaired = calibrated
+            .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
+        let after = recalibrated.clone();
+        let fitted = short.calibrated.clone();
+        Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
+    }
+
+    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its
+    /// interval from a bootstrap over segments.
+    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
+        let count = repaired.hypothesis.candidates.len();
+        let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
+            .into_par_iter()
+            .map(|set| {
+                let members: Vec<Candidate> = repaired
+                    .hypothesis
+                    .candidates
+                    .iter()
+                    .enumerate()
+                    .filter(|(index, _)| set & (1 << index) != 0)
+                    .map(|(_, candidate)| *candidate)
+                    .collect();
+                let known = self.thin.pool.find(&members).cloned();
+                let fitted =
+                    known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
+                let calibrated = self.thin.calibrated;
+                let by_part = |fit: &Fit| -> Vec<f64> {
+                    let parts = self.thin.data.by_part(&fit.residuals);
+                    parts.iter().map(|part| part.norm_squared()).collect()
+                };
+                let squares = by_part(fitted.as_ref().unwrap_or(calibrated));
+                let before = by_part(calibrated);
+                before.iter().zip(squares).map(|(before, after)| before - after).collect()
+            })
+            .collect();
+        // A set explains at least what its subsets do; where its own fit ended in a hollow, the best of theirs stands.
+        for set in 0..worths.len() {
+            let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
+            let subsets = (0..count).map(|member| set & !(1 << member));
+            let best = subsets.max_by(|a, b| total(*a).total_cmp(&total(*b))).unwrap_or(set);
+            if total(best) > total(set) {
+                let better = worths.get(best).cloned();
+                if let (Some(slot), Some(better)) = (worths.get_mut(set), better) {
+                    *slot = better;
+                }
+            }
+        }
+        let by_segment = |pick: &[usize]| -> Vec<f64> {
+            shapley(count, &|set| {
+                let own = worths.get(set);
+                pick.iter().filter_map(|index| own.and_then(|own| own.get(*index))).sum()
+            })
+        };
+        let segments = self.segments.data.segments.len();
+        let all: Vec<usize> = (0..segments).collect();
+        let values = by_segment(&all);
+        let relative = |values: &[f64]| -> Vec<f64> {
+            let total: f64 = values.iter().map(|v| v.max(0.0)).sum();
+            values.iter().map(|v| if total > 0.0 { v.max(0.0) / total } else { 0.0 }).collect()
+        };
+        let mut generator = self.settings.seed.child("shares").generator();
+        let draws: Vec<Vec<f64>> = (0..400)
+            .map(|_| {
+                let drawn: Vec<usize> = all
+                    .iter()
+                    .map(|_| rand::RngExt::random_range(&mut generator, 0..segments.max(1)))
+                    .collect();
+                relative(&by_segment(&drawn))
+            })
+            .collect();
+        values
+            .iter()
+            .zip(relative(&values))
+            .enumerate()
+            .map(|(index, (squares, value))| {
+                let own: Vec<f64> = draws.iter().filter_map(|draw| draw.get(index).copied()).collect();
+                let end = |share: f64| crate::noise::statistics::quantile(&own, share);
+                (*squares, Interval { value, interval_95: [end(0.025), end(0.975)] })
+            })
+            .collect()
+    }
+
+    /// What could stand in the place of each effect, closest first; and the closest set.
+    pub(crate) fn rivals(&self, repaired: &Fit) -> (Vec<Rivalry>, Option<&'a Fit>) {
+        let own = &repaired.hypothesis.candidates;
+        let mut found: Vec<(Rivalry, &'a Fit)> = Vec::new();
+        let mut nested = Vec::new();
+        for fit in &self.pool.fits {
+            let others = &fit.hypothesis.candidates;
+            let gone: Vec<&Candidate> = own.iter().filter(|c| !others.contains(c)).collect();
+            let come: Vec<&Candidate> = others.iter().filter(|c| !own.contains(c)).collect();
+            if let (&[gone], &[come]) = (gone.as_slice(), come.as_slice()) {
+                let distance = (2.0 * ratio(repaired, fit, self.time)).max(0.0).sqrt();
+                found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
+            }
+        }
+        // A generalization that was given up because it came out as the member itself is no distance away.
+        for member in own {
+            for &general in Candidate::ALL.iter().filter(|general| general.generalizes() == Some(*member)) {
+                let swapped = repaired
+                    .hypothesis
+                    .with(&own.iter().map(|c| if c == member { general } else { *c }).collect::<Vec<_>>());
+                let given_up = self.pool.rejected.contains(&swapped.candidates);
+                if given_up && self.pool.find(&swapped.candidates).is_none() {
+                    let rivalry = Rivalry { effect: member.id(), rival: general.id(), distance: 0.0 };
+                    nested.push(rivalry);
+                }
+            }
+        }
+        found.sort_by(|a, b| a.0.distance.total_cmp(&b.0.distance));
+        let closest = found.first().map(|(_, fit)| *fit);
+        nested.extend(found.into_iter().map(|(rivalry, _)| rivalry));
+        (nested, closest)
+    }
+
+    pub(crate) fn detectability(&self, repaired: &Fit) -> Vec<Detectability> {
+        let candidates = &repaired.hypothesis.candidates;
+        candidates
+            .par_iter()
+            .enumerate()
+            .filter_map(|(left_out, candidate)| {
+                let rest: Vec<Candidate> = candidates.iter().copied().filter(|c| c != candidate).collect();
+                let known = self.pool.find(&rest).cloned();
+                let reduced = known.or_else(|| without(self.data, repaired, |index| index != left_out))?;
+                let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
+                Some(Detectability { effect: candidate.id(), d })
+            })
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::fixtures::record;
+    use crate::{Diagnosis, Observations, Settings, diagnose};
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use record::{Clock, ClockChoice};
+
+    /// What is said of 25 s of a swing under a constant torque, 260 samples a second in bursts whose receive times
+    /// scatter by 2.5 ms: the swing shows more finely than these whether the rate is right.
+    fn diagnosed(torque: f64, seed: u64) -> Diagnosis {
+        let nominal = Nominal::new(1.0, 0.19, 55.0, 0.0).unwrap();
+        let preload = Active::new("constant_torque", &[torque]).unwrap();
+        let system = System::new(nominal, vec![preload]).unwrap();
+        let bursts = Active::new("timestamp_batching", &[0.042, 0.0025]).unwrap();
+        let chain = Chain::new(Observed::Position, 2e-4, vec![bursts]).unwrap();
+        let record = record(&system, 0.55, 6500, &chain, seed);
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
+    }
+
+    #[test]
+    fn a_clock_that_is_a_little_off_hides_no_preload_and_makes_none() {
+        for seed in 1..=6 {
+            let answer = diagnosed(0.24, seed);
+            assert_eq!(answer.verdict.effects, ["constant_torque", "timestamp_batching"], "{seed}");
+            let answer = diagnosed(0.0, seed);
+            assert_eq!(answer.verdict.effects, ["timestamp_batching"], "{seed}");
+        }
+    }
+}

@@ -1,0 +1,122 @@
+//! How well a hypothesis predicts what it was not fitted to.
+
+use crate::data::segments::Data;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::model::predictor::{Derivatives, Simulator};
+use dynamics::DynamicsError;
+use nalgebra::DVector;
+
+/// Residuals on parts not fitted.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct HeldOut {
+    /// By segment, in the order of the data; only start states were fitted to them.
+    pub(crate) residuals: Vec<DVector<f64>>,
+    /// Start values fitted by segment.
+    pub(crate) starts: usize,
+    /// Mean square where nothing at all was fitted to the parts held out, not even their start states: what
+    /// goes on from the parts that were. The same as with start states where segments are not joined.
+    pub(crate) continued: f64,
+}
+
+impl HeldOut {
+    /// Mean square over all segments, each weighed by its samples.
+    pub(crate) fn mean_square(&self) -> f64 {
+        mean_square(&self.residuals, self.starts)
+    }
+}
+
+fn mean_square(residuals: &[DVector<f64>], starts: usize) -> f64 {
+    let squares: f64 = residuals.iter().map(DVector::norm_squared).sum();
+    let freedom: f64 = residuals.iter().map(|e| e.len() as f64 - starts as f64).sum();
+    squares / freedom.max(1.0)
+}
+
+/// A fit on some horizon, and the same on the segments as they were cut.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Both<'a> {
+    pub(crate) longer: &'a Data,
+    pub(crate) followed: &'a Fit,
+    pub(crate) segments: &'a Data,
+    pub(crate) fitted: &'a Fit,
+}
+
+impl Both<'_> {
+    /// Fits the parts that `train` names, on the longer horizon. Gives the numbers of the segments that were left too.
+    fn learned(
+        &self,
+        train: &(dyn Fn(usize) -> bool + Sync),
+        moving: Moving,
+    ) -> Result<(Fit, Vec<usize>), DynamicsError> {
+        let (masked, numbers) = self.longer.masked(train);
+        let own = numbers.iter().filter_map(|&number| self.followed.point.starts.get(number).cloned());
+        let point = Point { globals: self.followed.point.globals.clone(), starts: own.collect() };
+        Ok((fit(&masked, &self.followed.hypothesis, point, moving, Stopping::HELD_OUT)?, numbers))
+    }
+
+    /// Residuals of the segments that `train` does not name, only start states fitted to them.
+    fn scored(
+        &self,
+        train: &(dyn Fn(usize) -> bool + Sync),
+        moving: Moving,
+    ) -> Result<Vec<DVector<f64>>, DynamicsError> {
+        let (learned, _) = self.learned(train, moving)?;
+        let others = self.fitted.point.starts.iter().enumerate().filter(|(index, _)| !train(*index));
+        let point = Point {
+            globals: learned.point.globals,
+            starts: others.map(|(_, start)| start.clone()).collect(),
+        };
+        let rest = self.segments.only(|index| !train(index));
+        Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?.residuals)
+    }
+
+    /// Residuals of the parts that neither `train` names nor a record begins with, nothing fitted to them.
+    /// The first part is always among those fitted: going back to it would be another question than going on.
+    fn continued(
+        &self,
+        train: &(dyn Fn(usize) -> bool + Sync),
+        moving: Moving,
+    ) -> Result<Vec<DVector<f64>>, DynamicsError> {
+        let firsts = self.longer.firsts();
+        let train = |index: usize| train(index) || firsts.contains(&index);
+        let (learned, numbers) = self.learned(&train, moving)?;
+        let mut simulator =
+            Simulator::new(self.longer, &learned.hypothesis, &learned.point.globals, Derivatives::None)?;
+        let mut all = Vec::new();
+        for (&number, start) in numbers.iter().zip(&learned.point.starts) {
+            if let Some(segment) = self.longer.segments.get(number) {
+                all.push(simulator.predict(segment, start)?.residual);
+            }
+        }
+        let parts = self.longer.by_part(&all).into_iter().enumerate();
+        Ok(parts.filter(|(index, _)| !train(*index)).map(|(_, part)| part).collect())
+    }
+
+    /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
+    /// With `Moving::Starts` no coefficient is fitted at all.
+    pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
+        let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
+        let starts = self.fitted.hypothesis.start_length();
+        let (first, second) = rayon::join(|| self.scored(&odd, moving), || self.scored(&even, moving));
+        let (mut first, mut second) = (first?.into_iter(), second?.into_iter());
+        let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
+            .filter_map(|index| if even(index) { first.next() } else { second.next() })
+            .collect();
+        let continued = if self.longer.is_joined() {
+            let (first, second) =
+                rayon::join(|| self.continued(&odd, moving), || self.continued(&even, moving));
+            let parts = [first?, second?].concat();
+            mean_square(&parts, 0)
+        } else {
+            mean_square(&residuals, starts)
+        };
+        Ok(HeldOut { residuals, starts, continued })
+    }
+
+    /// Fitted to the first two thirds of the segments, scored on the last third: mean square.
+    pub(crate) fn last_third(&self, moving: Moving) -> Result<f64, DynamicsError> {
+        let count = self.segments.segments.len();
+        let first = count.saturating_sub((count / 3).max(1));
+        let scored = self.scored(&|index| index < first, moving)?;
+        Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
+    }
+}

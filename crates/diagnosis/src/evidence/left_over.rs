@@ -1,0 +1,252 @@
+//! Whether anything is left that no named effect explains.
+//!
+//! Two views of the residual of the best named set, both in units of the noise around them:
+//!
+//! - what a smooth function of position, velocity, time and the input would still take away, as a torque or in the sensor;
+//! - how far the spectrum of the residual stands out in a band about a harmonic of the swing, or midway between two,
+//!   above the bands beside it. That needs no basis, and sees torques and sensors alike.
+//!
+//! Either compares two variances: were nothing left, both would be the noise's. The evidence is the log
+//! likelihood ratio of two Gaussian variances against a common one, so that a noise of any color, if it is
+//! smooth over a few bands, counts for nothing, and few samples say little.
+
+use crate::data::scales::below_images;
+use crate::data::segments::{Data, PERIODS};
+use crate::evidence::discrepancy::basis;
+use crate::fit::levenberg_marquardt::Fit;
+use crate::model::dictionary::{Acting, columns_of};
+use crate::model::matrices::{element, entry};
+use crate::model::projection::Projection;
+use crate::model::tangent::{Path, matrix};
+use dynamics::DynamicsError;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// What is left without a name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Unexplained {
+    /// Log evidence that anything is.
+    pub(crate) evidence: f64,
+    /// Squares of the residual beyond the noise.
+    pub(crate) squares: f64,
+}
+
+/// Harmonics of the swing that are looked at.
+const HARMONICS: usize = 12;
+
+/// Place of the band about the swing's own frequency: the first one lies about half of it.
+const SWING: usize = 1;
+
+/// Bins of a segment's spectrum on either side of a band's middle that belong to it.
+const BESIDE: i32 = 1;
+
+/// How often is looked: in every band, with a free torque and with a free sensor. The evidence is the largest of all.
+const LOOKS: f64 = 2.0 + 2.0 * HARMONICS as f64;
+
+/// Independent squares in a band of three neighboring bins under a Hann window, whose amplitudes have the
+/// correlations 2/3 and 1/6: 2·3²/(3 + 2·(2·(2/3)² + (1/6)²)).
+const WORTH: f64 = 108.0 / 29.0;
+
+/// Part of the largest eigenvalue below which a direction of the basis is one of the others once more.
+const DEPENDENT: f64 = 1e-8;
+
+/// Log likelihood ratio of two variances against a common one: `first` from so many squares in the mean, `second` from
+/// others; 0 where the first is not the larger.
+fn larger(first: f64, count: f64, second: f64, others: f64) -> f64 {
+    if !(first > second && second > 0.0 && count > 0.0 && others > 0.0) {
+        return 0.0;
+    }
+    let common = (count * first + others * second) / (count + others);
+    0.5 * ((count + others) * common.ln() - count * first.ln() - others * second.ln())
+}
+
+/// A band of the spectrum: the mean of its periodogram, how many independent squares that is, and the bins in it.
+#[derive(Debug, Clone, Copy, Default)]
+struct Band {
+    power: f64,
+    bins: f64,
+    worth: f64,
+}
+
+impl Band {
+    fn mean(self) -> f64 {
+        if self.bins > 0.0 { self.power / self.bins } else { 0.0 }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            power: self.power + other.power,
+            bins: self.bins + other.bins,
+            worth: self.worth + other.worth,
+        }
+    }
+}
+
+/// Periodogram of a piece under a Hann window at an angular frequency; its mean over white noise is the variance.
+fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
+    let (Some(first), Some(last)) = (times.first(), times.last()) else { return 0.0 };
+    let length = (last - first).max(f64::MIN_POSITIVE);
+    let (mut real, mut imaginary, mut weight) = (0.0, 0.0, 0.0);
+    for (time, value) in times.iter().zip(values) {
+        let window = 0.5 - 0.5 * (TAU * (time - first) / length).cos();
+        let (sine, cosine) = (frequency * (time - first)).sin_cos();
+        real += window * value * cosine;
+        imaginary += window * value * sine;
+        weight += window * window;
+    }
+    if weight > 0.0 { (real * real + imaginary * imaginary) / weight } else { 0.0 }
+}
+
+/// Bands about every half harmonic, from half the swing's frequency up, summed over the segments as they were cut.
+fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
+    let mut bands = vec![Band::default(); 2 * HARMONICS];
+    let highest = below_images(data.interval());
+    for (segment, residual) in data.segments.iter().zip(residuals) {
+        for part in segment.part_ranges() {
+            let Some(times) = segment.times.get(part.clone()) else { continue };
+            let Some(values) = residual.as_slice().get(part) else { continue };
+            let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+            // A stretch cut short has no bins between the harmonics.
+            if length * data.facts.frequency < 0.8 * TAU * PERIODS {
+                continue;
+            }
+            let bin = TAU / length;
+            for (at, band) in bands.iter_mut().enumerate() {
+                let middle = 0.5 * (at + 1) as f64 * data.facts.frequency;
+                if middle + bin > highest {
+                    continue;
+                }
+                for beside in -BESIDE..=BESIDE {
+                    band.power += periodogram(times, values, middle + f64::from(beside) * bin);
+                    band.bins += 1.0;
+                }
+                band.worth += WORTH;
+            }
+        }
+    }
+    bands
+}
+
+/// What stands out of the spectrum, and the noise about the swing's own frequency: its variance and the
+/// squares that it is taken from.
+fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
+    let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
+    let mut evidence: f64 = 0.0;
+    let mut squares = 0.0;
+    // Start states take noise out of the swing's own band, which is therefore nobody's measure.
+    let lower = |index: usize| at(if index == SWING + 1 { Some(SWING - 1) } else { index.checked_sub(1) });
+    let upper = |index: usize| at(Some(if index + 1 == SWING { SWING + 1 } else { index + 1 }));
+    for (index, band) in bands.iter().enumerate() {
+        let beside = lower(index).with(upper(index));
+        let own = larger(band.mean(), band.worth, beside.mean(), beside.worth);
+        evidence = evidence.max(own);
+        if own > 0.0 {
+            squares += 2.0 * (band.power - band.bins * beside.mean());
+        }
+    }
+    let evidence = (evidence - LOOKS.ln()).max(0.0);
+    (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
+}
+
+/// What columns would take away of a fit's residual: squares and how many independent directions they lie in.
+fn taken(fit: &Fit, projection: &Projection, columns: &[Vec<f64>]) -> (f64, f64) {
+    let mut columns = matrix(projection.rows(), columns);
+    let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
+    projection.apply(&mut columns);
+    for (mut column, raw) in columns.column_iter_mut().zip(raw) {
+        let length = column.norm();
+        if length > 1e-6 * raw { column /= length } else { column.fill(0.0) }
+    }
+    let residual = DVector::from_iterator(
+        columns.nrows(),
+        fit.residuals.iter().flat_map(|residual| residual.iter().copied()),
+    );
+    let scores = columns.tr_mul(&residual);
+    let eigen = DMatrix::symmetric_eigen(columns.tr_mul(&columns));
+    let largest = eigen.eigenvalues.max();
+    let (mut squares, mut count) = (0.0, 0.0);
+    for index in 0..eigen.eigenvalues.len() {
+        let value = element(&eigen.eigenvalues, index);
+        if value > DEPENDENT * largest && value > 0.0 {
+            let along: f64 = (0..scores.len())
+                .map(|row| entry(&eigen.eigenvectors, row, index) * element(&scores, row))
+                .sum();
+            squares += along * along / value;
+            count += 1.0;
+        }
+    }
+    (squares, count)
+}
+
+/// What a fit leaves without a name.
+///
+/// # Errors
+/// What the dynamics refuse.
+pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, DynamicsError> {
+    let (spectrum, around) = outstanding(&bands(data, &fit.residuals));
+    // Where the spectrum has nothing beside the swing's band, all of the residual is the noise.
+    let whole =
+        Band { power: fit.squares, bins: fit.freedom(), worth: fit.freedom() / fit.autocorrelation_time() };
+    let noise = if around.worth > 0.0 { around } else { whole };
+    let projection = Projection::at(data, fit)?;
+    let paths = Path::of(data, fit)?;
+    let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
+    let mut found = spectrum;
+    for acting in [Acting::Torque, Acting::Sensor] {
+        let columns = columns_of(&paths, data.quantity, &free, acting);
+        let (squares, directions) = taken(fit, &projection, &columns);
+        let mean = squares / directions.max(1.0);
+        let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
+        if evidence > found.evidence {
+            let squares = (squares - directions * noise.mean()).max(0.0);
+            found = Unexplained { evidence, squares };
+        }
+    }
+    Ok(found)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Band, HARMONICS, SWING, WORTH, larger, outstanding, periodogram};
+    use rand_distr::{Distribution, StandardNormal};
+
+    #[test]
+    fn equal_variances_say_nothing_and_unequal_ones_much() {
+        assert_eq!(larger(1.0, 50.0, 1.0, 90.0), 0.0);
+        assert_eq!(larger(0.5, 50.0, 1.0, 90.0), 0.0);
+        // By hand: ½(140·ln((50·4 + 90)/140) − 50·ln 4).
+        let expected = 0.5 * (140.0 * (290.0_f64 / 140.0).ln() - 50.0 * 4.0_f64.ln());
+        assert!((larger(4.0, 50.0, 1.0, 90.0) - expected).abs() < 1e-12);
+    }
+
+    /// In many segments, each with a start state fitted to it, the swing's band is by a third too quiet.
+    #[test]
+    fn a_quiet_swing_makes_no_neighbor_loud() {
+        let band = |power: f64| Band { power: 1500.0 * power, bins: 1500.0, worth: 1867.0 };
+        let mut spectrum = vec![band(1.0); 2 * HARMONICS];
+        spectrum[SWING] = band(0.65);
+        assert_eq!(outstanding(&spectrum).0.evidence, 0.0);
+        // What stands out at the swing's own frequency is still seen there.
+        spectrum[SWING] = band(1.3);
+        assert!(outstanding(&spectrum).0.evidence > 5.0);
+    }
+
+    #[test]
+    fn a_bands_squares_scatter_as_stated() {
+        let mut generator = seed::Seed::new(3).child("noise").generator();
+        let times: Vec<f64> = (0..400).map(f64::from).collect();
+        let bin = std::f64::consts::TAU / 399.0;
+        let means: Vec<f64> = (0..2000)
+            .map(|_| {
+                let noise: Vec<f64> = times.iter().map(|_| StandardNormal.sample(&mut generator)).collect();
+                [19.0, 20.0, 21.0].iter().map(|k| periodogram(&times, &noise, k * bin)).sum::<f64>() / 3.0
+            })
+            .collect();
+        let mean = crate::noise::statistics::mean(&means);
+        let variance =
+            crate::noise::statistics::mean(&means.iter().map(|m| (m - mean).powi(2)).collect::<Vec<_>>());
+        assert!((mean - 1.0).abs() < 0.05, "{mean}");
+        // A mean of n squares of unit Gaussians has the variance 2/n.
+        assert!((2.0 / variance / WORTH - 1.0).abs() < 0.15, "{}", 2.0 / variance);
+    }
+}

@@ -1,0 +1,11 @@
+//! What the fits are evidence of: sets, classes and effects, and what is left over.
+
+pub(crate) mod conclusion;
+pub(crate) mod confidence;
+pub(crate) mod context;
+pub(crate) mod determined;
+pub(crate) mod discrepancy;
+pub(crate) mod held_out;
+pub(crate) mod left_over;
+pub(crate) mod score;
+pub(crate) mod weights;

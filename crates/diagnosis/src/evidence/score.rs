@@ -1,0 +1,64 @@
+//! How well a set of effects is supported by the data.
+
+use crate::fit::levenberg_marquardt::Fit;
+
+/// Tempered log evidence S = −(N/2τ)·ln(SS/N) − (p/2)·ln(N/τ), up to a constant common to all hypotheses on the same
+/// data.
+///
+/// N samples whose residual has the integrated autocorrelation time τ carry the information of N/τ: white residuals
+/// get full power, a misfit that all hypotheses share is discounted. Start states are the same in number for all
+/// but hypotheses with a second body, whose further ones count among the parameters.
+pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
+    let samples = fit.samples() as f64;
+    let worth = samples / autocorrelation_time;
+    let extra = further_starts(fit);
+    let mean = (fit.squares / samples).max(f64::MIN_POSITIVE);
+    -0.5 * worth * mean.ln() - price(fit.globals() + extra, worth)
+}
+
+/// Start values that a hypothesis has beyond those of every one.
+pub(crate) fn further_starts(fit: &Fit) -> usize {
+    let common = fit.hypothesis.least_start_length();
+    fit.point.starts.iter().map(|start| start.len().saturating_sub(common)).sum()
+}
+
+/// What parameters cost: (p/2)·ln(N/τ).
+fn price(parameters: usize, worth: f64) -> f64 {
+    0.5 * parameters as f64 * worth.max(2.0).ln()
+}
+
+/// The squares at which so many samples and parameters have a [`score`].
+pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorrelation_time: f64) -> f64 {
+    let samples = samples as f64;
+    let worth = samples / autocorrelation_time;
+    samples * (-2.0 * (score + price(parameters, worth)) / worth).exp()
+}
+
+/// A decaying swing of 1000 samples, and the calibrated simulator fitted to it.
+#[cfg(test)]
+pub(crate) fn calibrated_swing() -> (crate::data::segments::Data, Fit) {
+    use record::{Clock, ClockChoice, Quantity, Record};
+    let times: Vec<f64> = (0..1000).map(|at| 0.01 * f64::from(at)).collect();
+    let values = times.iter().map(|time| 0.3 * (-0.1 * time).exp() * (20.0 * time).cos()).collect();
+    let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+    let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+    let nominal = dynamics::Nominal::new(1.0, 0.2, 400.0, 0.0).unwrap();
+    let observations = crate::Observations::new(&record, &clock);
+    let data = crate::data::segments::cut(&[observations], &[vec![true; 1000]], &(&nominal).into()).unwrap();
+    let calibrated = crate::fit::calibrate::baseline(&data, &(&nominal).into()).unwrap().calibrated;
+    (data, calibrated)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{calibrated_swing, score, squares_at};
+
+    #[test]
+    fn squares_and_score_go_together() {
+        let (_, found) = calibrated_swing();
+        for time in [1.0, 7.0] {
+            let squares = squares_at(score(&found, time), found.samples(), found.globals(), time);
+            assert!((squares / found.squares - 1.0).abs() < 1e-9, "{time}: {squares} {}", found.squares);
+        }
+    }
+}

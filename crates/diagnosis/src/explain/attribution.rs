@@ -1,0 +1,105 @@
+//! The gap budget: shares by cause that add up.
+
+use crate::answer::Budget;
+use crate::fit::levenberg_marquardt::solve;
+use crate::model::dictionary::Dictionary;
+use crate::model::matrices::{element, ridged};
+use dynamics::Class;
+use nalgebra::DMatrix;
+
+/// Classes in the order of the budget.
+pub(crate) const CLASSES: [Class; 5] =
+    [Class::Dissipative, Class::Conservative, Class::TimeDependent, Class::Sensor, Class::Clock];
+
+/// Shapley values of `count` players: the mean, over all orders in which they can come, of what each adds. `worth` maps
+/// a set, as bits, to what it explains.
+///
+/// # Reference
+/// Shapley, in Contributions to the Theory of Games II, Princeton 1953, 307.
+pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
+    let factorial = |n: usize| (1..=n).map(|k| k as f64).product::<f64>();
+    let sets = 1_usize << count;
+    let worths: Vec<f64> = (0..sets).map(worth).collect();
+    (0..count)
+        .map(|player| {
+            (0..sets)
+                .filter(|set| set & (1 << player) == 0)
+                .map(|set| {
+                    let size = set.count_ones() as usize;
+                    let weight = factorial(size) * factorial(count - size - 1) / factorial(count);
+                    let at = |set: usize| worths.get(set).copied().unwrap_or(0.0);
+                    weight * (at(set | (1 << player)) - at(set))
+                })
+                .sum()
+        })
+        .collect()
+}
+
+/// Squares that all columns of some classes would take away together.
+fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
+    let columns: Vec<usize> = dictionary
+        .entries
+        .iter()
+        .filter(|entry| {
+            let class = CLASSES.iter().position(|class| *class == entry.candidate.class());
+            class.is_some_and(|class| classes & (1 << class) != 0)
+        })
+        .flat_map(|entry| entry.columns.clone())
+        .collect();
+    if columns.is_empty() {
+        return 0.0;
+    }
+    let products = dictionary.products.select_rows(&columns).select_columns(&columns);
+    // Neighbors on a grid of shapes are nearly dependent; a small ridge shares between them.
+    let products = ridged(&products, 0..columns.len(), 1e-4);
+    let scores =
+        DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&dictionary.scores, c)));
+    solve(&products, &scores).map_or(0.0, |solution| solution.dot(&scores).max(0.0))
+}
+
+/// The budget: what named effects explain goes to their classes, what is left beyond the noise is shared among classes
+/// by Shapley's rule on the dictionary at the repaired fit.
+///
+/// `named` are classes and squares of the named effects; `left` are the squares beyond the noise that they leave.
+pub(crate) fn budget(named: &[(Class, f64)], left: f64, dictionary: Option<&Dictionary>) -> Budget {
+    let mut shares = [0.0; 5];
+    for (class, squares) in named {
+        for (own, share) in CLASSES.iter().zip(&mut shares) {
+            if own == class {
+                *share += squares.max(0.0);
+            }
+        }
+    }
+    if let Some(dictionary) = dictionary.filter(|_| left > 0.0) {
+        let generic: Vec<f64> = shapley(CLASSES.len(), &|set| explained(dictionary, set))
+            .into_iter()
+            .map(|share| share.max(0.0))
+            .collect();
+        let total: f64 = generic.iter().sum();
+        if total > 0.0 {
+            for (share, generic) in shares.iter_mut().zip(generic) {
+                *share += left * generic / total;
+            }
+        }
+    }
+    let total: f64 = shares.iter().sum();
+    if total <= 0.0 {
+        return Budget::default();
+    }
+    let [dissipative, conservative, time_dependent, sensor, clock] = shares.map(|share| share / total);
+    Budget { dissipative, conservative, time_dependent, sensor, clock }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shapley;
+
+    /// The glove game: one left glove, two right ones; a pair is worth 1. The values are 2/3, 1/6, 1/6.
+    #[test]
+    fn the_glove_game() {
+        let values = shapley(3, &|set| f64::from(set & 1 == 1 && set & 6 != 0));
+        for (value, expected) in values.iter().zip([2.0 / 3.0, 1.0 / 6.0, 1.0 / 6.0]) {
+            assert!((value - expected).abs() < 1e-15);
+        }
+    }
+}

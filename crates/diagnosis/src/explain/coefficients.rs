@@ -1,0 +1,136 @@
+//! Coefficients with units and intervals, as the answer gives them.
+
+use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
+use crate::evidence::context::Context;
+use crate::evidence::determined::says_something;
+use crate::fit::levenberg_marquardt::{Fit, UNBOUNDED};
+use crate::model::candidate::{Candidate, Distortion};
+use crate::model::hypothesis::{Calibrated as Coefficient, Known};
+use crate::model::matrices::{entry, set};
+use crate::noise::statistics::normal_above;
+use dynamics::{NominalSimulator, Units};
+use nalgebra::DMatrix;
+use record::Quantity;
+
+/// Variance that the inverse of the normal equations is a multiple of: the residual's, for as many samples as its
+/// autocorrelation leaves.
+pub(crate) fn variance(fit: &Fit) -> f64 {
+    fit.squares / fit.freedom() * fit.autocorrelation_time()
+}
+
+pub(crate) fn around(value: f64, error: f64) -> Interval {
+    // An error without bounds, whatever the variance that it was multiplied by.
+    let error = if error < UNBOUNDED.powf(0.4) { error } else { f64::INFINITY };
+    let reach = normal_above(0.025) * error;
+    Interval { value, interval_95: [value - reach, value + reach] }
+}
+
+/// A global parameter with its interval.
+pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
+    let value = fit.point.globals.get(index).copied().unwrap_or_default();
+    around(value, (variance(fit) * entry(&fit.inverse, index, index)).max(0.0).sqrt())
+}
+
+/// Standard errors of a law's parameters, whose fitted ones begin at a place among the globals.
+pub(crate) fn spread(fit: &Fit, candidate: Candidate, at: usize, fitted: &[f64]) -> Vec<f64> {
+    let count = fitted.len();
+    let mut change = DMatrix::identity(count, count);
+    for (row, column, slope) in candidate.slopes(fitted) {
+        set(&mut change, row, column, slope);
+    }
+    let own = DMatrix::from_fn(count, count, |i, j| entry(&fit.inverse, at + i, at + j));
+    let covariance = &change * own * change.transpose() * variance(fit);
+    covariance.diagonal().iter().map(|square| square.max(0.0).sqrt()).collect()
+}
+
+/// What a fit says of the parameters of one of its effects; nothing of one that it does not have, or that is held.
+pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) -> Vec<ParameterEstimate> {
+    let facts = &work.data.facts;
+    let units = fit.hypothesis.nominal.units();
+    let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
+    let own = parts.into_iter().find(|(effect, _, _)| *effect == candidate);
+    let Some((_, Some(at), fitted)) = own else { return Vec::new() };
+    let spread = spread(fit, candidate, at, fitted);
+    let named = candidate.parameters(facts).into_iter().zip(candidate.values(fitted)).zip(spread);
+    let mut estimates: Vec<ParameterEstimate> = named
+        .enumerate()
+        .map(|(index, ((parameter, value), error))| {
+            let estimate = around(value, error);
+            ParameterEstimate {
+                name: parameter.name,
+                unit: unit(candidate, index, units, work.data.quantity),
+                estimate,
+                determined: says_something(facts, quantity(candidate, index), &estimate),
+            }
+        })
+        .collect();
+    if candidate == Candidate::Chain(Distortion::ReadingHysteresis) {
+        // Read off the values, without a fit.
+        let unit = unit(candidate, 0, units, work.data.quantity);
+        let estimate = around(facts.resolution, 0.0);
+        estimates.insert(0, ParameterEstimate { name: "step", unit, estimate, determined: true });
+    }
+    estimates
+}
+
+/// What a parameter of an effect measures.
+pub(crate) fn quantity(candidate: Candidate, index: usize) -> dynamics::Quantity {
+    use dynamics::Quantity::{Angle, Observed, ObservedPerTime, Rate, Ratio, Time};
+    match candidate {
+        Candidate::System(effect) => {
+            effect.description().parameters.get(index).map_or(Ratio, |parameter| parameter.quantity)
+        }
+        Candidate::Chain(Distortion::Lag) => Time,
+        Candidate::Chain(Distortion::Nonlinearity) if index == 1 => Angle,
+        Candidate::Chain(Distortion::Drift) => ObservedPerTime,
+        Candidate::Chain(Distortion::Clock) => Rate,
+        Candidate::Chain(_) => Observed,
+    }
+}
+
+fn unit(candidate: Candidate, index: usize, units: Units, observed: Quantity) -> String {
+    use dynamics::chain::Observed;
+    let observed = match observed {
+        Quantity::Position => Observed::Position,
+        Quantity::Velocity => Observed::Velocity,
+        Quantity::Acceleration => Observed::Acceleration,
+    };
+    quantity(candidate, index).unit_seen(units, observed).to_owned()
+}
+
+/// What calibration makes of the oscillator's coefficients, without candidates and with them.
+pub(crate) fn calibration(work: &Context<'_>, repaired: &Fit) -> Vec<Calibrated> {
+    let base = &work.base.calibrated;
+    let coefficients = base.hypothesis.nominal.coefficients();
+    let row = |which: Coefficient| {
+        let place = base.hypothesis.calibrated.iter().position(|own| *own == which);
+        let after = place.map(|place| interval(repaired, place));
+        Calibrated {
+            name: which.name(),
+            nominal: which.of(&coefficients),
+            recalibrated: place.map(|place| interval(base, place)),
+            repaired: after,
+            determined: after.map(|after| says_something(&work.data.facts, which.quantity(), &after)),
+        }
+    };
+    Coefficient::PLAIN.into_iter().map(row).collect()
+}
+
+/// The same of the effects that the nominal simulator has and that a fit follows.
+pub(crate) fn known(work: &Context<'_>, simulator: &NominalSimulator, repaired: &Fit) -> Vec<KnownRow> {
+    let base = &work.base.calibrated;
+    let own = |known: &Known| {
+        let stated = simulator
+            .effects()
+            .iter()
+            .find(|stated| Candidate::of(&stated.active).is_some_and(|(own, _)| own == known.candidate));
+        KnownRow {
+            id: known.candidate.id(),
+            recalibrate: known.recalibrate,
+            nominal: stated.map(|stated| stated.active),
+            recalibrated: parameters(work, base, known.candidate),
+            repaired: parameters(work, repaired, known.candidate),
+        }
+    };
+    base.hypothesis.known.iter().map(own).collect()
+}

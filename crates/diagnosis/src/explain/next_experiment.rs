@@ -1,0 +1,165 @@
+//! The experiment that would tell two explanations apart.
+
+use crate::answer::Experiment;
+use crate::data::segments::{Data, Segment};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::predictor::{Derivatives, Simulator};
+use dynamics::{DynamicsError, Input, SystemEffect};
+use rayon::prelude::*;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A further record beside the present data.
+struct Plan {
+    text: &'static str,
+    /// Start of the new record relative to the present one's.
+    release: f64,
+    /// Length relative to the present one's.
+    length: f64,
+    /// Input relative to the present one's.
+    drive: f64,
+    /// Angle by which the mount is turned.
+    tilt: f64,
+}
+
+const fn plan(text: &'static str, release: f64, length: f64, drive: f64, tilt: f64) -> Plan {
+    Plan { text, release, length, drive, tilt }
+}
+
+const FREE: [Plan; 4] = [
+    plan("release once more from twice the amplitude", 2.0, 1.0, 1.0, 0.0),
+    plan("release once more from a quarter of the amplitude", 0.25, 1.0, 1.0, 0.0),
+    plan("record a release for twice as long", 1.0, 2.0, 1.0, 0.0),
+    plan("turn the mount by 90 degrees and release once more", 1.0, 1.0, 1.0, FRAC_PI_2),
+];
+
+const DRIVEN: [Plan; 2] = [
+    plan("drive once more with twice the input", 1.0, 1.0, 2.0, 0.0),
+    plan("drive once more with half the input", 1.0, 1.0, 0.5, 0.0),
+];
+
+/// An angle is released no farther than this; beyond it a spring or a stop is another one.
+const FARTHEST: f64 = 0.75 * PI;
+
+const GRAVITY: Candidate = Candidate::System(SystemEffect::Gravity);
+
+/// A point with its gravity's angle turned.
+fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
+    let mut point = model.point.globals.clone();
+    let calibrated = model.hypothesis.calibrated.len();
+    let mut at = calibrated;
+    for candidate in &model.hypothesis.candidates {
+        if *candidate == GRAVITY
+            && let Some([p, q]) = point.get_mut(at..at + 2)
+        {
+            // The pair (size·cos, size·sin) turns with the mount.
+            let (sine, cosine) = tilt.sin_cos();
+            (*p, *q) = (*p * cosine - *q * sine, *p * sine + *q * cosine);
+        }
+        at += candidate.parameters(&data.facts).len();
+    }
+    point
+}
+
+/// Data without noise as `model` would give them: the present segments, and those of a further record.
+fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), DynamicsError> {
+    let mut segments = data.segments.clone();
+    let mut starts = model.point.starts.clone();
+    let mut now = Simulator::new(data, &model.hypothesis, &model.point.globals, Derivatives::None)?;
+    for (segment, start) in segments.iter_mut().zip(&starts) {
+        let residual = now.predict(segment, start)?.residual;
+        for (value, residual) in segment.values.iter_mut().zip(residual.iter()) {
+            *value -= residual;
+        }
+    }
+    let record = data.inputs.len();
+    let mut inputs = data.inputs.clone();
+    let original = data.inputs.first().and_then(Option::as_ref);
+    inputs.push(
+        original
+            .map(|input| {
+                let values = input.values().iter().map(|u| u * plan.drive).collect();
+                Input::new(input.times().to_vec(), values, input.hold())
+            })
+            .transpose()?,
+    );
+    let planned = Data { inputs, ..data.clone() };
+    let point = turned(data, model, plan.tilt);
+    let mut then = Simulator::new(&planned, &model.hypothesis, &point, Derivatives::None)?;
+    let rest = data.facts.rest(&model.point.globals, &model.hypothesis);
+    let own: Vec<&Segment> = data.segments.iter().filter(|segment| segment.record == 0).collect();
+    let mut state: Vec<f64> = model.point.starts.first().cloned().unwrap_or_default();
+    if let Some(position) = state.first_mut() {
+        *position = rest + plan.release * (*position - rest);
+    }
+    let repeats = plan.length.ceil() as usize;
+    let mut offset = 0.0;
+    for _ in 0..repeats {
+        for (index, segment) in own.iter().enumerate() {
+            let times: Vec<f64> = segment.times.iter().map(|time| time + offset).collect();
+            let end = own.get(index + 1).and_then(|next| next.times.first()).map(|time| time + offset);
+            let next = end.unwrap_or_else(|| times.last().copied().unwrap_or(offset) + data.facts.interval);
+            let mut fresh = Segment {
+                record,
+                first: index == 0 && offset == 0.0,
+                values: vec![0.0; times.len()],
+                still: false,
+                times,
+                parts: segment.parts.clone(),
+                guess: [0.0; 2],
+            };
+            let predicted = then.predict(&fresh, &state)?.residual;
+            fresh.values = predicted.iter().map(|residual| -residual).collect();
+            let bridge = Segment {
+                times: vec![fresh.times.first().copied().unwrap_or(offset), next],
+                values: vec![0.0; 2],
+                ..fresh.clone()
+            };
+            starts.push(state.clone());
+            state = then.end(&bridge, &state)?;
+            segments.push(fresh);
+        }
+        offset += data.facts.duration + data.facts.interval;
+    }
+    Ok((Data { segments, ..planned }, Point { globals: Vec::new(), starts }))
+}
+
+/// Distance, in noise units, at which the rival would still be after it has been fitted to what the model gives in
+/// the present experiment and in a further one.
+fn distance(data: &Data, model: &Fit, rival: &Fit, plan: &Plan, noise: f64) -> Option<f64> {
+    let (future, made) = synthetic(data, model, plan).ok()?;
+    let length = rival.hypothesis.start_length();
+    let starts = made.starts.iter().map(|start| start.iter().copied().cycle().take(length).collect());
+    let point = Point { globals: rival.point.globals.clone(), starts: starts.collect() };
+    // Under a turned mount the rival's own gravity turns too; that is only the same law where both have it.
+    let fitted = fit(&future, &rival.hypothesis, point, Moving::All, Stopping::PLANNED).ok()?;
+    Some(fitted.squares.sqrt() / noise)
+}
+
+/// The experiment with the largest distance between a model and its rival. `noise` is that of the data's samples (for
+/// thinned data, divided by the square root of the stride).
+pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<Experiment> {
+    let driven = data.driven();
+    let has = |fit: &Fit| fit.hypothesis.candidates.contains(&GRAVITY);
+    let plans: &[Plan] = if driven { &DRIVEN } else { &FREE };
+    let usable = plans.iter().filter(|plan| {
+        let farther = plan.release <= 1.0 || plan.release * data.facts.amplitude <= FARTHEST;
+        farther && (plan.tilt == 0.0 || has(model) != has(rival))
+    });
+    let usable: Vec<&Plan> = usable.collect();
+    let considered: Vec<(String, f64)> = usable
+        .into_par_iter()
+        .filter_map(|plan| {
+            // A model without gravity sees nothing of the turn; let the one that has it make the data.
+            let (from, to) = if plan.tilt != 0.0 && has(rival) { (rival, model) } else { (model, rival) };
+            Some((plan.text.to_owned(), distance(data, from, to, plan, noise)?))
+        })
+        .collect();
+    let (text, distance) = considered.iter().max_by(|a, b| a.1.total_cmp(&b.1)).cloned()?;
+    let only = |own: &Fit, other: &Fit| -> Option<&'static str> {
+        let mut ids = own.hypothesis.candidates.iter().filter(|c| !other.hypothesis.candidates.contains(c));
+        ids.next().map(|candidate| candidate.id())
+    };
+    let separates = [only(model, rival), only(rival, model)].into_iter().flatten().collect();
+    Some(Experiment { text, separates, distance, considered })
+}

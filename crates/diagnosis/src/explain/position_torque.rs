@@ -1,0 +1,269 @@
+//! What is left beside the named effects, where it has a shape: a torque that repeats along the position.
+//!
+//! Magnets, balls in a bearing and the turns of a screw pull back and forth as a body moves on. No effect of the
+//! vocabulary does, and a record does not tell these causes apart, so that such a torque gets no name. But a simulator
+//! that has it follows the motion more closely, and whoever looks for the cause knows how often it repeats in a turn.
+//!
+//! It is looked for once all names are given, and takes part in none of them.
+
+use crate::answer::Interval;
+use crate::data::segments::Data;
+use crate::data::shooting_interval::shortened;
+use crate::error::DiagnosisError;
+use crate::evidence::context::{Context, Held};
+use crate::evidence::held_out::{Both, HeldOut};
+use crate::evidence::weights::{EVEN, ratio};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::{Acting, INVISIBLE, Moment, Smooth, columns_of};
+use crate::model::matrices::element;
+use crate::model::projection::Projection;
+use crate::model::tangent::{Path, matrix};
+use crate::noise::statistics::quantile;
+use crate::search::archive::vanished;
+use dynamics::DynamicsError;
+use nalgebra::{DMatrix, DVector};
+
+/// A torque without a name, beside the named effects.
+pub(crate) struct Unnamed {
+    /// The named set with it, on the horizon that the set was judged on and on the segments as they were cut.
+    pub(crate) followed: Fit,
+    pub(crate) fitted: Fit,
+    pub(crate) after: HeldOut,
+    /// Mean square on the last third, fitted to the first two.
+    pub(crate) last_third: f64,
+    /// Log evidence that it is there.
+    pub(crate) evidence: f64,
+    /// Squares that it takes away, and their share in what the set takes away with it.
+    pub(crate) squares: f64,
+    pub(crate) share: Interval,
+}
+
+/// Steps of the grid of wavenumbers, in radians of the wave over the amplitude: over a swing, waves so far apart are
+/// nearly orthogonal, and a fit moves on from halfway between.
+const STEP: f64 = 1.5;
+
+/// Numbers that it takes: a size, a wavenumber and a phase.
+const PARAMETERS: f64 = 3.0;
+
+/// The strongest torque along the position, to first order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Wave {
+    wavenumber: f64,
+    /// Torque of −sin and of −cos.
+    torques: [f64; 2],
+    /// Squares that it would take away.
+    gain: f64,
+}
+
+/// Looks for it, and fits it where it would be there by its gain to first order. It counts where it is more probable than
+/// not and predicts parts that were not fitted.
+///
+/// # Errors
+/// What the dynamics refuse.
+pub(crate) fn unnamed(work: &Context<'_>, held: &Held<'_>) -> Result<Option<Unnamed>, DiagnosisError> {
+    let (data, named) = (work.data, held.repaired);
+    let Some(followed) = beside(data, named, named.autocorrelation_time(), EVEN)? else { return Ok(None) };
+    let evidence = evidence(data, &followed, named, followed.autocorrelation_time());
+    if evidence < EVEN {
+        return Ok(None);
+    }
+    let segments = work.segments.data;
+    let Ok(fitted) = shortened(segments, data, &followed) else { return Ok(None) };
+    let both = Both { longer: data, followed: &followed, segments, fitted: &fitted };
+    let predicted = rayon::join(|| both.interleaved(Moving::All), || both.last_third(Moving::All));
+    let (Ok(after), Ok(last_third)) = predicted else { return Ok(None) };
+    if after.mean_square() >= held.after.mean_square() {
+        return Ok(None);
+    }
+    let squares = named.squares - followed.squares;
+    let share = share(work, named, &followed);
+    Ok(Some(Unnamed { followed, fitted, after, last_third, evidence, squares, share }))
+}
+
+/// The fit of a set with such a torque beside it; none where by its gain to first order its log evidence over the set
+/// alone, at an autocorrelation time, stays below a bound, where it comes out as something else, or where the nominal
+/// simulator has one.
+///
+/// # Errors
+/// What the dynamics refuse.
+pub(crate) fn beside(data: &Data, named: &Fit, time: f64, bound: f64) -> Result<Option<Fit>, DynamicsError> {
+    if named.hypothesis.knows(Candidate::UNNAMED) {
+        return Ok(None);
+    }
+    let Some(wave) = strongest(data, named)? else { return Ok(None) };
+    let promised = Fit { squares: (named.squares - wave.gain).max(f64::MIN_POSITIVE), ..named.clone() };
+    if evidence(data, &promised, named, time) < bound {
+        return Ok(None);
+    }
+    let followed = with(data, named, wave).ok();
+    Ok(followed.filter(|followed| !vanished(data, followed)))
+}
+
+/// Log evidence of a set with such a torque over the set without it, at an autocorrelation time: it pays for its numbers,
+/// and for being the best of many wavenumbers.
+pub(crate) fn evidence(data: &Data, with: &Fit, without: &Fit, time: f64) -> f64 {
+    let worth = (without.samples() as f64 / time).max(2.0);
+    let looked = wavenumbers(data).len().max(1) as f64;
+    ratio(with, without, time) - 0.5 * PARAMETERS * worth.ln() - looked.ln()
+}
+
+/// The wavenumbers that are looked at; none where samples are too far apart for any.
+fn wavenumbers(data: &Data) -> Vec<f64> {
+    let [lowest, highest] = data.facts.waves();
+    let step = STEP / data.facts.amplitude;
+    let steps = (highest - lowest) / step;
+    let count = if steps >= 0.0 { steps as usize + 1 } else { 0 };
+    (0..count).map(|index| lowest + index as f64 * step).collect()
+}
+
+fn strongest(data: &Data, named: &Fit) -> Result<Option<Wave>, DynamicsError> {
+    let wavenumbers = wavenumbers(data);
+    if wavenumbers.is_empty() {
+        return Ok(None);
+    }
+    let projection = Projection::at(data, named)?;
+    let paths = Path::of(data, named)?;
+    let residual = named.residuals.iter().flat_map(|residual| residual.iter().copied());
+    let mut residual = DMatrix::from_iterator(projection.rows(), 1, residual);
+    projection.apply(&mut residual);
+    let waves = wavenumbers
+        .into_iter()
+        .filter_map(|wavenumber| wave(data, &paths, &projection, &residual, wavenumber));
+    Ok(waves.max_by(|a, b| a.gain.total_cmp(&b.gain)))
+}
+
+/// The torques at one wavenumber that take most away; none where calibration and start states imitate them.
+fn wave(
+    data: &Data,
+    paths: &[Path],
+    projection: &Projection,
+    residual: &DMatrix<f64>,
+    wavenumber: f64,
+) -> Option<Wave> {
+    let functions: [Smooth; 2] = [
+        Box::new(move |moment: Moment| -(wavenumber * moment.position).sin()),
+        Box::new(move |moment: Moment| -(wavenumber * moment.position).cos()),
+    ];
+    let columns = columns_of(paths, data.quantity, &functions, Acting::Torque);
+    let mut columns = matrix(projection.rows(), &columns);
+    let raw = columns.norm();
+    projection.apply(&mut columns);
+    if columns.norm() <= INVISIBLE * raw {
+        return None;
+    }
+    let scores: DVector<f64> = columns.tr_mul(residual).column(0).clone_owned();
+    let solution = columns.tr_mul(&columns).lu().solve(&scores)?;
+    let gain = solution.dot(&scores);
+    let torques = [element(&solution, 0), element(&solution, 1)];
+    (gain.is_finite() && gain > 0.0).then_some(Wave { wavenumber, torques, gain })
+}
+
+/// The named set with a wave beside it, begun where the set ended.
+fn with(data: &Data, named: &Fit, wave: Wave) -> Result<Fit, DynamicsError> {
+    let hypothesis =
+        named.hypothesis.with(&[named.hypothesis.candidates.as_slice(), &[Candidate::UNNAMED]].concat());
+    let [sine, cosine] = wave.torques;
+    // Its parameters come last: it is behind every candidate.
+    let globals = [named.point.globals.as_slice(), &[sine, wave.wavenumber, cosine]].concat();
+    let point = Point { globals, starts: named.point.starts.clone() };
+    fit(data, &hypothesis, point, Moving::All, Stopping::FINAL)
+}
+
+/// Its share in all that is taken away beyond recalibration, with an interval from a bootstrap over segments.
+fn share(work: &Context<'_>, named: &Fit, followed: &Fit) -> Interval {
+    let squares = |fit: &Fit| -> Vec<f64> {
+        work.data.by_part(&fit.residuals).iter().map(|part| part.norm_squared()).collect()
+    };
+    let before = squares(&work.base.calibrated);
+    let [between, after] = [squares(named), squares(followed)];
+    let all: Vec<usize> = (0..before.len()).collect();
+    let of = |picked: &[usize]| -> f64 {
+        let sum = |values: &[f64]| -> f64 { picked.iter().filter_map(|&index| values.get(index)).sum() };
+        let whole = sum(&before) - sum(&after);
+        if whole > 0.0 { ((sum(&between) - sum(&after)) / whole).clamp(0.0, 1.0) } else { 0.0 }
+    };
+    let mut generator = work.settings.seed.child("unnamed share").generator();
+    let draws: Vec<f64> = (0..400)
+        .map(|_| {
+            let drawn = all.iter().map(|_| rand::RngExt::random_range(&mut generator, 0..all.len().max(1)));
+            of(&drawn.collect::<Vec<_>>())
+        })
+        .collect();
+    Interval { value: of(&all), interval_95: [quantile(&draws, 0.025), quantile(&draws, 0.975)] }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::{Diagnosis, Observations, Settings, Status, diagnose};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    const NOISE: f64 = 5e-4;
+
+    /// What is said of 15 s of a swing with some effects, 260 samples a second.
+    fn diagnosed(effects: &[(&str, &[f64])]) -> Diagnosis {
+        let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
+        let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+        let system = System::new(nominal, active).unwrap();
+        let times: Vec<f64> = (0..3900).map(|i| f64::from(i) / 260.0).collect();
+        let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
+        let mut generator = Seed::new(5).child("noise").generator();
+        let noise = StandardNormal.sample_iter(&mut generator);
+        let values: Vec<f64> =
+            motion.position.iter().zip(noise).map(|(x, noise): (&f64, f64)| x + NOISE * noise).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap()
+    }
+
+    /// Wavenumber and torque of what has no name, with their intervals.
+    fn torque(answer: &Diagnosis) -> Option<[crate::Interval; 2]> {
+        let row = answer.effects.iter().find(|row| row.id == "unknown")?;
+        let of = |name: &str| row.parameters.iter().find(|own| own.name == name).map(|own| own.estimate);
+        row.gap_share?;
+        Some([of("wavenumber")?, of("torque")?])
+    }
+
+    fn holds(interval: crate::Interval, value: f64) -> bool {
+        // Three times the half-width of a 95 % interval.
+        let [low, high] = interval.interval_95;
+        (interval.value - value).abs() < 1.5 * (high - low)
+    }
+
+    #[test]
+    fn a_torque_along_the_position_alone_is_unknown_and_described() {
+        let answer = diagnosed(&[("unknown", &[0.4, 20.0, 0.7])]);
+        assert_eq!(answer.verdict.status, Status::Unknown);
+        assert!(answer.verdict.effects.is_empty(), "{:?}", answer.verdict.effects);
+        let [wavenumber, size] = torque(&answer).unwrap();
+        assert!(holds(wavenumber, 20.0) && (wavenumber.value - 20.0).abs() < 0.2, "{wavenumber:?}");
+        assert!(holds(size, 0.4) && (size.value / 0.4 - 1.0).abs() < 0.1, "{size:?}");
+        let ratio = answer.gap.repaired / answer.gap.noise_floor.value;
+        assert!(ratio < 1.05, "{ratio}");
+    }
+
+    #[test]
+    fn beside_a_larger_effect_it_takes_no_name_from_that() {
+        let answer = diagnosed(&[("quadratic_drag", &[0.05]), ("unknown", &[0.1, 20.0, 0.7])]);
+        assert_eq!(answer.verdict.status, Status::Effect);
+        assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
+        let [wavenumber, _] = torque(&answer).unwrap();
+        assert!((wavenumber.value - 20.0).abs() < 0.5, "{wavenumber:?}");
+        let shares: f64 =
+            answer.effects.iter().filter_map(|row| row.gap_share).map(|share| share.value).sum();
+        assert!((shares - 1.0).abs() < 1e-9, "{shares}");
+        let ratio = answer.gap.repaired / answer.gap.noise_floor.value;
+        assert!(ratio < 1.05, "{ratio}");
+    }
+
+    #[test]
+    fn where_none_acts_none_is_described() {
+        for effects in [&[][..], &[("quadratic_drag", &[0.05][..])], &[("coulomb_friction", &[0.3][..])]] {
+            assert_eq!(torque(&diagnosed(effects)), None, "{effects:?}");
+        }
+    }
+}

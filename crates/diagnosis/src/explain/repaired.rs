@@ -1,0 +1,288 @@
+//! The repaired simulator: what a fit says, as numbers that another simulator can be given.
+
+use crate::answer::{Interval, RepairedSimulator, Undetermined};
+use crate::data::segments::Data;
+use crate::data::shooting_interval::ShootingInterval;
+use crate::error::DiagnosisError;
+use crate::evidence::context::OFF_BY_CHANCE;
+use crate::evidence::determined::{reach, says_something};
+use crate::evidence::weights::significant;
+use crate::explain::coefficients::{around, interval, quantity, spread, variance};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, first_starts, fit};
+use crate::model::candidate::{Candidate, Distortion};
+use crate::model::hypothesis::{Calibrated, Hypothesis};
+use crate::model::matrices::{entry, set};
+use dynamics::{Active, DynamicsError, Effect, Nominal, NominalSimulator};
+use nalgebra::DMatrix;
+
+/// Digits kept behind the first one of a standard error.
+const GUARD: i32 = 2;
+
+/// Puts the repaired simulator together from a fit on a horizon. Where values are found to be rounded to the sensor's steps,
+/// these are part of it.
+///
+/// Numbers are those of the longest horizon that the fit follows: what adds up over a record shows there, and whoever runs
+/// the repaired simulator over a record sees it.
+///
+/// # Errors
+/// What the dynamics refuse.
+pub(crate) fn repaired(
+    horizon: ShootingInterval,
+    segments: &Data,
+    simulator: &NominalSimulator,
+    is_rounded: bool,
+) -> Result<RepairedSimulator, DiagnosisError> {
+    let ShootingInterval { data, calibrated: complete, .. } = farthest(horizon, segments);
+    let data = &data;
+    let (fit, undetermined) = without_undetermined(data, &complete);
+    let errors = given_all_others(data, &fit);
+    let nominal = rounded_nominal(&fit, &errors)?;
+    let mut left_out = Vec::new();
+    let mut effects = Vec::new();
+    let known = &fit.hypothesis.known;
+    for stated in simulator.effects() {
+        let own = Candidate::of(&stated.active).map(|(candidate, _)| candidate);
+        // What no fit follows stays as it is stated.
+        let place = known.iter().position(|known| Some(known.candidate) == own);
+        let moved = place.map(|place| active(data, &fit, &errors, place, Some(&stated.active)));
+        effects.push(moved.transpose()?.unwrap_or(stated.active));
+    }
+    for (index, candidate) in fit.hypothesis.candidates.iter().enumerate() {
+        match active(data, &fit, &errors, known.len() + index, None) {
+            Ok(found) => effects.push(found),
+            Err(error) => left_out.push((candidate.id(), error.to_string())),
+        }
+    }
+    let quantization = Effect::find("sensor_quantization")?;
+    // Stated by the simulator or fitted, it is there already.
+    if is_rounded && !effects.iter().any(|active| active.effect() == quantization) {
+        effects.extend(Active::of(quantization, &[step(data)]));
+    }
+    Ok(RepairedSimulator { nominal, effects, undetermined, left_out })
+}
+
+/// The fit on the longest horizon that it follows; where it is uneven, begun anew as well, as whoever diagnoses the system
+/// with the repaired simulator will: what ends closer to the data stands.
+fn farthest(horizon: ShootingInterval, segments: &Data) -> ShootingInterval {
+    let anew = restarted(&horizon, segments)
+        .map(|fit| ShootingInterval::shortest(segments, &fit).farthest(segments));
+    let own = horizon.farthest(segments);
+    match anew {
+        Some(anew) if anew.by > own.by => anew,
+        Some(anew) if anew.by == own.by && anew.calibrated.squares < own.calibrated.squares => anew,
+        _ => own,
+    }
+}
+
+/// The best fit to the segments as they were cut from start states that nothing is known of.
+fn restarted(horizon: &ShootingInterval, segments: &Data) -> Option<Fit> {
+    let from = &horizon.calibrated;
+    let hypothesis = &from.hypothesis;
+    if hypothesis.smooth() {
+        return None;
+    }
+    let guess = Point { globals: from.point.globals.clone(), starts: first_starts(segments, hypothesis) };
+    let settled = fit(segments, hypothesis, guess.clone(), Moving::Starts, Stopping::FINAL).ok();
+    let begun = settled.map(|settled| settled.point).into_iter().chain([guess]);
+    let fits = begun.filter_map(|point| fit(segments, hypothesis, point, Moving::All, Stopping::FINAL).ok());
+    fits.min_by(|a, b| a.squares.total_cmp(&b.squares))
+}
+
+/// A number of a fit that calibration moves, or an effect's: what it is called, and how far its interval reaches.
+struct Number {
+    name: String,
+    /// What holding it takes out of the calibration; nothing for an effect that the nominal simulator lacks.
+    held: Vec<Calibrated>,
+    reach: f64,
+    determined: bool,
+}
+
+fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
+    let facts = &data.facts;
+    let number = |name: String, held, quantity, estimate: &Interval| Number {
+        name,
+        held,
+        reach: reach(facts, quantity, estimate),
+        determined: says_something(facts, quantity, estimate),
+    };
+    let own = &fit.hypothesis.calibrated;
+    let plain = own.iter().enumerate().filter(|(_, which)| !matches!(which, Calibrated::Effect { .. }));
+    let mut all: Vec<Number> = plain
+        .map(|(place, which)| {
+            number(which.name().to_owned(), vec![*which], which.quantity(), &interval(fit, place))
+        })
+        .collect();
+    let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
+    for (index, (effect, place, fitted)) in parts.into_iter().enumerate() {
+        let Some(place) = place else { continue };
+        let is_own =
+            |which: &&Calibrated| matches!(which, Calibrated::Effect { known, .. } if *known == index);
+        let held: Vec<Calibrated> = own.iter().filter(is_own).copied().collect();
+        let values = effect.values(fitted).into_iter().zip(spread(fit, effect, place, fitted));
+        for (at, ((value, error), parameter)) in values.zip(effect.parameters(facts)).enumerate() {
+            let name = format!("{}.{}", effect.id(), parameter.name);
+            all.push(number(name, held.clone(), quantity(effect, at), &around(value, error)));
+        }
+    }
+    all
+}
+
+/// The fit with what the data do not determine held as the nominal simulator states it, one after the other, the widest
+/// first: once one is held, another may be determined. What the data refuse to have there stays as it was fitted. Gives
+/// all numbers that are not determined.
+fn without_undetermined(data: &Data, complete: &Fit) -> (Fit, Vec<Undetermined>) {
+    let time = complete.autocorrelation_time();
+    let mut fit = complete.clone();
+    let mut found: Vec<Undetermined> = Vec::new();
+    loop {
+        let mut open: Vec<Number> = numbers(data, &fit)
+            .into_iter()
+            .filter(|number| !number.determined && !found.iter().any(|known| known.name == number.name))
+            .collect();
+        open.sort_by(|a, b| b.reach.total_cmp(&a.reach));
+        let Some(widest) = open.into_iter().next() else {
+            // What stayed as it was fitted may be determined beside those that are held.
+            let still = numbers(data, &fit);
+            let is_open = |name: &str| still.iter().any(|number| number.name == name && !number.determined);
+            found.retain(|own| own.is_nominal || is_open(&own.name));
+            return (fit, found);
+        };
+        let held = |which: &Calibrated| widest.held.contains(which);
+        let with = holding(data, &fit, &held);
+        let is_free = |with: &Fit| {
+            !significant(complete, with, time, complete.globals() - with.globals(), OFF_BY_CHANCE)
+        };
+        let with = with.filter(is_free);
+        found.push(Undetermined { name: widest.name, is_nominal: with.is_some() });
+        fit = with.unwrap_or(fit);
+    }
+}
+
+/// The fit with some of what calibration moves held at the nominal value.
+fn holding(data: &Data, from: &Fit, held: &dyn Fn(&Calibrated) -> bool) -> Option<Fit> {
+    let own = &from.hypothesis;
+    let calibrated: Vec<Calibrated> = own.calibrated.iter().copied().filter(|which| !held(which)).collect();
+    if calibrated.len() == own.calibrated.len() {
+        return None;
+    }
+    let moved = from.point.globals.iter().enumerate();
+    let globals =
+        moved.filter(|(place, _)| !own.calibrated.get(*place).is_some_and(held)).map(|(_, value)| *value);
+    let point = Point { globals: globals.collect(), starts: from.point.starts.clone() };
+    let hypothesis = Hypothesis { calibrated, ..own.clone() };
+    fit(data, &hypothesis, point, Moving::All, Stopping::FINAL).ok()
+}
+
+/// The standard error of each number with all others given, laws' parameters in place of fitted ones: what rounding a
+/// number may be held against, since the others do not move along.
+fn given_all_others(data: &Data, fit: &Fit) -> Vec<f64> {
+    let count = fit.globals();
+    let mut change = DMatrix::identity(count, count);
+    for (effect, place, fitted) in fit.hypothesis.all_parts(&data.facts, &fit.point.globals) {
+        let Some(place) = place else { continue };
+        for (row, column, slope) in effect.slopes(fitted) {
+            set(&mut change, place + row, place + column, slope);
+        }
+    }
+    let covariance = &change * &fit.inverse * change.transpose() * variance(fit);
+    // Scaled to a unit diagonal before it is inverted: units differ by many orders of magnitude.
+    let scale = covariance.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
+    let at = |index: usize| scale.get(index).copied().unwrap_or(1.0);
+    let scaled = DMatrix::from_fn(count, count, |row, column| {
+        entry(&covariance, row, column) / (at(row) * at(column))
+    });
+    match scaled.try_inverse() {
+        Some(precision) => {
+            (0..count).map(|index| at(index) / entry(&precision, index, index).max(1.0).sqrt()).collect()
+        }
+        None => vec![0.0; count],
+    }
+}
+
+/// A number to the digits that its standard error leaves, and two more; as it is where no error is known (0, negative or
+/// not finite). What is less than its last digit keeps one.
+#[must_use]
+pub fn rounded(value: f64, error: f64) -> f64 {
+    if !(error.is_finite() && error > 0.0) {
+        return value;
+    }
+    let decimals = f64::from(GUARD) - error.log10().floor();
+    // The nearest double of the shortest decimal; beyond these limits it is as it is or no number.
+    if !(-300.0..=300.0).contains(&decimals) {
+        return value;
+    }
+    let size = value.abs().max(f64::MIN_POSITIVE).log10().floor();
+    let digits = (size + decimals).clamp(0.0, 17.0) as usize;
+    format!("{value:.digits$e}").parse().unwrap_or(value)
+}
+
+fn rounded_nominal(fit: &Fit, errors: &[f64]) -> Result<Nominal, DynamicsError> {
+    let calibrated = fit.hypothesis.calibrated.iter().zip(&fit.point.globals).zip(errors);
+    let point: Vec<f64> = calibrated
+        .map(|((which, value), error)| match which {
+            // Not below what a coefficient may be.
+            Calibrated::RestAngle => rounded(*value, *error),
+            _ => rounded(*value, *error).max(0.0),
+        })
+        .collect();
+    fit.hypothesis.calibrated_nominal(&point)
+}
+
+/// An effect of a fit by its number among all, on the ground of what the nominal simulator states of it.
+fn active(
+    data: &Data,
+    fit: &Fit,
+    errors: &[f64],
+    index: usize,
+    stated: Option<&Active>,
+) -> Result<Active, DynamicsError> {
+    let facts = &data.facts;
+    let parts = fit.hypothesis.all_parts(facts, &fit.point.globals);
+    let Some(&(effect, place, fitted)) = parts.get(index) else {
+        return Err(DynamicsError::UnknownEffect { id: index.to_string(), known: Vec::new() });
+    };
+    if let (Some(stated), None) = (stated, place) {
+        return Ok(*stated);
+    }
+    let errors = place.and_then(|place| errors.get(place..)).unwrap_or_default().iter().copied();
+    let values = effect.values(fitted).into_iter().zip(errors.chain(std::iter::repeat(0.0)));
+    let values: Vec<f64> = values.map(|(value, error)| rounded(value, error)).collect();
+    if let Candidate::System(effect) = effect {
+        return crate::model::hypothesis::active(effect, &values);
+    }
+    let kind = Effect::find(effect.id())?;
+    let names: Vec<&str> = effect.parameters(facts).iter().map(|parameter| parameter.name).collect();
+    let own = |name: &str| names.iter().position(|own| *own == name).and_then(|at| values.get(at).copied());
+    let parameters = kind.description().parameters.iter().map(|parameter| {
+        let stated = || stated.and_then(|stated| stated.value(parameter.name));
+        own(parameter.name).or_else(stated).unwrap_or(match (effect, parameter.name) {
+            (Candidate::Chain(Distortion::ReadingHysteresis), "step") => step(data),
+            _ => 0.0,
+        })
+    });
+    Active::of(kind, &parameters.collect::<Vec<_>>())
+}
+
+/// The sensor's step, to the digits that counting steps over the whole motion tells.
+fn step(data: &Data) -> f64 {
+    let facts = &data.facts;
+    let step = data.resolution.unwrap_or(facts.resolution);
+    rounded(step, step * step / (facts.highest - facts.lowest))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rounded;
+
+    #[test]
+    fn digits_follow_the_error() {
+        assert_eq!(rounded(1.533_986_912_949_457_1e-3, 1.7e-6), 0.001_533_99);
+        assert_eq!(rounded(484.123_456, 0.3), 484.123);
+        assert_eq!(rounded(-484.123_456, 30.0), -484.1);
+        assert_eq!(rounded(0.000_4, 0.3), 0.000_4);
+        assert_eq!(rounded(0.0, 0.3), 0.0);
+        assert_eq!(rounded(123_456.7, 1e5), 123_000.0);
+        assert_eq!(rounded(0.1 + 0.2, 0.0), 0.1 + 0.2);
+        assert_eq!(rounded(0.1 + 0.2, f64::INFINITY), 0.1 + 0.2);
+    }
+}

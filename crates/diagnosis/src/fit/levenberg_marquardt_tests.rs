@@ -1,0 +1,63 @@
+use super::{Fit, Moving, Point, Stopping, fit};
+use crate::data::observations::Observations;
+use crate::data::segments::{Data, cut};
+use crate::fit::calibrate::baseline;
+use crate::model::candidate::Candidate;
+use dynamics::reference::{Tolerance, simulate};
+use dynamics::{Active, Nominal, Start, System, SystemEffect};
+use rand_distr::{Distribution, StandardNormal};
+use record::{Clock, ClockChoice, Quantity, Record};
+use seed::Seed;
+
+fn nominal() -> Nominal {
+    Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap()
+}
+
+/// 25 s of a swing at 3.5 Hz under dry friction that ends before the record does, with noise of 1 mrad.
+fn observed(friction: f64, seed: u64) -> Observations {
+    let effects = vec![Active::new("coulomb_friction", &[friction]).unwrap()];
+    let system = System::new(nominal(), effects).unwrap();
+    let times: Vec<f64> = (0..2500).map(|i| f64::from(i) * 0.01).collect();
+    let motion = simulate(&system, Start::release(0.6), None, &times, &Tolerance::default()).unwrap();
+    let mut generator = Seed::new(seed).child("noise").generator();
+    let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+    let values = motion.position.iter().map(|x| x + 1e-3 * noise()).collect();
+    let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+    let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+    Observations::new(&record, &clock)
+}
+
+/// The squares at a fit's point, evaluated anew.
+fn anew(data: &Data, found: &Fit) -> f64 {
+    let stay = Stopping { steps: 0, ..Stopping::FINAL };
+    fit(data, &found.hypothesis, found.point.clone(), Moving::All, stay).unwrap().squares
+}
+
+/// Dry friction makes steps fail, and segments begin again: what a fit says it leaves is what its own point leaves.
+#[test]
+fn squares_are_those_of_the_fits_own_point() {
+    let mut checked = 0;
+    for seed in 0..4 {
+        let observations = observed(1.0 + 0.5 * seed as f64, seed);
+        let kept = [vec![true; observations.len()]];
+        let data = cut(&[observations], &kept, &(&nominal()).into()).unwrap();
+        let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
+        for own in [SystemEffect::CoulombFriction, SystemEffect::Hysteresis, SystemEffect::Backlash] {
+            let candidate = Candidate::System(own);
+            let hypothesis = base.hypothesis.with(&[candidate]);
+            let lows = candidate.parameters(&data.facts).into_iter();
+            let values = lows.map(|p| if p.shape { 0.1 * p.upper } else { 0.05 });
+            let globals = base.point.globals.iter().copied().chain(values).collect();
+            let point = Point { globals, starts: base.point.starts.clone() };
+            let Ok(found) = fit(&data, &hypothesis, point, Moving::All, Stopping::SEARCH) else { continue };
+            let squares = anew(&data, &found);
+            assert!(
+                (squares / found.squares - 1.0).abs() < 1e-9,
+                "{own:?} {seed}: {squares} {}",
+                found.squares
+            );
+            checked += 1;
+        }
+    }
+    assert!(checked > 8, "{checked}");
+}

@@ -1,0 +1,5 @@
+//! What stamps and values show of the measurement chain before any physics.
+
+pub(crate) mod encoder_hysteresis;
+pub(crate) mod outliers;
+pub(crate) mod signatures;

@@ -1,0 +1,335 @@
+//! Isolated samples that are wrong, told from the samples around them.
+
+use crate::data::observations::Observations;
+use crate::noise::statistics::{median, normal_above};
+
+/// Probability with which Gaussian noise alone makes a record have an outlier.
+const FALSE_ALARM: f64 = 1e-3;
+
+/// Ratio of a Gaussian's standard deviation to the median of its absolute value.
+const OF_MEDIAN: f64 = 1.4826;
+
+/// Samples that share a scale with their neighbors: noise may grow with speed, and a fast mode may ring down.
+const BLOCK: usize = 64;
+
+/// Largest spacing of a neighborhood, as the product of its distances over an even one's: one sample lost in the middle
+/// makes it 3, and the cubic's own error grows in proportion.
+const WIDE: f64 = 4.0;
+
+/// Distance at double spacing over that at single spacing, at most. A wrong sample is off by as much from
+/// near neighbors as from far ones (1); a bend of the motion twice as much, a curve more.
+const BEND: f64 = 1.35;
+
+/// Distance of a direct neighbor, in its own noise, over that of the sample itself, at most. A wrong sample
+/// moves the neighbors' distances by 2/3 of its error; on both sides of a step they are as large as each
+/// other.
+const STEP: f64 = 0.85;
+
+/// Part of a record's samples beyond which outliers are no exceptions.
+const MOST: f64 = 0.02;
+
+/// Rounds of leaving out: a wrong sample hides another within its neighborhood.
+const ROUNDS: usize = 3;
+
+/// Which samples are kept: isolated ones that the motion around them does not support are left out of every fit.
+///
+/// A sample is compared with the cubic through its four neighbors on the believed times, in units of what noise
+/// makes of that distance. The noise is the median absolute distance (times 1.4826, the Gaussian's ratio), of
+/// the whole record or of the samples around if that is larger; of a sensor with steps it is no less than a
+/// step's rounding. A sample is wrong where the distance exceeds what one of all samples reaches by chance
+/// with a probability of 0.001, plus what rounding can add to it at most. Besides, it has to be isolated:
+/// bends (end stops, reversals under friction) grow with the spacing of the neighbors, steps show on both
+/// sides.
+///
+/// Where bursts lost samples, the places of samples within a burst are guesses, and none is called wrong.
+///
+/// Time is linear in the number of samples.
+pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
+    let everything = vec![true; observations.len()];
+    if observations.stamps.repeated > 0 && observations.stamps.lost > 0 {
+        return everything;
+    }
+    let mut kept = everything.clone();
+    for _ in 0..ROUNDS {
+        let wrong = wrong(observations, &kept);
+        for &at in &wrong {
+            if let Some(slot) = kept.get_mut(at) {
+                *slot = false;
+            }
+        }
+        if wrong.is_empty() {
+            break;
+        }
+    }
+    let dropped = kept.iter().filter(|kept| !**kept).count();
+    if dropped as f64 > MOST * observations.len() as f64 { everything } else { kept }
+}
+
+/// Standard deviation of the white noise of samples, from their distances to their neighbors; rounding is part of it,
+/// also where the steps are so coarse that most neighbors agree.
+pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
+    let points = points(observations, kept);
+    let sizes: Vec<f64> =
+        distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
+    let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
+    (OF_MEDIAN * median(&sizes)).max(rounding)
+}
+
+/// Index, time and value of a sample.
+type Point = (usize, f64, f64);
+
+fn points(observations: &Observations, kept: &[bool]) -> Vec<Point> {
+    let samples = observations.times_s.iter().zip(&observations.values).enumerate();
+    let samples = samples.zip(kept).filter(|(_, kept)| **kept);
+    samples.map(|((index, (&time, &value)), _)| (index, time, value)).collect()
+}
+
+fn interval(observations: &Observations) -> f64 {
+    let times = &observations.times_s;
+    let steps: Vec<f64> = times.iter().zip(times.iter().skip(1)).map(|(one, next)| next - one).collect();
+    median(&steps)
+}
+
+/// Distance of a sample from the cubic through its neighbors.
+#[derive(Debug, Clone, Copy)]
+struct Distance {
+    value: f64,
+    /// Its standard deviation under white noise of 1.
+    spread: f64,
+    /// What rounding by half a step can make of it at most, for a step of 1.
+    rounding: f64,
+}
+
+impl Distance {
+    fn in_noise(&self) -> f64 {
+        self.value.abs() / self.spread
+    }
+}
+
+/// Distances of all samples from cubics through the four neighbors once and twice `spacing` away; `None` near
+/// the ends and where samples are missing in between.
+fn distances(points: &[Point], spacing: usize, interval: f64) -> Vec<Option<Distance>> {
+    let even = 4.0 * (spacing as f64 * interval).powi(4);
+    let at = |index: Option<usize>| index.and_then(|index| points.get(index)).copied();
+    (0..points.len())
+        .map(|index| {
+            let nodes = [
+                at(index.checked_sub(2 * spacing))?,
+                at(index.checked_sub(spacing))?,
+                at(Some(index + spacing))?,
+                at(Some(index + 2 * spacing))?,
+            ];
+            let (_, time, value) = at(Some(index))?;
+            let product: f64 = nodes.iter().map(|node| (time - node.1).abs()).product();
+            if product.is_nan() || product > WIDE * even {
+                return None;
+            }
+            let (mut sum, mut squares, mut sizes) = (0.0, 1.0, 1.0);
+            for (own, node) in nodes.iter().enumerate() {
+                let others = nodes.iter().enumerate().filter(|(other, _)| *other != own);
+                let weight: f64 = others.map(|(_, other)| (time - other.1) / (node.1 - other.1)).product();
+                // Differences of values: those at rest lie on the cubic exactly.
+                sum += weight * (node.2 - value);
+                squares += weight * weight;
+                sizes += weight.abs();
+            }
+            squares.is_finite().then(|| Distance {
+                value: -sum,
+                spread: squares.sqrt(),
+                rounding: 0.5 * sizes,
+            })
+        })
+        .collect()
+}
+
+/// Indices of samples that are wrong, given those that are known to be.
+fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
+    let points = points(observations, kept);
+    let interval = interval(observations);
+    let near = distances(&points, 1, interval);
+    let far = distances(&points, 2, interval);
+    let step = observations.resolution.unwrap_or(0.0);
+    let sizes: Vec<f64> = near.iter().flatten().map(Distance::in_noise).collect();
+    let whole = (OF_MEDIAN * median(&sizes)).max(step / 12.0_f64.sqrt());
+    let blocks: Vec<f64> = near
+        .chunks(BLOCK)
+        .map(|block| OF_MEDIAN * median(&block.iter().flatten().map(Distance::in_noise).collect::<Vec<_>>()))
+        .collect();
+    let around = |index: usize| {
+        let block = index / BLOCK;
+        let own = blocks.get(block.saturating_sub(1)..(block + 2).min(blocks.len())).unwrap_or_default();
+        own.iter().copied().fold(whole, f64::max)
+    };
+    let limit = normal_above(0.5 * FALSE_ALARM / points.len().max(1) as f64);
+    let beside = |index: Option<usize>| {
+        index.and_then(|index| near.get(index).copied().flatten()).map_or(0.0, |distance| distance.in_noise())
+    };
+    let mut wrong = Vec::new();
+    for (index, (near, far)) in near.iter().zip(&far).enumerate() {
+        let (Some(near), Some(far), Some(point)) = (near, far, points.get(index)) else { continue };
+        let outlying = near.value.abs() > limit * around(index) * near.spread + near.rounding * step;
+        let straight = far.value * near.value > 0.0
+            && far.value.abs() < BEND * near.value.abs() + far.rounding.max(near.rounding) * step;
+        let sides = beside(index.checked_sub(1)).max(beside(Some(index + 1)));
+        if outlying && straight && sides < STEP * near.in_noise() {
+            wrong.push(point.0);
+        }
+    }
+    wrong
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{kept, white_noise};
+    use crate::Observations;
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use rand::RngExt;
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    const NOISE: f64 = 1e-3;
+
+    fn observed(times: Vec<f64>, values: Vec<f64>) -> Observations {
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap())
+    }
+
+    fn even(count: usize) -> Vec<f64> {
+        (0..count).map(|index| (index as f64 / 260.0 * 1e6).round() / 1e6).collect()
+    }
+
+    fn swing(time: f64) -> f64 {
+        0.7 * (-0.2 * time).exp() * (30.0 * time).cos()
+    }
+
+    fn normal(count: usize, seed: u64) -> Vec<f64> {
+        let mut generator = Seed::new(seed).child("noise").generator();
+        (0..count).map(|_| NOISE * generator.sample::<f64, _>(StandardNormal)).collect()
+    }
+
+    fn named(times: Vec<f64>, values: Vec<f64>) -> usize {
+        kept(&observed(times, values)).iter().filter(|kept| !**kept).count()
+    }
+
+    /// 0.001 of all records by design; the expectation is 0.4, and more than 3 come by chance once in a thousand times.
+    #[test]
+    fn noise_alone_has_none() {
+        let mut records = 0;
+        for seed in 0..400 {
+            let times = even(1000);
+            let values =
+                times.iter().zip(normal(1000, seed)).map(|(time, noise)| swing(*time) + noise).collect();
+            records += usize::from(named(times, values) > 0);
+        }
+        assert!(records <= 3, "{records} of 400");
+    }
+
+    #[test]
+    fn correlated_noise_has_none() {
+        for (seed, keep) in [(1, 0.5), (2, 0.9), (3, 0.99), (4, -0.5)] {
+            let times = even(6500);
+            let mut state = 0.0;
+            let values = times.iter().zip(normal(6500, seed)).map(|(time, noise)| {
+                state = keep * state + noise;
+                swing(*time) + state
+            });
+            assert_eq!(named(times.clone(), values.collect()), 0, "{keep}");
+        }
+    }
+
+    /// Steps from far below the noise to far above it, down to a motion that ends within a step.
+    #[test]
+    fn rounding_has_none() {
+        for (seed, part) in [0.1, 0.7, 1.0, 2.0, 3.0, 5.0, 20.0].into_iter().enumerate() {
+            let step = part * NOISE;
+            let times = even(6500);
+            let values = times.iter().zip(normal(6500, seed as u64));
+            let values = values.map(|(time, noise)| ((swing(*time) + noise) / step).round() * step).collect();
+            assert_eq!(named(times, values), 0, "{part}");
+        }
+    }
+
+    /// Stops from soft to as hard as bends the motion within a sample; friction that reverses and sticks.
+    #[test]
+    fn bends_are_none() {
+        let omega: f64 = 20.0;
+        let nominal = Nominal::new(1.0, 0.01 * omega, omega * omega, 0.0).unwrap();
+        let hardness = [1.0, 10.0, 100.0, 1000.0, 10_000.0]
+            .map(|hard| ("end_stop", vec![0.4, hard * omega * omega, 0.0]));
+        let friction = [0.5, 2.0, 8.0].map(|torque| ("coulomb_friction", vec![torque]));
+        for (id, values) in hardness.into_iter().chain(friction) {
+            let system = System::new(nominal, vec![Active::new(id, &values).unwrap()]).unwrap();
+            let times = even(4000);
+            let motion =
+                simulate(&system, Start::release(-0.6), None, &times, &Tolerance::default()).unwrap();
+            for seed in 0..3 {
+                let noisy = motion.position.iter().zip(normal(4000, seed)).map(|(x, noise)| x + 0.3 * noise);
+                assert_eq!(named(times.clone(), noisy.collect()), 0, "{id} {values:?}");
+            }
+        }
+    }
+
+    /// Samples lost in stretches, single stamps rounded: what lies beyond a gap is no neighbor.
+    #[test]
+    fn gaps_and_scattered_stamps_make_none() {
+        for (seed, stretch) in [1, 2, 4, 8].into_iter().enumerate() {
+            let noise = normal(6500, seed as u64);
+            let jitter = normal(6500, 100 + seed as u64);
+            for scatter in [0.0, 0.05, 0.3] {
+                let kept = (0..6500).filter(|index| index % 61 >= stretch);
+                let samples = kept.map(|index| {
+                    let time = index as f64 / 260.0;
+                    (((time + scatter * jitter[index]) * 1e6).round() / 1e6, swing(time) + noise[index])
+                });
+                let (mut times, values): (Vec<f64>, Vec<f64>) = samples.unzip();
+                times.sort_by(f64::total_cmp);
+                assert_eq!(named(times, values), 0, "{stretch} {scatter}");
+            }
+        }
+    }
+
+    /// One sample of a hundred is wrong by ten times the noise. Of 6500 samples the limit lies at 5.3
+    /// standard deviations of a distance, 7.3 times the noise. A sample is never blamed for its neighbor.
+    #[test]
+    fn wrong_samples_are_found_and_no_others() {
+        let times = even(6500);
+        let mut generator = Seed::new(5).child("wrong").generator();
+        let errors: Vec<f64> = (0..6500)
+            .map(|_| {
+                let error: f64 = StandardNormal.sample(&mut generator);
+                if generator.random::<f64>() < 0.01 { 10.0 * NOISE * error } else { 0.0 }
+            })
+            .collect();
+        let noise = normal(6500, 6);
+        let values =
+            times.iter().zip(&errors).zip(&noise).map(|((t, error), noise)| swing(*t) + error + noise);
+        let kept = kept(&observed(times.clone(), values.collect()));
+        let large = errors.iter().filter(|error| error.abs() > 10.0 * NOISE).count();
+        let found =
+            errors.iter().zip(&kept).filter(|(error, kept)| error.abs() > 10.0 * NOISE && !**kept).count();
+        let blamed =
+            errors.iter().zip(&kept).filter(|(error, kept)| error.abs() < 2.0 * NOISE && !**kept).count();
+        assert!(found as f64 >= 0.9 * large as f64, "{found} of {large}");
+        assert_eq!(blamed, 0);
+    }
+
+    #[test]
+    fn the_noise_of_a_swing() {
+        let times = even(6500);
+        let values = times.iter().zip(normal(6500, 7)).map(|(time, noise)| swing(*time) + noise).collect();
+        let found = white_noise(&observed(times, values), &[true; 6500]);
+        assert!((found / NOISE - 1.0).abs() < 0.05, "{found}");
+    }
+
+    /// Most neighbors agree, and the median distance is nothing.
+    #[test]
+    fn the_noise_of_coarse_steps_is_their_rounding() {
+        let times = even(6500);
+        let step = 0.02;
+        let values = times.iter().map(|time| (swing(*time) / step).round() * step).collect();
+        let found = white_noise(&observed(times, values), &[true; 6500]);
+        assert!((found / (step / 12.0_f64.sqrt()) - 1.0).abs() < 1e-9, "{found}");
+    }
+}

@@ -1,0 +1,440 @@
+//! A hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
+
+use crate::data::scales::Scales;
+use crate::model::candidate::{Candidate, Distortion, Parameter};
+use dynamics::sensitivity::Free;
+use dynamics::{
+    Active, Coefficients, DynamicsError, Effect, KnownEffect, Nominal, NominalSimulator, System, SystemEffect,
+};
+use record::Quantity;
+
+/// A nominal coefficient that calibration may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Calibrated {
+    Inertia,
+    Damping,
+    Stiffness,
+    RestAngle,
+    /// A parameter of an effect that the nominal simulator has: both are numbers from 0.
+    Effect {
+        known: usize,
+        parameter: usize,
+    },
+}
+
+impl Calibrated {
+    /// The coefficients of the oscillator itself.
+    pub(crate) const PLAIN: [Self; 4] = [Self::Inertia, Self::Damping, Self::Stiffness, Self::RestAngle];
+
+    /// Name of a coefficient of the oscillator; that of an effect's parameter stands with the effect.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Inertia => "inertia",
+            Self::Damping => "damping",
+            Self::Stiffness => "stiffness",
+            Self::RestAngle => "rest_angle",
+            Self::Effect { .. } => "",
+        }
+    }
+
+    /// The coefficient of the oscillator that it is; none for an effect's parameter.
+    pub(crate) fn free(self) -> Option<Free> {
+        match self {
+            Self::Inertia => Some(Free::Inertia),
+            Self::Damping => Some(Free::Damping),
+            Self::Stiffness => Some(Free::Stiffness),
+            Self::RestAngle => Some(Free::RestAngle),
+            Self::Effect { .. } => None,
+        }
+    }
+
+    /// What a coefficient of the oscillator measures.
+    pub(crate) fn quantity(self) -> dynamics::Quantity {
+        match self {
+            Self::Inertia => dynamics::Quantity::Inertia,
+            Self::Damping => dynamics::Quantity::Damping,
+            Self::Stiffness => dynamics::Quantity::Stiffness,
+            Self::RestAngle => dynamics::Quantity::Position,
+            Self::Effect { .. } => dynamics::Quantity::Ratio,
+        }
+    }
+
+    /// Value of a coefficient of the oscillator.
+    pub(crate) fn of(self, coefficients: &Coefficients<f64>) -> f64 {
+        match self {
+            Self::Inertia => coefficients.inertia,
+            Self::Damping => coefficients.damping,
+            Self::Stiffness => coefficients.stiffness,
+            Self::RestAngle => coefficients.rest_angle,
+            Self::Effect { .. } => f64::NAN,
+        }
+    }
+
+    fn set(self, coefficients: &mut Coefficients<f64>, value: f64) {
+        match self {
+            Self::Inertia => coefficients.inertia = value,
+            Self::Damping => coefficients.damping = value,
+            Self::Stiffness => coefficients.stiffness = value,
+            Self::RestAngle => coefficients.rest_angle = value,
+            Self::Effect { .. } => {}
+        }
+    }
+}
+
+/// An effect that the nominal simulator has, with its parameters as a fit moves them.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Known {
+    pub(crate) candidate: Candidate,
+    pub(crate) stated: Vec<f64>,
+    /// Whether recalibration may move it.
+    pub(crate) recalibrate: bool,
+}
+
+impl Known {
+    /// The effects of a nominal simulator that act in a fit of records of a quantity.
+    pub(crate) fn of(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Self> {
+        let known = |known: &KnownEffect| {
+            let (candidate, values) = Candidate::of(&known.active)?;
+            candidate.is_observed_in(quantity).then(|| Self {
+                candidate,
+                stated: candidate.fitted(&values),
+                recalibrate: known.recalibrate,
+            })
+        };
+        simulator.effects().iter().filter_map(known).collect()
+    }
+}
+
+/// What the sensor does to the motion: the smooth effects of the measuring chain, in their physical order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Measurement {
+    pub(crate) lag: Option<f64>,
+    pub(crate) nonlinearity: Option<(f64, f64)>,
+    pub(crate) drift: Option<f64>,
+    pub(crate) clock: Option<f64>,
+    pub(crate) saturation: Option<f64>,
+    /// How far readings stay behind, in either direction: [`crate::reading`]. Not a map of one value.
+    pub(crate) reading: Option<f64>,
+}
+
+/// An observed value with its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Observed {
+    pub(crate) value: f64,
+    /// With respect to the observed quantity, its first and its second time derivative.
+    pub(crate) by_motion: [f64; 3],
+    /// With respect to lag, nonlinearity's amplitude and phase, drift, clock change, saturation bound.
+    pub(crate) by_parameter: [f64; 6],
+}
+
+impl Measurement {
+    /// The true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
+    pub(crate) fn true_time(&self, stamp: f64) -> f64 {
+        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation where r′ is small.
+        self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
+    }
+
+    /// What the sensor shows where the observed quantity is `x` with time derivatives `rate` and `curvature`.
+    ///
+    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
+    /// answer up to (ω·T)³.
+    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
+        let mut by_motion = [1.0, 0.0, 0.0];
+        let mut by_parameter = [0.0; 6];
+        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
+        let mut value = x;
+        if let Some(lag) = self.lag {
+            value += -lag * rate + lag * lag * curvature;
+            by_motion = [1.0, -lag, lag * lag];
+            *by_lag = -rate + 2.0 * lag * curvature;
+        }
+        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
+        *by_clock = -0.5 * (time * time - start * start) * rate;
+        if let Some((amplitude, phase)) = self.nonlinearity {
+            let (sine, cosine) = (value + phase).sin_cos();
+            value += amplitude * sine;
+            let slope = 1.0 + amplitude * cosine;
+            by_motion = by_motion.map(|d| d * slope);
+            *by_lag *= slope;
+            *by_clock *= slope;
+            *by_amplitude = sine;
+            *by_phase = amplitude * cosine;
+        }
+        if let Some(drift) = self.drift {
+            value += drift * time;
+        }
+        *by_drift = time;
+        if let Some(bound) = self.saturation {
+            if value.abs() > bound {
+                value = bound * value.signum();
+                by_motion = [0.0; 3];
+                by_parameter = [0.0, 0.0, 0.0, 0.0, 0.0, value.signum()];
+            } else {
+                *by_bound = 0.0;
+            }
+        }
+        Observed { value, by_motion, by_parameter }
+    }
+}
+
+/// Which simulator is believed: what is free in it.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Hypothesis {
+    pub(crate) nominal: Nominal,
+    /// The effects that the nominal simulator has; part of every hypothesis.
+    pub(crate) known: Vec<Known>,
+    /// What calibration moves: the oscillator's coefficients, then the parameters of known effects, all of an effect or
+    /// none.
+    pub(crate) calibrated: Vec<Calibrated>,
+    /// What is missing from the nominal simulator.
+    pub(crate) candidates: Vec<Candidate>,
+}
+
+/// Where a global parameter comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Source {
+    Nominal(Calibrated),
+    /// Index among the effects (see [`Hypothesis::effects`]), index among its parameters.
+    Effect(usize, usize),
+}
+
+impl Hypothesis {
+    /// Candidates in the vocabulary's order, so that the same set is the same hypothesis.
+    pub(crate) fn with(&self, candidates: &[Candidate]) -> Self {
+        let mut candidates = candidates.to_vec();
+        candidates.sort_by_key(|candidate| candidate.rank());
+        candidates.dedup();
+        Self { candidates, ..self.clone() }
+    }
+
+    /// Every effect: those of the nominal simulator, then the candidates.
+    pub(crate) fn effects(&self) -> impl Iterator<Item = Candidate> + '_ {
+        self.known.iter().map(|known| known.candidate).chain(self.candidates.iter().copied())
+    }
+
+    /// The effect with a number among all.
+    pub(crate) fn effect(&self, index: usize) -> Option<Candidate> {
+        self.effects().nth(index)
+    }
+
+    /// Whether the nominal simulator has an effect.
+    pub(crate) fn knows(&self, candidate: Candidate) -> bool {
+        self.known.iter().any(|known| known.candidate == candidate)
+    }
+
+    pub(crate) fn sources(&self, facts: &Scales) -> Vec<Source> {
+        let nominal = self.calibrated.iter().map(|&which| match which {
+            Calibrated::Effect { known, parameter } => Source::Effect(known, parameter),
+            which => Source::Nominal(which),
+        });
+        let own = self.candidates.iter().enumerate().flat_map(|(index, candidate)| {
+            let index = self.known.len() + index;
+            (0..candidate.parameters(facts).len()).map(move |parameter| Source::Effect(index, parameter))
+        });
+        nominal.chain(own).collect()
+    }
+
+    /// Every global parameter with its bounds.
+    pub(crate) fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
+        let plain = |which: Calibrated| Parameter {
+            name: which.name(),
+            lower: match which {
+                Calibrated::Inertia => 1e-3 * facts.inertia,
+                Calibrated::Damping | Calibrated::Stiffness => 0.0,
+                Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
+            },
+            upper: f64::INFINITY,
+            strength: false,
+            shape: false,
+            simpler: false,
+        };
+        let nominal =
+            self.calibrated.iter().map(|&which| self.of_known(which, facts).unwrap_or(plain(which)));
+        nominal.chain(self.candidates.iter().flat_map(|candidate| candidate.parameters(facts))).collect()
+    }
+
+    /// A known effect's parameter with its bounds, which always admit what is stated. The effect is there at any size.
+    fn of_known(&self, which: Calibrated, facts: &Scales) -> Option<Parameter> {
+        let Calibrated::Effect { known, parameter } = which else { return None };
+        let known = self.known.get(known)?;
+        let own = *known.candidate.parameters(facts).get(parameter)?;
+        let stated = known.stated.get(parameter).copied()?;
+        let (lower, upper) = (own.lower.min(stated), own.upper.max(stated));
+        Some(Parameter { lower, upper, strength: false, shape: false, simpler: false, ..own })
+    }
+
+    /// The nominal values of the calibrated coefficients: where a fit without candidates starts.
+    pub(crate) fn nominal_point(&self) -> Vec<f64> {
+        let coefficients = self.nominal.coefficients();
+        let stated = |which: Calibrated| match which {
+            Calibrated::Effect { known, parameter } => {
+                self.known.get(known).and_then(|known| known.stated.get(parameter).copied()).unwrap_or(0.0)
+            }
+            which => which.of(&coefficients),
+        };
+        self.calibrated.iter().map(|&which| stated(which)).collect()
+    }
+
+    /// Each candidate's part of a point.
+    pub(crate) fn parts<'a>(&self, facts: &Scales, point: &'a [f64]) -> Vec<&'a [f64]> {
+        let mut rest = point.get(self.calibrated.len()..).unwrap_or_default();
+        self.candidates
+            .iter()
+            .map(|candidate| {
+                let (own, after) =
+                    rest.split_at_checked(candidate.parameters(facts).len()).unwrap_or((rest, &[]));
+                rest = after;
+                own
+            })
+            .collect()
+    }
+
+    /// The parameters of every effect at a point, as a fit moves them, with the place of the first among the global ones;
+    /// no place for known effects that are held.
+    pub(crate) fn all_parts<'a>(
+        &'a self,
+        facts: &Scales,
+        point: &'a [f64],
+    ) -> Vec<(Candidate, Option<usize>, &'a [f64])> {
+        let mut all = Vec::with_capacity(self.known.len() + self.candidates.len());
+        for (index, known) in self.known.iter().enumerate() {
+            let first = Calibrated::Effect { known: index, parameter: 0 };
+            let place = self.calibrated.iter().position(|own| *own == first);
+            let moved = place.and_then(|place| point.get(place..place + known.stated.len()));
+            all.push((known.candidate, moved.and(place), moved.unwrap_or(&known.stated)));
+        }
+        let mut place = self.calibrated.len();
+        for (candidate, own) in self.candidates.iter().zip(self.parts(facts, point)) {
+            all.push((*candidate, Some(place), own));
+            place += own.len();
+        }
+        all
+    }
+
+    pub(crate) fn calibrated_nominal(&self, point: &[f64]) -> Result<Nominal, DynamicsError> {
+        let mut coefficients = self.nominal.coefficients();
+        for (which, &value) in self.calibrated.iter().zip(point) {
+            which.set(&mut coefficients, value);
+        }
+        self.nominal.with_coefficients(coefficients)
+    }
+
+    pub(crate) fn system(&self, facts: &Scales, point: &[f64]) -> Result<System, DynamicsError> {
+        let mut effects = Vec::new();
+        for (candidate, _, own) in self.all_parts(facts, point) {
+            if let Candidate::System(effect) = candidate {
+                effects.push(active(effect, &candidate.values(own))?);
+            }
+        }
+        System::new(self.calibrated_nominal(point)?, effects)
+    }
+
+    /// The oscillator at a point, and the stiffness against small swings of it with a known weight.
+    pub(crate) fn swinging(&self, facts: &Scales, point: &[f64]) -> Result<(Nominal, f64), DynamicsError> {
+        let nominal = self.calibrated_nominal(point)?;
+        let parts = self.all_parts(facts, point).into_iter().take(self.known.len());
+        let weight = parts.filter_map(|(known, _, own)| match known {
+            Candidate::System(effect @ SystemEffect::Gravity) => Some(active(effect, &known.values(own))),
+            _ => None,
+        });
+        let effects = weight.map(|active| Ok(KnownEffect { active: active?, recalibrate: true }));
+        let simulator = NominalSimulator::new(nominal, effects.collect::<Result<_, DynamicsError>>()?)?;
+        Ok((nominal, simulator.equilibrium().1))
+    }
+
+    pub(crate) fn measurement(&self, facts: &Scales, point: &[f64]) -> Measurement {
+        let mut measurement = Measurement::default();
+        for (candidate, _, own) in self.all_parts(facts, point) {
+            match (candidate, candidate.values(own).as_slice()) {
+                (Candidate::Chain(Distortion::Lag), &[lag]) => measurement.lag = Some(lag),
+                (Candidate::Chain(Distortion::Nonlinearity), &[amplitude, phase]) => {
+                    measurement.nonlinearity = Some((amplitude, phase));
+                }
+                (Candidate::Chain(Distortion::Drift), &[rate]) => measurement.drift = Some(rate),
+                (Candidate::Chain(Distortion::Clock), &[change]) => measurement.clock = Some(change),
+                (Candidate::Chain(Distortion::Saturation), &[bound]) => measurement.saturation = Some(bound),
+                (Candidate::Chain(Distortion::ReadingHysteresis), &[width]) => {
+                    measurement.reading = Some(width);
+                }
+                _ => {}
+            }
+        }
+        measurement
+    }
+
+    /// Whether the motion depends smoothly on everything that is fitted.
+    pub(crate) fn smooth(&self) -> bool {
+        self.effects().all(|candidate| match candidate {
+            Candidate::System(effect) => effect.description().smooth,
+            Candidate::Chain(_) => true,
+        })
+    }
+
+    /// State values of a segment that are fitted: position, velocity, hidden ones.
+    pub(crate) fn start_length(&self) -> usize {
+        2 + self.effects().map(Candidate::free_hidden).sum::<usize>()
+    }
+
+    /// The same without candidates: what every hypothesis fits.
+    pub(crate) fn least_start_length(&self) -> usize {
+        2 + self.known.iter().map(|known| known.candidate.free_hidden()).sum::<usize>()
+    }
+
+    /// The places of its candidates in the vocabulary: what tells sets apart.
+    pub(crate) fn ranks(&self) -> Vec<usize> {
+        self.candidates.iter().map(|candidate| candidate.rank()).collect()
+    }
+
+    pub(crate) fn ids(&self) -> Vec<&'static str> {
+        self.candidates.iter().map(|candidate| candidate.id()).collect()
+    }
+}
+
+/// An effect with a law's parameters, kept inside their ranges: open ranges exclude their ends, which a fit at its bound
+/// reaches.
+pub(crate) fn active(effect: SystemEffect, values: &[f64]) -> Result<Active, DynamicsError> {
+    let parameters = effect.description().parameters;
+    let inside = values.iter().zip(parameters).map(|(&value, parameter)| {
+        if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
+    });
+    Active::of(Effect::System(effect), &inside.collect::<Vec<_>>())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Measurement;
+
+    /// Derivatives of the sensor's map against central differences.
+    #[test]
+    fn a_sensors_derivatives_are_those_of_its_values() {
+        let full = Measurement {
+            lag: Some(0.004),
+            nonlinearity: Some((0.02, 0.4)),
+            drift: Some(0.003),
+            clock: Some(1e-3),
+            saturation: Some(5.0),
+            reading: None,
+        };
+        let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
+        let at = full.observe(x, rate, curvature, time, 0.0);
+        let h = 1e-6;
+        let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
+        let by_x = slope(
+            full.observe(x + h, rate, curvature, time, 0.0).value,
+            full.observe(x - h, rate, curvature, time, 0.0).value,
+        );
+        assert!((by_x - at.by_motion[0]).abs() < 1e-8);
+        let lag = |d: f64| {
+            Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value
+        };
+        assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
+        let phase = |d: f64| {
+            Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }
+                .observe(x, rate, curvature, time, 0.0)
+                .value
+        };
+        assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
+        let stamp = full.true_time(time);
+        assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);
+    }
+}

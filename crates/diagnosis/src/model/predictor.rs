@@ -1,0 +1,442 @@
+//! What a hypothesis says a segment looks like, with exact derivatives.
+
+use crate::data::scales::Scales;
+use crate::data::segments::{Data, Segment};
+use crate::measurement::encoder_hysteresis::readings;
+use crate::model::candidate::{Candidate, Distortion};
+use crate::model::contact::{Bent, bent};
+use crate::model::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
+use crate::model::matrices::{entry, set};
+use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
+use dynamics::{DynamicsError, SystemEffect};
+use nalgebra::{DMatrix, DVector};
+use record::Quantity;
+
+/// Degree of the Taylor series: at tolerances near a thousandth of the noise, fewer products a step weigh
+/// more than longer steps (measured on records with friction: 14 takes a fifth longer, 10 half as long
+/// again).
+const DEGREE: usize = 12;
+
+/// Steps of a segment's run beyond which the motion chatters rather than swings: a fit turns round there.
+const MOST_STEPS: usize = 1200;
+const MOST_STEPS_PER_SAMPLE: usize = 3;
+
+/// What a prediction is differentiated by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Derivatives {
+    None,
+    /// By the segment's own start state.
+    Starts,
+    /// By the start state and every global parameter.
+    All,
+}
+
+/// A hypothesis made ready for runs.
+pub(crate) struct Simulator<'a> {
+    data: &'a Data,
+    hypothesis: &'a Hypothesis,
+    sources: Vec<Source>,
+    /// The point that the model is set to.
+    point: Vec<f64>,
+    measurement: Measurement,
+    model: Model,
+    response: Response,
+    /// Where each global parameter's column stands in the response; none for the sensor's.
+    columns: Vec<Option<usize>>,
+    contact: Option<Contact>,
+    derivatives: Derivatives,
+    times: Vec<f64>,
+}
+
+/// A contact that bends before it slides: its number among the effects, that of its hidden state, and where the
+/// hidden state's column stands in the response.
+#[derive(Debug, Clone, Copy)]
+struct Contact {
+    effect: usize,
+    hidden: usize,
+    column: Option<usize>,
+}
+
+/// A segment's response.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Prediction {
+    /// Observed minus predicted.
+    pub(crate) residual: DVector<f64>,
+    /// ∂predicted/∂(start state, global parameters); no columns where none were asked for.
+    pub(crate) jacobian: DMatrix<f64>,
+}
+
+impl Prediction {
+    /// Mean square of the residual.
+    pub(crate) fn mean_square(&self) -> f64 {
+        self.residual.norm_squared() / self.residual.len().max(1) as f64
+    }
+}
+
+/// The motion along a segment.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Motion {
+    pub(crate) position: Vec<f64>,
+    pub(crate) velocity: Vec<f64>,
+    pub(crate) acceleration: Vec<f64>,
+}
+
+impl<'a> Simulator<'a> {
+    pub(crate) fn new(
+        data: &'a Data,
+        hypothesis: &'a Hypothesis,
+        point: &[f64],
+        derivatives: Derivatives,
+    ) -> Result<Self, DynamicsError> {
+        let facts = &data.facts;
+        let sources = hypothesis.sources(facts);
+        let measurement = hypothesis.measurement(facts, point);
+        let mut free = Vec::new();
+        let mut columns = vec![None; sources.len()];
+        let mut contact = contact(hypothesis);
+        if derivatives != Derivatives::None {
+            free.extend([Free::StartPosition, Free::StartVelocity]);
+            free.extend(hidden(hypothesis).map(Free::StartHidden));
+            if let Some(contact) = &mut contact {
+                contact.column = Some(free.len());
+                free.push(Free::StartHidden(contact.hidden));
+            }
+        }
+        if derivatives == Derivatives::All {
+            for (source, column) in sources.iter().zip(&mut columns) {
+                let own = match *source {
+                    Source::Nominal(which) => which.free(),
+                    Source::Effect(index, parameter) => match hypothesis.effect(index) {
+                        Some(Candidate::System(effect)) => {
+                            let description = effect.description();
+                            description
+                                .parameters
+                                .get(parameter)
+                                .map(|own| Free::Effect { id: description.id, parameter: own.name })
+                        }
+                        _ => None,
+                    },
+                };
+                *column = own.map(|own| {
+                    free.push(own);
+                    free.len() - 1
+                });
+            }
+        }
+        let curved = measurement.lag.is_some() || measurement.reading.is_some();
+        // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
+        let longest = data.longest_span() / facts.interval;
+        let settings = Settings {
+            tolerance: facts.tolerance,
+            velocity: true,
+            acceleration: curved || derivatives == Derivatives::None || data.quantity != Quantity::Position,
+            rate_sensitivities: measurement.lag.is_some() || data.quantity != Quantity::Position,
+            most_steps: MOST_STEPS + MOST_STEPS_PER_SAMPLE * longest as usize,
+            degree: DEGREE,
+        };
+        let system = hypothesis.system(facts, point)?;
+        let model = Model::new(&system, &free, settings)?;
+        Ok(Self {
+            data,
+            hypothesis,
+            sources,
+            point: point.to_vec(),
+            measurement,
+            model,
+            response: Response::default(),
+            columns,
+            contact,
+            derivatives,
+            times: Vec::new(),
+        })
+    }
+
+    fn facts(&self) -> &Scales {
+        &self.data.facts
+    }
+
+    /// Moves to another point. Only a simulator with all derivatives has parameters that are free; of the others the
+    /// point has to be the one that they were made for.
+    pub(crate) fn set(&mut self, point: &[f64]) -> Result<(), DynamicsError> {
+        let mut values = Vec::new();
+        let parts = self.hypothesis.all_parts(self.facts(), point);
+        for (source, column) in self.sources.iter().zip(&self.columns) {
+            match (*source, column) {
+                (_, None) => {}
+                (Source::Nominal(which), _) => {
+                    let at = self.hypothesis.calibrated.iter().position(|own| *own == which);
+                    values.extend(at.and_then(|at| point.get(at)));
+                }
+                (Source::Effect(index, parameter), _) => {
+                    let own = parts.get(index).map(|(effect, _, part)| effect.values(part));
+                    values.extend(own.and_then(|own| own.get(parameter).copied()));
+                }
+            }
+        }
+        self.model.set(&values)?;
+        self.point = point.to_vec();
+        self.measurement = self.hypothesis.measurement(self.facts(), point);
+        Ok(())
+    }
+
+    fn run(&mut self, segment: &Segment, start: &[f64]) -> Result<(), DynamicsError> {
+        self.times.clear();
+        self.times.extend(segment.times.iter().map(|time| self.measurement.true_time(*time)));
+        let state = self.state(segment, start);
+        let input = self.data.inputs.get(segment.record).and_then(Option::as_ref);
+        self.model.run_into(state, input, &self.times, &mut self.response)
+    }
+
+    /// The full state at a segment's start. Hidden states that are not fitted are relaxed where the record begins;
+    /// later a contact that bends is where a steady swing of the same amplitude has brought it.
+    fn state(&self, segment: &Segment, start: &[f64]) -> FullState {
+        let (position, velocity, own) = match start {
+            [position, velocity, own @ ..] => (*position, *velocity, own),
+            _ => (0.0, 0.0, start),
+        };
+        let mut all = [0.0; dynamics::SYSTEM_HIDDEN];
+        for (index, value) in hidden(self.hypothesis).zip(own) {
+            if let Some(slot) = all.get_mut(index) {
+                *slot = *value;
+            }
+        }
+        if let Some((contact, bent)) = self.contact.zip(self.bent(segment, start))
+            && let Some(slot) = all.get_mut(contact.hidden)
+        {
+            *slot = bent.z;
+        }
+        let any = self.contact.is_some() || hidden(self.hypothesis).next().is_some();
+        FullState { position, velocity, hidden: any.then_some(all) }
+    }
+
+    /// How far the contact is bent at a segment's start; none where there is none or the record begins.
+    fn bent(&self, segment: &Segment, start: &[f64]) -> Option<Bent> {
+        let contact = self.contact.filter(|_| !segment.first)?;
+        let parts = self.hypothesis.all_parts(self.facts(), &self.point);
+        let &(_, _, &[_, displacement]) = parts.get(contact.effect)? else { return None };
+        let &[position, velocity, ..] = start else { return None };
+        let deflection = position - self.facts().rest(&self.point, self.hypothesis);
+        Some(bent(deflection, velocity / self.facts().frequency, displacement))
+    }
+
+    /// The columns of the Jacobian that a contact's hidden state at a segment's start depends on, with its derivatives by
+    /// them.
+    fn bends_by(&self, segment: &Segment, start: &[f64]) -> Vec<(usize, f64)> {
+        let Some((contact, bent)) = self.contact.zip(self.bent(segment, start)) else { return Vec::new() };
+        let mut all = vec![(0, bent.by_deflection), (1, bent.by_quadrature / self.facts().frequency)];
+        if self.derivatives == Derivatives::All {
+            let starts = self.hypothesis.start_length();
+            let number = |own: Source| self.sources.iter().position(|source| *source == own);
+            let by_rest = number(Source::Nominal(Calibrated::RestAngle));
+            all.extend(by_rest.map(|number| (starts + number, -bent.by_deflection)));
+            let by_displacement = number(Source::Effect(contact.effect, 1));
+            all.extend(by_displacement.map(|number| (starts + number, bent.by_displacement)));
+        }
+        all
+    }
+
+    /// The prediction for a segment from a start state.
+    pub(crate) fn predict(&mut self, segment: &Segment, start: &[f64]) -> Result<Prediction, DynamicsError> {
+        self.run(segment, start)?;
+        let starts = self.hypothesis.start_length();
+        let width = match self.derivatives {
+            Derivatives::None => 0,
+            Derivatives::Starts => starts,
+            Derivatives::All => starts + self.sources.len(),
+        };
+        let count = segment.times.len();
+        let mut residual = DVector::zeros(count);
+        let mut jacobian = DMatrix::zeros(count, width);
+        let response = &self.response;
+        // The third derivative of the position is not integrated: what needs it is expanded one order less
+        // far, or does not apply.
+        let missing = Vec::new();
+        let (x, rate, curvature) = match self.data.quantity {
+            Quantity::Position => (&response.position, &response.velocity, &response.acceleration),
+            Quantity::Velocity => (&response.velocity, &response.acceleration, &missing),
+            Quantity::Acceleration => (&response.acceleration, &missing, &missing),
+        };
+        let (by_x, by_rate, by_curvature) = match self.data.quantity {
+            Quantity::Position => (
+                &response.position_sensitivity,
+                &response.velocity_sensitivity,
+                &response.acceleration_sensitivity,
+            ),
+            Quantity::Velocity => {
+                (&response.velocity_sensitivity, &response.acceleration_sensitivity, &missing)
+            }
+            Quantity::Acceleration => (&response.acceleration_sensitivity, &missing, &missing),
+        };
+        let bends_by = self.bends_by(segment, start);
+        let bending = self.contact.and_then(|contact| contact.column);
+        let total = response.columns;
+        let start_time = segment.times.first().copied().unwrap_or_default();
+        for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
+            let at = |list: &Vec<f64>| list.get(row).copied().unwrap_or(0.0);
+            let observed = self.measurement.observe(at(x), at(rate), at(curvature), time, start_time);
+            if let Some(slot) = residual.get_mut(row) {
+                *slot = value - observed.value;
+            }
+            if self.derivatives == Derivatives::None {
+                continue;
+            }
+            let [d0, d1, d2] = observed.by_motion;
+            let through = |column: usize| {
+                let of = |list: &Vec<f64>| list.get(row * total + column).copied().unwrap_or(0.0);
+                let mut sum = d0 * of(by_x);
+                if d1 != 0.0 {
+                    sum += d1 * of(by_rate) + d2 * of(by_curvature);
+                }
+                sum
+            };
+            for column in 0..starts {
+                set(&mut jacobian, row, column, through(column));
+            }
+            let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
+            for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
+                let value = match (column, *source) {
+                    (Some(column), _) => through(*column),
+                    (None, Source::Effect(index, parameter)) => {
+                        let which = sensor_parameter(self.hypothesis.effect(index), parameter);
+                        which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
+                    }
+                    (None, Source::Nominal(_)) => 0.0,
+                };
+                set(&mut jacobian, row, starts + number, value);
+            }
+            if let Some(column) = bending {
+                let moved = through(column);
+                for &(column, by) in &bends_by {
+                    let known = entry(&jacobian, row, column);
+                    set(&mut jacobian, row, column, known + by * moved);
+                }
+            }
+        }
+        // At rest nothing says from which side it came.
+        if !segment.still {
+            self.hold(segment, &mut residual, &mut jacobian);
+        }
+        self.combine(&mut jacobian, starts);
+        Ok(Prediction { residual, jacobian })
+    }
+
+    /// Readings that stay behind the values, where the sensor has that hysteresis.
+    fn hold(&self, segment: &Segment, residual: &mut DVector<f64>, jacobian: &mut DMatrix<f64>) {
+        let Some(width) = self.measurement.reading else { return };
+        let of = |list: &[f64]| list.first().copied().unwrap_or(0.0);
+        let (rate, curvature) = (of(&self.response.velocity), of(&self.response.acceleration));
+        let values = segment.values.iter().zip(residual.iter()).map(|(observed, left)| observed - left);
+        let readings = readings(values, width, rate, curvature);
+        for (slot, (reading, observed)) in residual.iter_mut().zip(readings.iter().zip(&segment.values)) {
+            *slot = observed - reading.value;
+        }
+        for mut column in jacobian.column_iter_mut() {
+            for (row, reading) in readings.iter().enumerate() {
+                let moved = column.get(reading.since).copied().unwrap_or(0.0);
+                if let Some(slot) = column.get_mut(row) {
+                    *slot = moved;
+                }
+            }
+        }
+        if let Some(own) = self.by_width().filter(|_| self.derivatives == Derivatives::All) {
+            let column = self.hypothesis.start_length() + own;
+            for (row, reading) in readings.iter().enumerate() {
+                set(jacobian, row, column, reading.by_width);
+            }
+        }
+    }
+
+    /// Number of the reading hysteresis among the global parameters.
+    fn by_width(&self) -> Option<usize> {
+        let own = Candidate::Chain(Distortion::ReadingHysteresis);
+        let index = self.hypothesis.effects().position(|effect| effect == own)?;
+        self.sources.iter().position(|source| matches!(source, Source::Effect(at, _) if *at == index))
+    }
+
+    /// From derivatives by the laws' parameters to those by the fit's.
+    fn combine(&self, jacobian: &mut DMatrix<f64>, starts: usize) {
+        if self.derivatives != Derivatives::All {
+            return;
+        }
+        for (effect, place, part) in self.hypothesis.all_parts(self.facts(), &self.point) {
+            let slopes = effect.slopes(part);
+            if let Some(at) = place.map(|place| starts + place).filter(|_| !slopes.is_empty()) {
+                let law = jacobian.columns(at, part.len()).clone_owned();
+                let mut change = DMatrix::identity(part.len(), part.len());
+                for (row, column, slope) in slopes {
+                    set(&mut change, row, column, slope);
+                }
+                jacobian.columns_mut(at, part.len()).copy_from(&(law * change));
+            }
+        }
+    }
+
+    /// The start state of a segment that begins where this one ends: position, velocity, fitted hidden states.
+    pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
+        self.run(segment, start)?;
+        let end = self.response.end;
+        let all = end.hidden.unwrap_or_default();
+        let own = hidden(self.hypothesis).filter_map(|index| all.get(index).copied());
+        Ok([end.position, end.velocity].into_iter().chain(own).collect())
+    }
+
+    /// The motion along a segment from a start state. Only for a simulator without derivatives.
+    pub(crate) fn motion(&mut self, segment: &Segment, start: &[f64]) -> Result<Motion, DynamicsError> {
+        self.run(segment, start)?;
+        Ok(Motion {
+            position: self.response.position.clone(),
+            velocity: self.response.velocity.clone(),
+            acceleration: self.response.acceleration.clone(),
+        })
+    }
+}
+
+impl Scales {
+    /// Where the motion comes to rest at a point: the rest angle, moved by what a known weight does.
+    pub(crate) fn rest(&self, point: &[f64], hypothesis: &Hypothesis) -> f64 {
+        let at = hypothesis.calibrated.iter().position(|own| *own == Calibrated::RestAngle);
+        let angle =
+            at.and_then(|at| point.get(at)).copied().unwrap_or_else(|| hypothesis.nominal.rest_angle());
+        angle + self.rest_moved
+    }
+}
+
+/// Effects of a hypothesis's system, with their numbers among all and those of their first hidden states.
+fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, SystemEffect, usize)> {
+    let mut hidden = 0;
+    hypothesis.effects().enumerate().filter_map(move |(number, effect)| {
+        let Candidate::System(effect) = effect else { return None };
+        let from = hidden;
+        hidden += effect.description().hidden_states;
+        Some((number, effect, from))
+    })
+}
+
+/// The contact that bends among a hypothesis's effects.
+fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
+    let mut effects = system_effects(hypothesis);
+    let own = effects.find(|(_, effect, _)| *effect == SystemEffect::Hysteresis);
+    own.map(|(effect, _, hidden)| Contact { effect, hidden, column: None })
+}
+
+/// Numbers of the hidden states that each segment fits, among all of the system's.
+fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
+    system_effects(hypothesis)
+        .flat_map(|(_, effect, from)| from..from + Candidate::System(effect).free_hidden())
+}
+
+/// Place of a sensor effect's parameter in [`crate::model::hypothesis::Observed::by_parameter`].
+fn sensor_parameter(effect: Option<Candidate>, parameter: usize) -> Option<usize> {
+    match effect? {
+        Candidate::Chain(Distortion::Lag) => Some(0),
+        Candidate::Chain(Distortion::Nonlinearity) => Some(1 + parameter),
+        Candidate::Chain(Distortion::Drift) => Some(3),
+        Candidate::Chain(Distortion::Clock) => Some(4),
+        Candidate::Chain(Distortion::Saturation) => Some(5),
+        Candidate::Chain(Distortion::ReadingHysteresis) | Candidate::System(_) => None,
+    }
+}
+
+#[cfg(test)]
+#[path = "predictor_tests.rs"]
+mod tests;

@@ -1,0 +1,72 @@
+//! The noise floor, measured from a residual.
+
+use crate::data::segments::Data;
+use crate::noise::rounding;
+use crate::noise::statistics::normal_above;
+use nalgebra::DVector;
+use serde::Serialize;
+
+/// Standard deviation of the white part of a residual.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct NoiseFloor {
+    /// s₀ with s₀² = mean((e₍ᵢ₋₁₎ − 2eᵢ + e₍ᵢ₊₁₎)²)/6, in the observed quantity's unit. Quantization is part of it.
+    pub value: f64,
+    /// 95 % interval.
+    pub interval_95: [f64; 2],
+    /// Second differences used.
+    pub count: usize,
+}
+
+/// The floor from second differences of a residual.
+///
+/// A smooth misfit cancels in second differences, white noise does not: their variance is 6·s₀². In readings
+/// rounded to steps they show less than there is where the motion is slow: what rounding does to the
+/// differences of this very motion is worked out and taken back ([`crate::rounding`]).
+///
+/// The interval follows from the variance of the mean of squares: second differences of white Gaussian noise have
+/// correlations −2/3 and 1/6, so that n of them are worth n/(1 + 2·(4/9 + 1/36)) independent ones.
+pub(crate) fn floor(data: &Data, residuals: &[DVector<f64>]) -> NoiseFloor {
+    of_squares(&squares(data, residuals))
+}
+
+/// The same from the [`squares`] of a residual.
+pub(crate) fn of_squares(squares: &[Vec<Option<f64>>]) -> NoiseFloor {
+    let count = squares.iter().flatten().flatten().count() as f64;
+    let variance = squares.iter().flatten().flatten().sum::<f64>() / count.max(1.0);
+    let worth = count / (1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0));
+    let spread = normal_above(0.025) * (2.0 / worth.max(1.0)).sqrt();
+    let end = |factor: f64| (variance * factor.max(0.0)).sqrt();
+    NoiseFloor {
+        value: variance.sqrt(),
+        interval_95: [end(1.0 - spread), end(1.0 + spread)],
+        count: count as usize,
+    }
+}
+
+/// For each sample of each segment but the outermost, a sixth of the squared second difference about it, on
+/// the scale on which their mean is the variance of a sample.
+pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option<f64>>> {
+    let mut squares: Vec<_> = residuals.iter().map(|residual| sixths(residual.as_slice())).collect();
+    if let Some(step) = data.resolution {
+        let pieces: Vec<(&[f64], &[f64])> = data
+            .segments
+            .iter()
+            .zip(residuals)
+            .map(|(segment, residual)| (segment.values.as_slice(), residual.as_slice()))
+            .collect();
+        let factor = rounding::factor(&pieces, step, of_squares(&squares).value);
+        for square in squares.iter_mut().flatten().flatten() {
+            *square *= factor;
+        }
+    }
+    squares
+}
+
+/// For each sample but the outermost, a sixth of the squared second difference of the errors about it.
+pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
+    let inner = errors.windows(3).map(|e| match e {
+        &[a, b, c] => Some((a - 2.0 * b + c).powi(2) / 6.0),
+        _ => None,
+    });
+    std::iter::once(None).chain(inner).chain([None]).take(errors.len()).collect()
+}

@@ -1,0 +1,129 @@
+//! What a sensor's steps make of a noise floor.
+//!
+//! Rounding is not white: where the motion is slow, or crosses a whole number of steps from sample to sample,
+//! neighbors are rounded alike, and second differences show less than there is. How much depends on the
+//! motion and on the size of the noise beneath the steps; so the sensor is played through: this motion, white
+//! Gaussian noise, rounding.
+
+use crate::noise::floor::sixths;
+use rand_distr::{Distribution, StandardNormal};
+use seed::Seed;
+
+/// Plays of every sample.
+const PLAYS: usize = 4;
+
+/// Bisections of the noise's size: to 1 part in 4000 of the floor or the step, whichever is larger.
+const BISECTIONS: usize = 12;
+
+/// A mean of squares that noise and rounding make, by how far it lies from that of the noise alone in the
+/// same draws: most of what is chance in the draws cancels.
+#[derive(Debug, Clone, Copy, Default)]
+struct Mean {
+    beyond: f64,
+    count: f64,
+}
+
+impl Mean {
+    fn add(&mut self, square: f64, of_noise: f64) {
+        self.beyond += square - of_noise;
+        self.count += 1.0;
+    }
+
+    fn with(self, noise: f64) -> f64 {
+        self.beyond / self.count.max(1.0) + noise * noise
+    }
+}
+
+/// Mean square error of a sample over the mean of the [`sixths`], in readings rounded to whole steps.
+///
+/// `pieces` are readings and their errors against the motion, piece by piece, all in the unit of `step`;
+/// `measured` is the root of the mean sixth in these readings. The noise beneath the steps is taken to be
+/// white and Gaussian, as large as makes that mean. 1 where the readings show no noise.
+///
+/// Draws are the nodes of an integral: they are the same in every call.
+pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f64 {
+    let first = pieces.iter().find_map(|(readings, _)| readings.first().copied());
+    let Some(lattice) = first.filter(|_| measured > 0.0) else { return 1.0 };
+    let motions: Vec<Vec<f64>> = pieces
+        .iter()
+        .map(|(readings, errors)| readings.iter().zip(*errors).map(|(y, e)| y - e).collect())
+        .collect();
+    let mut generator = Seed::new(0).child("rounding").generator();
+    let draws: Vec<Vec<f64>> = (0..PLAYS)
+        .flat_map(|_| motions.iter().map(Vec::len).collect::<Vec<_>>())
+        .map(|count| (0..count).map(|_| StandardNormal.sample(&mut generator)).collect())
+        .collect();
+    // The mean square error, and the mean of the sixths.
+    let play = |noise: f64| -> [f64; 2] {
+        let (mut all, mut differences) = (Mean::default(), Mean::default());
+        for (motion, draws) in motions.iter().cycle().zip(&draws) {
+            let noises: Vec<f64> = draws.iter().map(|draw| noise * draw).collect();
+            let readings: Vec<f64> = motion
+                .iter()
+                .zip(&noises)
+                .map(|(x, e)| lattice + step * ((x + e - lattice) / step).round())
+                .collect();
+            let errors: Vec<f64> = readings.iter().zip(motion).map(|(y, x)| y - x).collect();
+            for (error, noise) in errors.iter().zip(&noises) {
+                all.add(error * error, noise * noise);
+            }
+            for pair in sixths(&errors).into_iter().zip(sixths(&noises)) {
+                if let (Some(sixth), Some(of_noise)) = pair {
+                    differences.add(sixth, of_noise);
+                }
+            }
+        }
+        [all.with(noise), differences.with(noise)]
+    };
+    // A noise of more than a step cannot be hidden by rounding.
+    let (mut low, mut high) = (0.0, measured.max(step));
+    for _ in 0..BISECTIONS {
+        let middle = 0.5 * (low + high);
+        let [_, sixths] = play(middle);
+        if sixths < measured * measured { low = middle } else { high = middle }
+    }
+    let [errors, sixths] = play(0.5 * (low + high));
+    if errors > 0.0 && sixths > 0.0 { errors / sixths } else { 1.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::factor;
+    use crate::noise::floor::sixths;
+    use rand_distr::{Distribution, StandardNormal};
+
+    /// Rounded decaying swings: what a floor is off by without the factor, and with it. Chance alone makes 1 %.
+    #[test]
+    fn a_floor_is_the_size_of_the_errors() {
+        let mut worst: [f64; 2] = [0.0; 2];
+        for (at, step) in [1.0, 3.0, 7.0].into_iter().enumerate() {
+            let mut generator = seed::Seed::new(at as u64).child("noise").generator();
+            let motion: Vec<f64> = (0..20_000)
+                .map(|i| f64::from(i) / 260.0)
+                .map(|t| 400.0 * (-0.15 * t).exp() * (12.0 * t).sin())
+                .collect();
+            let readings: Vec<f64> = motion
+                .iter()
+                .map(|x| {
+                    let noise: f64 = StandardNormal.sample(&mut generator);
+                    step * ((x + noise) / step).round()
+                })
+                .collect();
+            let errors: Vec<f64> = readings.iter().zip(&motion).map(|(y, x)| y - x).collect();
+            let own = errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64;
+            let own_sixths: Vec<f64> = sixths(&errors).into_iter().flatten().collect();
+            let mean = own_sixths.iter().sum::<f64>() / own_sixths.len() as f64;
+            let with = mean * factor(&[(&readings, &errors)], step, mean.sqrt());
+            for (worst, floor) in worst.iter_mut().zip([mean, with]) {
+                *worst = worst.max((floor / own - 1.0).abs());
+            }
+        }
+        assert!(worst[0] > 0.05 && worst[1] < 0.03, "{worst:?}");
+    }
+
+    #[test]
+    fn nothing_to_play_changes_nothing() {
+        assert_eq!(factor(&[], 1.0, 1.0), 1.0);
+        assert_eq!(factor(&[(&[1.0; 9], &[0.0; 9])], 1.0, 0.0), 1.0);
+    }
+}

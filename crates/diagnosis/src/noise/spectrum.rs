@@ -1,0 +1,162 @@
+//! Lines in the spectrum of a residual, steady and decaying.
+
+use crate::data::segments::Data;
+
+/// A line and its score.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Line {
+    /// Angular frequency in rad/s.
+    pub(crate) frequency: f64,
+    /// Squares of the residual that a sine and a cosine of this frequency take away.
+    pub(crate) gain: f64,
+}
+
+/// Frequencies looked at, at most.
+const MOST_FREQUENCIES: usize = 4000;
+
+/// The highest angular frequency looked at. A search looks at every so many samples only.
+fn highest(data: &Data) -> f64 {
+    data.facts.highest_frequency(data.interval())
+}
+
+/// About how many independent frequencies the lines of a whole record are chosen from.
+pub(crate) fn frequencies(data: &Data) -> f64 {
+    (highest(data) * data.facts.duration / std::f64::consts::TAU).max(1.0)
+}
+
+/// Adds to each frequency of a grid what a sine and a cosine of it, under weights that have been multiplied
+/// with the values already, take away from these at even or uneven times; `squares` is the sum of the squared
+/// weights.
+///
+/// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
+/// and a cosine.
+fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, gains: &mut [f64]) {
+    let turned = |frequency: f64| points.iter().map(move |(time, _)| (frequency * time).sin_cos());
+    let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
+    let turns: Vec<(f64, f64)> = turned(step).collect();
+    let scale = 2.0 / squares.max(f64::MIN_POSITIVE);
+    for gain in gains {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (((s, c), (ds, dc)), (_, value)) in phasors.iter_mut().zip(&turns).zip(points) {
+            sine += value * *s;
+            cosine += value * *c;
+            (*s, *c) = (*s * dc + *c * ds, *c * dc - *s * ds);
+        }
+        *gain += scale * (sine * sine + cosine * cosine);
+    }
+}
+
+/// Frequencies from 1.5 periods in a span up, at half its resolution: the lowest, the step, how many.
+fn grid(data: &Data, span: f64) -> (f64, f64, usize) {
+    let highest = highest(data);
+    let lowest = 1.5 * std::f64::consts::TAU / span;
+    let count = (((highest - lowest) * span / std::f64::consts::PI) as usize).clamp(1, MOST_FREQUENCIES);
+    (lowest, (highest - lowest) / count as f64, count)
+}
+
+/// The highest peaks of gains on a grid.
+fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
+    let at = |index: Option<usize>| index.and_then(|i| gains.get(i)).copied().unwrap_or(0.0);
+    let mut peaks: Vec<Line> = gains
+        .iter()
+        .enumerate()
+        .filter(|(i, gain)| **gain > at(i.checked_sub(1)) && **gain >= at(Some(i + 1)))
+        .map(|(i, gain)| Line { frequency: lowest + step * i as f64, gain: *gain })
+        .collect();
+    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    peaks.truncate(most);
+    peaks
+}
+
+/// The strongest steady lines of a residual that comes in segments, of one phase for a record, as of a
+/// machine next door: peaks of the periodogram.
+pub(crate) fn lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<Line> {
+    let (lowest, step, count) = grid(data, data.facts.duration);
+    let mut gains = vec![0.0; count];
+    for record in 0..data.inputs.len() {
+        let own = data.segments.iter().zip(residuals).filter(|(segment, _)| segment.record == record);
+        let points: Vec<(f64, f64)> =
+            own.flat_map(|(segment, e)| segment.times.iter().copied().zip(e.iter().copied())).collect();
+        add(&points, points.len() as f64, lowest, step, &mut gains);
+    }
+    peaks(&gains, lowest, step, most)
+}
+
+/// Decay over the longest segment, as a logarithm, that a second mode is looked for with.
+pub(crate) const DECAYS: [f64; 4] = [1.0, 4.0, 16.0, 64.0];
+
+/// The strongest lines that decay from each segment's beginning, in a phase of its own, as of a second mode
+/// struck anew; with the rate of decay in 1/s.
+///
+/// A steady sine takes away only 2/(r·T) of a line that decays at a rate r over a span T, so that each rate
+/// is looked for by itself: sine and cosine under exp(−r·t).
+pub(crate) fn decaying_lines(data: &Data, residuals: &[&[f64]], most: usize) -> Vec<(Line, f64)> {
+    let span = data.longest_span();
+    let (lowest, step, count) = grid(data, span);
+    let mut found: Vec<(Line, f64)> = Vec::new();
+    for decay in DECAYS {
+        let rate = decay / span;
+        let mut gains = vec![0.0; count];
+        for (segment, residual) in data.segments.iter().zip(residuals) {
+            let start = segment.times.first().copied().unwrap_or_default();
+            let mut squares = 0.0;
+            let pairs = segment.times.iter().zip(*residual);
+            let points: Vec<(f64, f64)> = pairs
+                .map(|(time, value)| {
+                    let weight = (-rate * (time - start)).exp();
+                    squares += weight * weight;
+                    (*time, weight * value)
+                })
+                .collect();
+            add(&points, squares, lowest, step, &mut gains);
+        }
+        found.extend(peaks(&gains, lowest, step, most).into_iter().map(|line| (line, rate)));
+    }
+    found.sort_by(|a, b| b.0.gain.total_cmp(&a.0.gain));
+    // One line, looked for with several rates, comes out once for each.
+    let width = |one: f64, other: f64| 2.0 * one.max(other) + 4.0 * step;
+    let apart = |(one, own): &(Line, f64), (other, its): &(Line, f64)| {
+        (one.frequency - other.frequency).abs() > width(*own, *its)
+    };
+    that_lie_apart(found, apart, most)
+}
+
+/// The first so many of a list, best first, that all lie apart: of several about one place the best stands.
+pub(crate) fn that_lie_apart<T>(found: Vec<T>, apart: impl Fn(&T, &T) -> bool, most: usize) -> Vec<T> {
+    let mut chosen: Vec<T> = Vec::new();
+    for one in found {
+        if chosen.len() < most && chosen.iter().all(|other| apart(&one, other)) {
+            chosen.push(one);
+        }
+    }
+    chosen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{add, peaks};
+
+    /// A sine of amplitude a that decays at a rate r takes a²/(4r) with it, sampled n times a second: n·a²/(4r).
+    #[test]
+    fn a_decaying_line_is_found_with_its_squares() {
+        let (rate, frequency, amplitude, interval) = (0.8, 31.0, 2e-3, 0.01);
+        let weight = |time: f64| (-rate * time).exp();
+        let times: Vec<f64> = (0..2500).map(|at| f64::from(at) * interval).collect();
+        let values: Vec<f64> =
+            times.iter().map(|t| amplitude * weight(*t) * (frequency * t + 0.4).sin()).collect();
+        let points: Vec<(f64, f64)> = times.iter().zip(&values).map(|(t, v)| (*t, weight(*t) * v)).collect();
+        let squares = times.iter().map(|t| weight(*t).powi(2)).sum();
+        let mut gains = vec![0.0; 400];
+        add(&points, squares, 10.0, 0.1, &mut gains);
+        let best = peaks(&gains, 10.0, 0.1, 1)[0];
+        assert!((best.frequency - frequency).abs() < 0.11, "{best:?}");
+        let expected = amplitude * amplitude / (4.0 * rate) / interval;
+        assert!((best.gain / expected - 1.0).abs() < 0.05, "{} {expected}", best.gain);
+        // A steady sine over the same 25 s takes a tenth of that.
+        let plain: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
+        let mut steady = vec![0.0; 400];
+        add(&plain, plain.len() as f64, 10.0, 0.1, &mut steady);
+        let share = peaks(&steady, 10.0, 0.1, 1)[0].gain / best.gain;
+        assert!((share / (2.0 / (rate * 25.0)) - 1.0).abs() < 0.1, "{share}");
+    }
+}

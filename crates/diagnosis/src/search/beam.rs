@@ -1,0 +1,400 @@
+//! The search for the set of effects that the data ask for.
+//!
+//! One cause at a time is not enough: a second cause may help by 1 % alone and by 30 % once the first is in. So the
+//! first round proposes single candidates and pairs, jointly linearized; every later round linearizes anew at the
+//! best sets found so far and proposes what to add there, what to put in another's place, and what each member
+//! is easily confused with. Every proposal is fitted in full; nothing is decided on a linearization.
+
+use crate::data::segments::Data;
+use crate::evidence::score::{score, squares_at};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::{Dictionary, Gain};
+use crate::noise::spectrum::DECAYS;
+use crate::search::archive::{Archive, is_another};
+use crate::search::proposals::{
+    Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, simplified,
+};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+
+/// How wide to search.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Breadth {
+    /// Most effects in a set.
+    pub(crate) most_effects: usize,
+    /// Single candidates fitted in the first round.
+    pub(crate) singles: usize,
+    /// Pairs fitted in the first round.
+    pub(crate) pairs: usize,
+    /// Sets that later rounds go on from.
+    pub(crate) beam: usize,
+    /// Candidates fitted at each of them.
+    pub(crate) additions: usize,
+}
+
+/// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
+const NEAR: f64 = 1.5;
+const POLISHED: usize = 6;
+
+/// Gains of single entries, the best shape of each candidate, best first.
+pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<(Candidate, Gain)> = Vec::new();
+    for (index, entry) in dictionary.entries.iter().enumerate() {
+        let Some(gain) = dictionary.gain(&[index]) else { continue };
+        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
+            Some((_, known)) if gain.squares > known.squares => *known = gain,
+            Some(_) => {}
+            None => best.push((entry.candidate, gain)),
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Joint gains of two candidates, the best shapes of each pair, best first.
+fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
+    for (first, one) in dictionary.entries.iter().enumerate() {
+        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
+            if one.candidate == other.candidate {
+                continue;
+            }
+            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
+            let pair = (one.candidate, other.candidate);
+            match best.iter_mut().find(|(known, _)| *known == pair) {
+                Some((_, known)) if gain.squares > known.squares => *known = gain,
+                Some(_) => {}
+                None => best.push((pair, gain)),
+            }
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+const WHITE: f64 = 1.5;
+
+/// Part of the threshold that the linearized gain has to promise at a white residual.
+const PROMISE: f64 = 0.5;
+
+/// Every candidate alone, at the best of its shapes.
+pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> Vec<Proposal> {
+    let linear = singles(dictionary);
+    let linear = linear.iter().map(|gain| additions(&data.facts, dictionary, gain));
+    let further = dictionary.further.iter().map(|(candidate, start, _)| vec![(*candidate, start.clone())]);
+    linear.chain(further).map(|added| proposal(data, calibrated, &[], &added)).collect()
+}
+
+/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
+/// show only once the first is in. The best of many frequencies promises something where there is nothing:
+/// the logarithm of how many `looked` at there were, for a sine and a cosine in white noise.
+fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+    time > WHITE || stands_out(base, time, gain, threshold, looked)
+}
+
+/// Whether a linearized gain would count by itself, however much structure is left beside it.
+fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+    let left = (base.squares - gain).max(f64::MIN_POSITIVE);
+    let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
+    score > PROMISE * threshold + looked.ln()
+}
+
+/// The same of candidates that no columns stand for: those bring start states of their own into every
+/// segment, and a line in the spectrum of many short ones has to be worth these.
+fn stands_alone(
+    base: &Fit,
+    time: f64,
+    (candidate, gain): (Candidate, f64),
+    threshold: f64,
+    looked: f64,
+) -> bool {
+    let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
+    let price = starts * (base.samples() as f64 / time).max(2.0).ln();
+    stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
+}
+
+/// Score behind the best from which on a set is not gone on from.
+const FAR_BEHIND: f64 = 60.0;
+
+/// Proposals at a fit: what to add.
+fn around(
+    data: &Data,
+    base: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+    best: bool,
+) -> Vec<Proposal> {
+    let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
+    let mut proposals = Vec::new();
+    let size = base.hypothesis.candidates.iter().filter(|c| c.counts()).count();
+    let ranked = singles(&dictionary);
+    let time = base.autocorrelation_time();
+    let counts = |gain: &Gain| dictionary.candidate(gain).is_none_or(Candidate::counts);
+    for gain in ranked.iter().filter(|gain| !counts(gain)) {
+        if best && stands_out(base, time, gain.squares, threshold, 1.0) {
+            proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
+        }
+    }
+    let ranked: Vec<Gain> = ranked.into_iter().filter(counts).collect();
+    if size < breadth.most_effects {
+        let worth = |gain: f64, looked: f64| promising(base, time, gain, threshold, looked);
+        for gain in
+            ranked.iter().take(breadth.additions).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+        {
+            proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
+        }
+        for (candidate, parameters, gain) in &dictionary.further {
+            let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
+            // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
+            let own = (*candidate, *gain);
+            let is_worth_it = stands_alone(base, time, own, threshold, dictionary.frequencies);
+            if (best || *gain > weakest) && is_worth_it {
+                proposals.push(proposal(data, base, &[], &[(*candidate, parameters.clone())]));
+            }
+        }
+    }
+    proposals
+}
+
+/// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
+/// member too: begun here they often fit better than on their own.
+fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
+    let counted: Vec<Candidate> = base.hypothesis.candidates.iter().copied().filter(|c| c.counts()).collect();
+    let of = |&member: &Candidate| {
+        let reduced = proposal(data, base, &[member], &[]);
+        let bare = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?;
+        let dictionary = Dictionary::at(data, &bare, candidates).ok()?;
+        let confused = member.confused_with();
+        let ranked = singles(&dictionary);
+        let is_confused = |gain: &Gain| dictionary.candidate(gain).is_some_and(|own| confused.contains(&own));
+        let several = if base.hypothesis.candidates.len() > 2 { 1 } else { breadth.additions };
+        let chosen = ranked.iter().enumerate().filter(|(place, gain)| *place < several || is_confused(gain));
+        let proposals: Vec<Proposal> = chosen
+            .map(|(_, gain)| proposal(data, &bare, &[], &additions(&data.facts, &dictionary, gain)))
+            .collect();
+        Some((proposals, bare))
+    };
+    let (proposals, dropped): (Vec<Vec<Proposal>>, Vec<Fit>) = counted.par_iter().filter_map(of).unzip();
+    (proposals.into_iter().flatten().collect(), dropped)
+}
+
+/// Fits proposals of sets that were not tried yet, and of those that begin closer to the data than they are known to end.
+fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, proposals: Vec<Proposal>) {
+    // A set may come with several shapes to begin from, but only in one round.
+    let worth: Vec<bool> = proposals
+        .par_iter()
+        .map(|proposal| !tried.contains(&proposal.hypothesis.ranks()) || begins_closer(data, pool, proposal))
+        .collect();
+    let mut waiting: Vec<Proposal> =
+        proposals.into_iter().zip(worth).filter(|(_, worth)| *worth).map(|(proposal, _)| proposal).collect();
+    tried.extend(waiting.iter().map(|proposal| proposal.hypothesis.ranks()));
+    let time = pool.autocorrelation_time();
+    let best = pool.highest(time);
+    // What ends farther behind than anything is gone on from need not be fitted to its end.
+    let of_use = |proposal: &Proposal| {
+        squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
+    };
+    while !waiting.is_empty() {
+        let fits = fit_all(data, &waiting, |proposal| Stopping::SEARCH.below(of_use(proposal)));
+        waiting = fits
+            .iter()
+            .filter_map(|fit| left_over(data, fit))
+            .filter(|left| begins_closer(data, pool, left))
+            .collect();
+        for fit in fits {
+            pool.admit(data, fit);
+        }
+    }
+}
+
+/// The first round: single candidates and pairs at the calibrated simulator.
+fn begin(
+    data: &Data,
+    calibrated: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+    pool: &mut Archive,
+    tried: &mut BTreeSet<Vec<usize>>,
+) {
+    let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
+    let mut proposals: Vec<Proposal> = Vec::new();
+    let ranked = singles(&dictionary);
+    let time = calibrated.autocorrelation_time();
+    let worth = |gain: f64, looked: f64| promising(calibrated, time, gain, threshold, looked);
+    for gain in
+        ranked.iter().take(breadth.singles).filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+    {
+        proposals.push(proposal(data, calibrated, &[], &additions(&data.facts, &dictionary, gain)));
+    }
+    for (candidate, parameters, _) in dictionary.further.iter().filter(|(candidate, _, gain)| {
+        stands_alone(calibrated, time, (*candidate, *gain), threshold, dictionary.frequencies)
+    }) {
+        proposals.push(proposal(data, calibrated, &[], &[(*candidate, parameters.clone())]));
+    }
+    // Pairs have to keep up with these.
+    settle(data, pool, tried, std::mem::take(&mut proposals));
+    for gain in pairs(&dictionary)
+        .iter()
+        .take(breadth.pairs)
+        .filter(|gain| worth(gain.squares, dictionary.looked(gain)))
+    {
+        proposals.push(proposal(data, calibrated, &[], &additions(&data.facts, &dictionary, gain)));
+    }
+    settle(data, pool, tried, proposals);
+}
+
+/// Searches sets of candidates, beginning at the calibrated nominal simulator.
+///
+/// `threshold` is the increase of the score that a further effect has to bring for the search to go on. Where there are
+/// `known` sets already, the search goes on from these.
+pub(crate) fn search(
+    data: &Data,
+    calibrated: &Fit,
+    known: Vec<Fit>,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+) -> Archive {
+    let mut pool = Archive::of(calibrated);
+    let mut tried = BTreeSet::new();
+    tried.insert(Vec::new());
+    let begun = !known.is_empty();
+    for fit in known {
+        tried.insert(fit.hypothesis.ranks());
+        pool.admit(data, fit);
+    }
+    if !begun {
+        begin(data, calibrated, candidates, breadth, threshold, &mut pool, &mut tried);
+    }
+    let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
+    let mut unmasked = BTreeSet::new();
+    for _ in 0..2 * breadth.most_effects {
+        unmask(data, &mut pool, &mut unmasked);
+        let time = pool.autocorrelation_time();
+        let before = pool.highest(time);
+        let bases: Vec<Fit> = pool
+            .ranked(time)
+            .into_iter()
+            .filter(|fit| !fit.hypothesis.candidates.is_empty())
+            .take(breadth.beam)
+            .filter(|fit| before - score(fit, time) < FAR_BEHIND)
+            .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
+            .cloned()
+            .collect();
+        if bases.is_empty() {
+            break;
+        }
+        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
+            .par_iter()
+            .enumerate()
+            .map(|(place, base)| {
+                let mut own = around(data, base, candidates, breadth, threshold, place == 0);
+                let mut dropped = Vec::new();
+                own.extend(simplified(data, base, candidates));
+                if place == 0 {
+                    own.extend(generalized(data, base, candidates));
+                    let (proposals, without) = swaps(data, base, candidates, breadth);
+                    own.extend(proposals);
+                    dropped = without;
+                }
+                (own, dropped)
+            })
+            .collect();
+        let mut proposals: Vec<Proposal> = Vec::new();
+        for (own, dropped) in moves {
+            // What a better set has proposed already is begun from there.
+            let known: BTreeSet<Vec<usize>> =
+                proposals.iter().map(|other| other.hypothesis.ranks()).collect();
+            proposals.extend(own.into_iter().filter(|own| !known.contains(&own.hypothesis.ranks())));
+            for fit in dropped {
+                pool.admit(data, fit);
+            }
+        }
+        settle(data, &mut pool, &mut tried, proposals);
+        let time = pool.autocorrelation_time();
+        if pool.highest(time) - before < threshold
+            && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))
+        {
+            break;
+        }
+    }
+    polish(data, &mut pool);
+    pool
+}
+
+/// Takes leading sets out that are others in disguise once they are fitted to their end. What brings hidden motions into
+/// every segment creeps there for longer than a search waits, and all that is built on it would be for nothing.
+fn unmask(data: &Data, pool: &mut Archive, looked_at: &mut BTreeSet<Vec<usize>>) {
+    loop {
+        let time = pool.autocorrelation_time();
+        let Some(best) = pool.ranked(time).first().map(|fit| (*fit).clone()) else { return };
+        let creeps = best.hypothesis.candidates.iter().any(|candidate| candidate.free_hidden() > 0);
+        if !creeps || !looked_at.insert(best.hypothesis.ranks()) {
+            return;
+        }
+        let end = fit(data, &best.hypothesis, best.point.clone(), Moving::All, Stopping::FINAL);
+        if !end.is_ok_and(|end| is_another(data, &end)) {
+            return;
+        }
+        pool.reject(&best.hypothesis.candidates);
+    }
+}
+
+/// Fits whose steps were spent before they converged, and that are among the closest to the data all the same, go on: a
+/// second body converges slowly and would be judged by where it had got to.
+fn polish(data: &Data, pool: &mut Archive) {
+    let smallest = pool.fits.iter().map(|fit| fit.squares).fold(f64::INFINITY, f64::min);
+    let mut near: Vec<Fit> =
+        pool.fits.iter().filter(|fit| !fit.converged && fit.squares < NEAR * smallest).cloned().collect();
+    near.sort_by(|a, b| a.squares.total_cmp(&b.squares));
+    near.truncate(POLISHED);
+    let polished: Vec<Option<Fit>> = near
+        .par_iter()
+        .map(|found| fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL).ok())
+        .collect();
+    for fit in polished.into_iter().flatten() {
+        pool.admit(data, fit);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::data::observations::Observations;
+    use crate::{Settings, diagnose};
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Active, Nominal, Start, System};
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    /// 25 s of a swing at 3.1 Hz that dry friction ends after 5 s, with noise of 0.5 mrad, and the names found in it.
+    fn names(seed: u64) -> Vec<&'static str> {
+        let effects = vec![Active::new("coulomb_friction", &[1.59]).unwrap()];
+        let system = System::new(Nominal::new(1.0, 1.12, 377.0, 0.007).unwrap(), effects).unwrap();
+        let times: Vec<f64> = (0..6500).map(|i| f64::from(i) / 260.0).collect();
+        let motion = simulate(&system, Start::release(-0.4175), None, &times, &Tolerance::default()).unwrap();
+        let mut generator = Seed::new(seed).child("noise").generator();
+        let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
+        let values = motion.position.iter().map(|x| x + 4.8e-4 * noise()).collect();
+        let record = Record::new(times, values, None, Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let observations = Observations::new(&record, &clock);
+        let believed = Nominal::new(1.0, 1.085, 393.0, 0.007).unwrap();
+        diagnose(&[observations], &believed, &Settings::default(), &|| 0.0).unwrap().verdict.effects
+    }
+
+    /// Begun from nothing, dry friction comes to stop these swings half a period too early, and hysteresis with two others in
+    /// its train passes for the cause.
+    #[test]
+    fn friction_that_ends_a_swing_is_found_from_what_stands_in_for_it() {
+        for seed in [0, 1] {
+            assert_eq!(names(seed), ["coulomb_friction"], "{seed}");
+        }
+    }
+}

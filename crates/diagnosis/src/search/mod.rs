@@ -1,0 +1,9 @@
+//! The search over sets of effects.
+
+pub(crate) mod archive;
+pub(crate) mod beam;
+pub(crate) mod null;
+pub(crate) mod proposals;
+pub(crate) mod refine;
+pub(crate) mod second_mode;
+pub(crate) mod surrogates;

@@ -1,0 +1,51 @@
+//! What the best of many candidates gains by chance.
+
+use crate::model::dictionary::Dictionary;
+use crate::model::matrices::{element, entry};
+use crate::noise::statistics::quantile;
+use crate::search::beam::singles;
+use nalgebra::{DMatrix, DVector};
+use rand_distr::{Distribution, StandardNormal};
+use seed::Seed;
+
+/// Draws of the null.
+const DRAWS: usize = 1000;
+
+/// The largest gain of a single candidate, in noise variances, that is exceeded with a given probability where the
+/// calibrated simulator is right and the noise white.
+///
+/// A parametric bootstrap in the space of the scores: under the null they are Gaussian with the dictionary's
+/// products as covariance, exactly so for Gaussian noise on this record's own times. The maximum runs over
+/// every candidate, shape and sign that the dictionary has columns for: a second body, which has none, pays
+/// for its lines by itself.
+pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) -> f64 {
+    let width = dictionary.columns.ncols();
+    if width == 0 {
+        return crate::noise::statistics::chi_squared_above(1.0, probability);
+    }
+    // In units of the columns' own lengths: they differ by many orders of magnitude. Columns of one grid are nearly
+    // dependent, so the root of their products comes from eigenvalues, not from a triangular factor.
+    let scale = dictionary.products.diagonal().map(f64::sqrt);
+    let cosines = DMatrix::from_fn(width, width, |i, j| {
+        let length = element(&scale, i) * element(&scale, j);
+        if length > 0.0 { entry(&dictionary.products, i, j) / length } else { 0.0 }
+    });
+    let eigen = cosines.symmetric_eigen();
+    let mut factor = eigen.eigenvectors;
+    for (mut column, value) in factor.column_iter_mut().zip(eigen.eigenvalues.iter()) {
+        column *= value.max(0.0).sqrt();
+    }
+    for (mut row, scale) in factor.row_iter_mut().zip(scale.iter()) {
+        row *= *scale;
+    }
+    let mut generator = seed.child("null").generator();
+    let mut drawn = dictionary.clone();
+    let gains: Vec<f64> = (0..DRAWS)
+        .map(|_| {
+            let white = DVector::from_fn(width, |_, _| StandardNormal.sample(&mut generator));
+            drawn.scores = &factor * white;
+            singles(&drawn).first().map_or(0.0, |gain| gain.squares)
+        })
+        .collect();
+    quantile(&gains, 1.0 - probability)
+}

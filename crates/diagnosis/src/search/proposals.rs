@@ -1,0 +1,224 @@
+//! Sets to fit, and where their fits begin: at what a fit has found, with members left out, added or replaced.
+
+use crate::data::scales::Scales;
+use crate::data::segments::Data;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit, squares};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::{Dictionary, Gain, shapes};
+use crate::model::hypothesis::Hypothesis;
+use crate::search::archive::{Archive, gone};
+use rayon::prelude::*;
+
+/// Part of its linearized size that an effect begins a fit with.
+const FIRST_SIZE: f64 = 1e-3;
+
+/// Squares where a set begins, relative to those it is known to end with, below which it is begun once more.
+const CLOSER: f64 = 0.9;
+
+/// A set to fit and where to begin.
+#[derive(Debug, Clone)]
+pub(crate) struct Proposal {
+    pub(crate) hypothesis: Hypothesis,
+    pub(crate) point: Point,
+}
+
+/// Where a set holds a candidate and its generalization, the special one's size goes over to the general one.
+fn absorb(members: &mut Vec<(Candidate, Vec<f64>)>) {
+    let special: Vec<(Candidate, Candidate)> =
+        members.iter().filter_map(|(general, _)| Some((*general, general.generalizes()?))).collect();
+    for (general, special) in special {
+        let Some(place) = members.iter().position(|(candidate, _)| *candidate == special) else { continue };
+        let (_, own) = members.remove(place);
+        let target = members.iter_mut().find(|(candidate, _)| *candidate == general);
+        if let (Some((_, values)), Some(size)) = (target, own.first())
+            && let Some(first) = values.first_mut()
+        {
+            *first += size;
+        }
+    }
+}
+
+/// A set and a start for it: what a fit has found, with some candidates left out and others added. A member that is added
+/// once more takes the size in.
+pub(crate) fn proposal(
+    data: &Data,
+    base: &Fit,
+    without: &[Candidate],
+    added: &[(Candidate, Vec<f64>)],
+) -> Proposal {
+    let facts = &data.facts;
+    let parts = base.hypothesis.parts(facts, &base.point.globals);
+    let mut members: Vec<(Candidate, Vec<f64>)> = base
+        .hypothesis
+        .candidates
+        .iter()
+        .copied()
+        .zip(parts.into_iter().map(<[f64]>::to_vec))
+        .filter(|(candidate, _)| !without.contains(candidate))
+        .collect();
+    for (candidate, values) in added {
+        match members.iter_mut().find(|(own, _)| own == candidate).map(|(_, own)| own.as_mut_slice()) {
+            Some([first, ..]) => *first += values.first().copied().unwrap_or_default(),
+            _ => members.push((*candidate, values.clone())),
+        }
+    }
+    absorb(&mut members);
+    members.sort_by_key(|(candidate, _)| candidate.rank());
+    let candidates: Vec<Candidate> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = base.hypothesis.with(&candidates);
+    let calibrated = base.point.globals.iter().copied().take(base.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = base.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    Proposal { hypothesis, point: Point { globals, starts } }
+}
+
+/// The candidates of a gain, with parameters to begin a fit with.
+pub(crate) fn additions(facts: &Scales, dictionary: &Dictionary, gain: &Gain) -> Vec<(Candidate, Vec<f64>)> {
+    let mut coefficients = gain.coefficients.as_slice();
+    gain.entries
+        .iter()
+        .filter_map(|&index| {
+            let entry = dictionary.entries.get(index)?;
+            let (own, rest) = coefficients.split_at_checked(entry.columns.len())?;
+            coefficients = rest;
+            let mut parameters = dictionary.parameters(index, own);
+            // The coefficients suppose that calibration and start states have moved along, which the fit has
+            // still to do: sizes begin small and grow in its first steps, with everything else.
+            for (value, parameter) in parameters.iter_mut().zip(entry.candidate.parameters(facts)) {
+                let is_its_own_shape = parameter.strength && parameter.upper.is_finite();
+                if !parameter.shape && !is_its_own_shape {
+                    *value *= FIRST_SIZE;
+                }
+            }
+            Some((entry.candidate, parameters))
+        })
+        .collect()
+}
+
+/// Puts a member's generalization in its place at each of its shapes, with half the member's size beyond it. The
+/// linearization cannot tell these: at the special case the shape means nothing.
+pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
+    let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
+    let mut proposals = Vec::new();
+    for (&special, part) in base.hypothesis.candidates.iter().zip(parts) {
+        let Some(size) = part.first() else { continue };
+        for &general in candidates.iter().filter(|general| general.generalizes() == Some(special)) {
+            for shape in shapes(general, &data.facts) {
+                let parameters = general.parameters(&data.facts);
+                let values = parameters.iter().zip(shape).enumerate();
+                let values = values.map(|(place, (parameter, shape))| match place {
+                    0 => *size,
+                    _ if parameter.strength => 0.5 * size,
+                    _ => shape,
+                });
+                proposals.push(proposal(data, base, &[special], &[(general, values.collect())]));
+            }
+        }
+    }
+    proposals
+}
+
+/// Puts what a member tends to in its place, with the member's size: friction that begins from nothing often ends where it
+/// stops the motion half a swing too early or too late.
+pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
+    let parts = base.hypothesis.parts(&data.facts, &base.point.globals);
+    let members = base.hypothesis.candidates.iter().zip(parts);
+    let simpler = members.filter_map(|(&member, part)| {
+        let special = member.tends_to().filter(|special| candidates.contains(special))?;
+        let added = (special, vec![*part.first()?]);
+        Some(proposal(data, base, &[member], &[added]))
+    });
+    simpler.collect()
+}
+
+/// What is left of a set without those of its members that ended at no size, begun where it ended; `None` where none did.
+pub(crate) fn left_over(data: &Data, ended: &Fit) -> Option<Proposal> {
+    let gone = gone(data, ended);
+    (!gone.is_empty()).then(|| proposal(data, ended, &gone, &[]))
+}
+
+/// Whether a set begins closer to the data than where it is known to end: it had come to a minimum of its own.
+pub(crate) fn begins_closer(data: &Data, pool: &Archive, proposal: &Proposal) -> bool {
+    pool.find(&proposal.hypothesis.candidates).is_some_and(|known| {
+        let begin = squares(data, &proposal.hypothesis, &proposal.point);
+        begin.is_ok_and(|begin| begin < CLOSER * known.squares)
+    })
+}
+
+/// Fits proposals side by side; each fit is sequential, and the order of the answers is that of the proposals.
+pub(crate) fn fit_all(
+    data: &Data,
+    proposals: &[Proposal],
+    effort: impl Fn(&Proposal) -> Stopping + Sync,
+) -> Vec<Fit> {
+    let fitted = |proposal: &Proposal| {
+        fit(data, &proposal.hypothesis, proposal.point.clone(), Moving::All, effort(proposal)).ok()
+    };
+    let fits: Vec<Option<Fit>> = proposals.par_iter().map(fitted).collect();
+    fits.into_iter().flatten().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{begins_closer, left_over, proposal, simplified};
+    use crate::data::segments::Data;
+    use crate::evidence::score::calibrated_swing;
+    use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, squares};
+    use crate::model::candidate::Candidate;
+    use crate::search::archive::Archive;
+    use dynamics::SystemEffect;
+
+    const COULOMB: Candidate = Candidate::System(SystemEffect::CoulombFriction);
+    const DRAG: Candidate = Candidate::System(SystemEffect::QuadraticDrag);
+    const HYSTERESIS: Candidate = Candidate::System(SystemEffect::Hysteresis);
+
+    /// A decaying swing, and the simulator calibrated to it with members of some parameters.
+    fn swing(members: &[(Candidate, &[f64])]) -> (Data, Fit) {
+        let (data, calibrated) = calibrated_swing();
+        let added: Vec<(Candidate, Vec<f64>)> =
+            members.iter().map(|(candidate, values)| (*candidate, values.to_vec())).collect();
+        let set = proposal(&data, &calibrated, &[], &added);
+        let stay = Stopping { steps: 0, ..Stopping::FINAL };
+        let found = fit(&data, &set.hypothesis, set.point, Moving::All, stay).unwrap();
+        (data, found)
+    }
+
+    /// What the members begin with, calibration left out.
+    fn members(begin: &Fit, set: &Point) -> Vec<f64> {
+        set.globals.iter().copied().skip(begin.hypothesis.calibrated.len()).collect()
+    }
+
+    #[test]
+    fn hysteresis_hands_its_torque_to_the_friction_that_it_tends_to() {
+        let (data, alone) = swing(&[(DRAG, &[0.01]), (HYSTERESIS, &[0.7, 0.02])]);
+        let [set] = simplified(&data, &alone, Candidate::ALL).try_into().unwrap();
+        assert_eq!(set.hypothesis.candidates, [COULOMB, DRAG]);
+        assert_eq!(members(&alone, &set.point), [0.7, 0.01]);
+        assert!(
+            simplified(&data, &alone, &[DRAG, HYSTERESIS]).is_empty(),
+            "that is left out of the question"
+        );
+        let (data, beside) = swing(&[(COULOMB, &[0.5]), (HYSTERESIS, &[0.7, 0.02])]);
+        let [set] = simplified(&data, &beside, Candidate::ALL).try_into().unwrap();
+        assert_eq!(set.hypothesis.candidates, [COULOMB]);
+        assert_eq!(members(&beside, &set.point), [1.2]);
+    }
+
+    #[test]
+    fn what_is_left_of_a_set_begins_where_it_ended() {
+        let (data, full) = swing(&[(COULOMB, &[0.5]), (DRAG, &[0.01])]);
+        assert!(left_over(&data, &full).is_none());
+        let (data, ended) = swing(&[(COULOMB, &[0.5]), (DRAG, &[0.0])]);
+        let left = left_over(&data, &ended).unwrap();
+        assert_eq!(left.hypothesis.candidates, [COULOMB]);
+        let begin = squares(&data, &left.hypothesis, &left.point).unwrap();
+        assert!((begin / ended.squares - 1.0).abs() < 1e-9, "{begin} {}", ended.squares);
+        let known = |squares: f64| {
+            let known = Fit { hypothesis: left.hypothesis.clone(), squares, ..ended.clone() };
+            Archive { fits: vec![known], rejected: Vec::new() }
+        };
+        assert!(begins_closer(&data, &known(1.2 * begin), &left));
+        assert!(!begins_closer(&data, &known(begin), &left));
+        assert!(!begins_closer(&data, &Archive::default(), &left), "nothing is known of it");
+    }
+}

@@ -1,0 +1,98 @@
+//! The best sets once more, on every sample and to convergence.
+
+use crate::data::segments::Data;
+use crate::evidence::score::score;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
+use crate::model::candidate::Candidate;
+use crate::search::archive::{Archive, vanished};
+use crate::search::proposals::{fit_all, generalized};
+use rayon::prelude::*;
+
+/// Sets that are refined in any case.
+const FEWEST: usize = 3;
+
+/// Distance in log evidence behind the best from which on a set is not refined: its probability would be nil,
+/// and nobody would mistake it for the best.
+const HOPELESS: f64 = 30.0;
+
+/// Sets that are fitted again on every sample, and as many of their rivals.
+const MOST: usize = 6;
+
+/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ
+/// from the best of their size in one member: its rivals. There are `finer` times as many samples as the pool
+/// was fitted to. What has been `refined` already, the calibrated simulator first, stays as it is.
+pub(crate) fn refine(
+    data: &Data,
+    refined: &Archive,
+    pool: &Archive,
+    candidates: &[Candidate],
+    finer: f64,
+) -> Archive {
+    let time = pool.autocorrelation_time();
+    let ranked: Vec<&Fit> =
+        pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
+    let score_of = |fit: &Fit| finer * score(fit, time);
+    let mut all: Vec<Fit> = refined.find(&[]).cloned().into_iter().collect();
+    let mut rejected = pool.rejected.clone();
+    let mut waiting = ranked.as_slice();
+    // Where none of the best survives on every sample, the next ones have their turn.
+    while let (1, [best, ..]) = (all.len(), waiting) {
+        let highest = score_of(best);
+        let near = waiting
+            .iter()
+            .enumerate()
+            .take_while(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
+            .count();
+        let (batch, rest) = waiting.split_at(near);
+        waiting = rest;
+        // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
+        let rival = |fit: &Fit| {
+            let own = &fit.hypothesis.candidates;
+            let best = batch.iter().find(|other| other.hypothesis.candidates.len() == own.len());
+            best.is_some_and(|best| {
+                let others = &best.hypothesis.candidates;
+                own.iter().filter(|candidate| !others.contains(candidate)).count() == 1
+            })
+        };
+        let further = batch.iter().skip(MOST).filter(|fit| rival(fit)).take(MOST);
+        let chosen: Vec<&Fit> = batch.iter().take(MOST).chain(further).copied().collect();
+        let again = |found: &Fit| {
+            fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL).ok()
+        };
+        let known = |found: &Fit| refined.find(&found.hypothesis.candidates).cloned();
+        let fitted: Vec<Option<Fit>> =
+            chosen.par_iter().map(|found| known(found).or_else(|| again(found))).collect();
+        let (gone, fits): (Vec<Fit>, Vec<Fit>) =
+            fitted.into_iter().flatten().partition(|fit| vanished(data, fit));
+        rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+        all.extend(fits);
+    }
+    let mut refined = Archive { fits: all, rejected };
+    // A special case and what it is a case of are judged on the same samples.
+    if let Some(best) = refined.ranked(time).first().map(|fit| (*fit).clone()) {
+        for fit in fit_all(data, &generalized(data, &best, candidates), |_| Stopping::FINAL) {
+            refined.admit(data, fit);
+        }
+    }
+    refined
+}
+
+/// The fit of a set with one member left out, and what that costs: begun where the set was.
+pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> Option<Fit> {
+    let parts = full.hypothesis.parts(&data.facts, &full.point.globals);
+    let members: Vec<_> = full
+        .hypothesis
+        .candidates
+        .iter()
+        .zip(parts)
+        .enumerate()
+        .filter(|(index, _)| keep(*index))
+        .map(|(_, (candidate, part))| (*candidate, part.to_vec()))
+        .collect();
+    let candidates: Vec<_> = members.iter().map(|(candidate, _)| *candidate).collect();
+    let hypothesis = full.hypothesis.with(&candidates);
+    let calibrated = full.point.globals.iter().copied().take(full.hypothesis.calibrated.len());
+    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
+    let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
+    fit(data, &hypothesis, Point { globals, starts }, Moving::All, Stopping::FINAL).ok()
+}
