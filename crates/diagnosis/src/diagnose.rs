@@ -11,7 +11,7 @@ use crate::evidence::context::{Context, Thin, Unjoined};
 use crate::evidence::discrepancy;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::weights::{acts, by_members, unknown, weigh, without_passed_over};
+use crate::evidence::weights::{Weighing, acts, by_members, unknown, without_passed_over};
 use crate::explain::attribution::budget;
 use crate::explain::coefficients::{calibration, known};
 use crate::explain::gap::{Stages, gap, paired};
@@ -27,6 +27,7 @@ use crate::model::tangent::Path;
 use crate::noise::floor as noise;
 use crate::search::archive::Archive;
 use crate::search::beam::{Breadth, search};
+use crate::search::plain::plain_family;
 use crate::search::refine::refine;
 use crate::search::surrogates::Question;
 use crate::search::{null, surrogates};
@@ -132,25 +133,30 @@ pub fn diagnose(
     // On fewer samples a gain is so many times smaller; the search must not stop on that account.
     let enough = 0.5 * threshold / finer;
     let (horizon, mut found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
+    plain_family(&horizon.data, &horizon.calibrated, &candidates, &mut found);
     lap("search");
     let segments = Unjoined { data: &data, base: &base };
     let data = &data.joined(horizon.by);
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
-    let mut pool = refine(data, &Archive::of(&base.calibrated), &found, &candidates, finer);
+    let vocabulary = candidates.len();
+    let weighing = Weighing::of(coarse, coarse_base, &found, threshold, vocabulary);
+    let sets = weighing.weigh(&found);
+    let mut pool = refine(data, &Archive::of(&base.calibrated), &sets, &found.rejected, &candidates);
     if let Some((known, others)) = found.misled(&pool, &candidates) {
         found = search(coarse, coarse_base, known, &others, &breadth, enough);
-        pool = refine(data, &pool, &found, &others, finer);
+        let weighing = Weighing::of(coarse, coarse_base, &found, threshold, vocabulary);
+        pool = refine(data, &pool, &weighing.weigh(&found), &found.rejected, &others);
     }
     let time = pool.autocorrelation_time();
-    let vocabulary = candidates.len();
-    let mut weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, vocabulary));
+    let weighing = Weighing::of(data, &base.calibrated, &pool, threshold, vocabulary);
+    let mut weighed = by_members(weighing.weigh(&pool));
     lap("fits");
     let question = Question { data, coarse, found: &found, threshold, vocabulary };
     let leader = weighed.first().map_or(base.calibrated.clone(), |w| w.fit.clone());
     if let Some(part) = question.better_part(&leader)? {
         pool.admit(data, part.clone());
-        weighed = by_members(weigh(&pool, &base.calibrated, time, threshold, vocabulary));
+        weighed = by_members(weighing.weigh(&pool));
         weighed = surrogates::remaining(weighed, &leader.hypothesis.candidates, &part);
     }
     lap("stand-ins");

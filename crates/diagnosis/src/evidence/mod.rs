@@ -7,5 +7,6 @@ pub(crate) mod determined;
 pub(crate) mod discrepancy;
 pub(crate) mod held_out;
 pub(crate) mod left_over;
+pub(crate) mod likelihood;
 pub(crate) mod score;
 pub(crate) mod weights;

@@ -1,10 +1,13 @@
 //! From scores to probabilities and a verdict.
 
+use crate::data::segments::Data;
+use crate::evidence::likelihood::Likelihood;
 use crate::evidence::score::further_starts;
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::noise::statistics::chi_squared_above;
 use crate::search::archive::Archive;
+use rayon::prelude::*;
 
 /// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered
 /// evidence at its word; a training bank may teach another value.
@@ -47,38 +50,60 @@ pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
     0.5 * worth * (other.squares.max(f64::MIN_POSITIVE) / fit.squares.max(f64::MIN_POSITIVE)).ln()
 }
 
-/// Every set with its probability, best first; the calibrated simulator alone is the empty one.
-///
-/// A set of k effects has to pay the larger of the Bayesian information criterion's price of its parameters
-/// and k times half the gain that chance alone exceeds with the false-alarm probability: where the best of
-/// all candidates gains exactly that, a set with it is as likely as the calibrated simulator alone.
-pub(crate) fn weigh<'a>(
-    pool: &'a Archive,
-    calibrated: &Fit,
-    time: f64,
+/// What sets of effects are weighed by on the same samples.
+#[derive(Debug, Clone)]
+pub(crate) struct Weighing<'a> {
+    data: &'a Data,
+    calibrated: &'a Fit,
+    likelihood: Likelihood,
+    /// Log likelihood of the calibrated simulator.
+    bare: f64,
     threshold: f64,
     vocabulary: usize,
-) -> Vec<Weighed<'a>> {
-    let worth = calibrated.samples() as f64 / time;
-    let mut weighed: Vec<Weighed<'a>> = pool
-        .fits
-        .iter()
-        .map(|fit| {
-            let size = fit.hypothesis.candidates.len();
-            let extra = further_starts(fit);
-            let parameters = fit.globals().saturating_sub(calibrated.globals()) + extra;
-            let price = 0.5 * parameters as f64 * worth.max(2.0).ln();
-            let evidence = ratio(fit, calibrated, time) - price - beyond(size, price, threshold, vocabulary);
-            Weighed { fit, evidence, probability: 0.0 }
-        })
-        .collect();
-    weighed.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-    let best = weighed.first().map_or(0.0, |w| w.evidence);
-    let total: f64 = weighed.iter().map(|w| ((w.evidence - best) / TEMPERATURE).exp()).sum();
-    for w in &mut weighed {
-        w.probability = ((w.evidence - best) / TEMPERATURE).exp() / total;
+}
+
+impl<'a> Weighing<'a> {
+    /// Beside what the closest set of an archive leaves.
+    pub(crate) fn of(
+        data: &'a Data,
+        calibrated: &'a Fit,
+        archive: &Archive,
+        threshold: f64,
+        vocabulary: usize,
+    ) -> Self {
+        let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
+        let closest = &closest.unwrap_or(calibrated).residuals;
+        let noise = crate::noise::floor::floor(data, closest).value;
+        let likelihood = Likelihood::of(data, &data.by_part(closest), noise);
+        let bare = likelihood.log(&data.by_part(&calibrated.residuals));
+        Self { data, calibrated, likelihood, bare, threshold, vocabulary }
     }
-    weighed
+
+    /// Log evidence of a set relative to the calibrated simulator.
+    ///
+    /// A set of k effects has to pay the larger of the Bayesian information criterion's price of its parameters
+    /// and k times half the gain that chance alone exceeds with the false-alarm probability: where the best of
+    /// all candidates gains exactly that, a set with it is as likely as the calibrated simulator alone.
+    pub(crate) fn evidence(&self, fit: &Fit) -> f64 {
+        let size = fit.hypothesis.candidates.len();
+        let parameters = fit.globals().saturating_sub(self.calibrated.globals()) + further_starts(fit);
+        let price = 0.5 * parameters as f64 * self.likelihood.worth().ln();
+        let own = self.likelihood.log(&self.data.by_part(&fit.residuals));
+        own - self.bare - price - beyond(size, price, self.threshold, self.vocabulary)
+    }
+
+    /// Every set with its probability, best first; the calibrated simulator alone is the empty one.
+    pub(crate) fn weigh<'b>(&self, archive: &'b Archive) -> Vec<Weighed<'b>> {
+        let of = |fit: &'b Fit| Weighed { fit, evidence: self.evidence(fit), probability: 0.0 };
+        let mut weighed: Vec<Weighed<'b>> = archive.fits.par_iter().map(of).collect();
+        weighed.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
+        let best = weighed.first().map_or(0.0, |w| w.evidence);
+        let total: f64 = weighed.iter().map(|w| ((w.evidence - best) / TEMPERATURE).exp()).sum();
+        for w in &mut weighed {
+            w.probability = ((w.evidence - best) / TEMPERATURE).exp() / total;
+        }
+        weighed
+    }
 }
 
 /// What a set of so many effects pays beyond the `price` of its parameters: for having been chosen from a vocabulary.

@@ -24,6 +24,54 @@ pub(crate) enum Candidate {
     Chain(Distortion),
 }
 
+/// Effects that explain alike: what a record tells first is which of these a system has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum EvidenceClass {
+    /// Dry friction and what depends on the way that the body came.
+    Friction,
+    /// Torques along the position.
+    Restoring,
+    /// Torques along the velocity.
+    Damping,
+    /// Clearances and stops.
+    Play,
+    /// Springs and clocks that change over the record.
+    Drift,
+    /// A mode of its own.
+    SecondBody,
+    /// A torque that comes from outside.
+    Forcing,
+    /// A torque that is always there.
+    Preload,
+    /// What happens to the input before it acts.
+    Actuator,
+    /// What happens to the values.
+    Sensor,
+    /// What happens to the stamps.
+    Stamps,
+}
+
+impl EvidenceClass {
+    /// The id of [`Self`] in an answer.
+    #[must_use]
+    pub const fn id(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Restoring => "restoring",
+            Self::Damping => "damping",
+            Self::Play => "play",
+            Self::Drift => "drift",
+            Self::SecondBody => "second_body",
+            Self::Forcing => "forcing",
+            Self::Preload => "preload",
+            Self::Actuator => "actuator",
+            Self::Sensor => "sensor",
+            Self::Stamps => "stamps",
+        }
+    }
+}
+
 /// A parameter that a fit moves. Its name and unit go to the answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Parameter {
@@ -151,6 +199,29 @@ impl Candidate {
     /// steps shows without any fit.
     pub(crate) fn counts(self) -> bool {
         self != Self::Chain(Distortion::ReadingHysteresis)
+    }
+
+    /// The class of effects that it explains alike with.
+    pub(crate) fn evidence_class(self) -> EvidenceClass {
+        match self.id() {
+            "coulomb_friction" | "stribeck_friction" | "hysteresis" => EvidenceClass::Friction,
+            "cubic_stiffness" | "asymmetric_stiffness" | "gravity" => EvidenceClass::Restoring,
+            "quadratic_drag" | "damping_drift" => EvidenceClass::Damping,
+            "backlash" | "end_stop" => EvidenceClass::Play,
+            "stiffness_drift" | "clock_drift" => EvidenceClass::Drift,
+            "flexible_coupling" => EvidenceClass::SecondBody,
+            "periodic_forcing" => EvidenceClass::Forcing,
+            "constant_torque" => EvidenceClass::Preload,
+            "input_delay" | "input_saturation" => EvidenceClass::Actuator,
+            _ => EvidenceClass::Sensor,
+        }
+    }
+
+    /// Whether every mechanism may be expected to have it: dry friction, drag, a weight, a spring that bends.
+    pub(crate) fn is_plain(self) -> bool {
+        let id = self.id();
+        ["coulomb_friction", "quadratic_drag", "cubic_stiffness", "asymmetric_stiffness", "gravity"]
+            .contains(&id)
     }
 
     /// Its part of a gap budget.

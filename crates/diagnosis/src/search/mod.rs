@@ -3,6 +3,7 @@
 pub(crate) mod archive;
 pub(crate) mod beam;
 pub(crate) mod null;
+pub(crate) mod plain;
 pub(crate) mod proposals;
 pub(crate) mod refine;
 pub(crate) mod second_mode;

@@ -1,9 +1,9 @@
 //! The best sets once more, on every sample and to convergence.
 
 use crate::data::segments::Data;
-use crate::evidence::score::score;
+use crate::evidence::weights::Weighed;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
-use crate::model::candidate::Candidate;
+use crate::model::candidate::{Candidate, EvidenceClass};
 use crate::search::archive::{Archive, vanished};
 use crate::search::proposals::{fit_all, generalized};
 use rayon::prelude::*;
@@ -18,44 +18,51 @@ const HOPELESS: f64 = 30.0;
 /// Sets that are fitted again on every sample, and as many of their rivals.
 const MOST: usize = 6;
 
-/// Refits the best [`MOST`] sets of a pool on other data with the same segments, and as many more that differ
-/// from the best of their size in one member: its rivals. There are `finer` times as many samples as the pool
-/// was fitted to. What has been `refined` already, the calibrated simulator first, stays as it is.
+/// Refits the best [`MOST`] of weighed sets on other data with the same segments, as many more that differ from the best of
+/// their size in one member (its rivals), and for every class of effects in the best set the best one without it.
+/// What has been `refined` already, the calibrated simulator first, stays as it is.
 pub(crate) fn refine(
     data: &Data,
     refined: &Archive,
-    pool: &Archive,
+    weighed: &[Weighed<'_>],
+    rejected: &[Vec<Candidate>],
     candidates: &[Candidate],
-    finer: f64,
 ) -> Archive {
-    let time = pool.autocorrelation_time();
-    let ranked: Vec<&Fit> =
-        pool.ranked(time).into_iter().filter(|fit| !fit.hypothesis.candidates.is_empty()).collect();
-    let score_of = |fit: &Fit| finer * score(fit, time);
+    let ranked: Vec<&Weighed<'_>> =
+        weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty()).collect();
     let mut all: Vec<Fit> = refined.find(&[]).cloned().into_iter().collect();
-    let mut rejected = pool.rejected.clone();
+    let mut rejected = rejected.to_vec();
     let mut waiting = ranked.as_slice();
     // Where none of the best survives on every sample, the next ones have their turn.
     while let (1, [best, ..]) = (all.len(), waiting) {
-        let highest = score_of(best);
         let near = waiting
             .iter()
             .enumerate()
-            .take_while(|(place, fit)| *place < FEWEST || highest - score_of(fit) < HOPELESS)
+            .take_while(|(place, w)| *place < FEWEST || best.evidence - w.evidence < HOPELESS)
             .count();
         let (batch, rest) = waiting.split_at(near);
-        waiting = rest;
         // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
-        let rival = |fit: &Fit| {
-            let own = &fit.hypothesis.candidates;
-            let best = batch.iter().find(|other| other.hypothesis.candidates.len() == own.len());
+        let rival = |w: &Weighed<'_>| {
+            let own = &w.fit.hypothesis.candidates;
+            let best = batch.iter().find(|other| other.fit.hypothesis.candidates.len() == own.len());
             best.is_some_and(|best| {
-                let others = &best.hypothesis.candidates;
+                let others = &best.fit.hypothesis.candidates;
                 own.iter().filter(|candidate| !others.contains(candidate)).count() == 1
             })
         };
-        let further = batch.iter().skip(MOST).filter(|fit| rival(fit)).take(MOST);
-        let chosen: Vec<&Fit> = batch.iter().take(MOST).chain(further).copied().collect();
+        let further = batch.iter().skip(MOST).filter(|w| rival(w)).take(MOST);
+        let lacks = |w: &Weighed<'_>, class: EvidenceClass| {
+            w.fit.hypothesis.candidates.iter().all(|own| own.evidence_class() != class)
+        };
+        let classes = best.fit.hypothesis.candidates.iter().map(|own| own.evidence_class());
+        let without = classes.filter_map(|class| waiting.iter().find(|w| lacks(w, class)));
+        let mut chosen: Vec<&Fit> = Vec::new();
+        for fit in batch.iter().take(MOST).chain(further).chain(without).map(|w| w.fit) {
+            if !chosen.iter().any(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
+                chosen.push(fit);
+            }
+        }
+        waiting = rest;
         let again = |found: &Fit| {
             fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL).ok()
         };
@@ -68,8 +75,8 @@ pub(crate) fn refine(
         all.extend(fits);
     }
     let mut refined = Archive { fits: all, rejected };
-    // A special case and what it is a case of are judged on the same samples.
-    if let Some(best) = refined.ranked(time).first().map(|fit| (*fit).clone()) {
+    // A special case and what it is a case of are judged on the same samples. Fits stand in the order of their evidence.
+    if let Some(best) = refined.fits.iter().find(|fit| !fit.hypothesis.candidates.is_empty()).cloned() {
         for fit in fit_all(data, &generalized(data, &best, candidates), |_| Stopping::FINAL) {
             refined.admit(data, fit);
         }
