@@ -7,9 +7,10 @@ use crate::data::segments::{Data, MOST_SEARCHED, cut};
 use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
 use crate::evidence::conclusion::{Parts, probabilities, verdict};
-use crate::evidence::context::{Context, Thin, Unjoined};
+use crate::evidence::context::{Context, Predicted, Thin, Unjoined};
 use crate::evidence::discrepancy;
 use crate::evidence::held_out::HeldOut;
+use crate::evidence::inclusion::{asked, weighed};
 use crate::evidence::left_over::unexplained;
 use crate::evidence::weights::{Weighing, acts, by_members, unknown, without_passed_over};
 use crate::explain::attribution::budget;
@@ -150,20 +151,24 @@ pub fn diagnose(
     }
     let time = pool.autocorrelation_time();
     let weighing = Weighing::of(data, &base.calibrated, &pool, threshold, vocabulary);
-    let mut weighed = by_members(weighing.weigh(&pool));
+    let fitted = weighing.weigh(&pool);
     lap("fits");
-    let question = Question { data, coarse, found: &found, threshold, vocabulary };
-    let leader = weighed.first().map_or(base.calibrated.clone(), |w| w.fit.clone());
-    if let Some(part) = question.better_part(&leader)? {
-        pool.admit(data, part.clone());
-        weighed = by_members(weighing.weigh(&pool));
-        weighed = surrogates::remaining(weighed, &leader.hypothesis.candidates, &part);
-    }
-    lap("stand-ins");
-
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
     let work = Context { data, base, segments, pool: &pool, thin, time, settings };
-    let held = work.held_out(&weighed)?;
+    let predictions = work.predictions(&asked(&fitted))?;
+    let bare = pool.find(&[]).unwrap_or(&base.calibrated);
+    let weighed = weighed(segments.data, &predictions, bare, vocabulary);
+    let further = |set: &Predicted<'_>| set.followed.globals().saturating_sub(base.calibrated.globals());
+    let better: Vec<&[Candidate]> = predictions
+        .sets
+        .iter()
+        .filter(|set| set.is_better_than(&predictions.recalibrated, further(set), data.samples()))
+        .map(|set| set.followed.hypothesis.candidates.as_slice())
+        .collect();
+    let chosen = weighed.iter().map(|w| w.fit.hypothesis.candidates.as_slice());
+    let chosen: Vec<Candidate> =
+        chosen.into_iter().find(|own| own.is_empty() || better.contains(own)).unwrap_or_default().to_vec();
+    let held = work.held_out(predictions, &chosen)?;
     let repaired = held.repaired;
     let weighed = without_passed_over(weighed, repaired);
     let shift = if settings.considers("constant_torque") { work.shift(repaired) } else { None };

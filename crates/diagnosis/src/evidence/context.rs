@@ -6,7 +6,7 @@ use crate::data::shooting_interval::shortened;
 use crate::diagnose::Settings;
 use crate::error::DiagnosisError;
 use crate::evidence::held_out::{Both, HeldOut};
-use crate::evidence::weights::{Weighed, ratio, significant};
+use crate::evidence::weights::{ratio, significant};
 use crate::explain::attribution::shapley;
 use crate::fit::calibrate::Baseline;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
@@ -53,9 +53,22 @@ pub(crate) struct Thin<'a> {
     pub(crate) pool: &'a Archive,
 }
 
-/// Sets that are asked for their held-out error, and the factor in its mean square from which on one is clearly worse.
-const HELD_OUT: usize = 5;
-const CLEARLY_WORSE: f64 = 1.5;
+/// A set and what it predicts of parts that it was not fitted to.
+pub(crate) struct Predicted<'a> {
+    /// On the shooting interval that it was judged on, and on the segments as they were cut.
+    pub(crate) followed: &'a Fit,
+    pub(crate) fitted: Fit,
+    pub(crate) after: HeldOut,
+}
+
+/// What all of them predict.
+pub(crate) struct Predictions<'a> {
+    pub(crate) nominal: HeldOut,
+    pub(crate) recalibrated: HeldOut,
+    /// Mean square of the recalibrated simulator on the last third, fitted to the first two.
+    pub(crate) last_third: f64,
+    pub(crate) sets: Vec<Predicted<'a>>,
+}
 
 /// Held-out residuals, and the set that they and the evidence speak for.
 pub(crate) struct Held<'a> {
@@ -77,16 +90,18 @@ pub(crate) struct Shift {
     pub(crate) torque: Interval,
 }
 
-/// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it
-/// goes on from what was fitted; or from start states, and going on no worse than what these parameters'
-/// scatter costs. What shows only where a record begins, as a mode that is struck there or a stop that the
-/// first swings reach, has nothing to go on from.
-fn predicts(after: &HeldOut, recalibrated: &HeldOut, further: usize, samples: usize) -> bool {
-    // Fitted to one half of the samples, each parameter adds two parts in so many to the mean square of the other.
-    let scatter = 1.0 + 2.0 * further as f64 / samples.max(1) as f64;
-    after.continued < recalibrated.continued
-        || after.continued < scatter * recalibrated.continued
-            && after.mean_square() < recalibrated.mean_square()
+impl Predicted<'_> {
+    /// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it
+    /// goes on from what was fitted; or from start states, and going on no worse than what these parameters'
+    /// scatter costs. What shows only where a record begins, as a mode that is struck there or a stop that the
+    /// first swings reach, has nothing to go on from.
+    pub(crate) fn is_better_than(&self, recalibrated: &HeldOut, further: usize, samples: usize) -> bool {
+        // Fitted to one half of the samples, each parameter adds two parts in so many to the mean square of the other.
+        let scatter = 1.0 + 2.0 * further as f64 / samples.max(1) as f64;
+        self.after.continued < recalibrated.continued
+            || self.after.continued < scatter * recalibrated.continued
+                && self.after.mean_square() < recalibrated.mean_square()
+    }
 }
 
 impl<'a> Context<'a> {
@@ -147,56 +162,55 @@ impl<'a> Context<'a> {
         if has_effects && !self.base.is_off() { Moving::Starts } else { Moving::All }
     }
 
-    /// Goes through the sets in the order of their probability and takes the first that also predicts
-    /// held-out parts: better than the calibrated simulator, and not clearly worse than any other of the best
-    /// sets.
-    pub(crate) fn held_out(&self, weighed: &[Weighed<'a>]) -> Result<Held<'a>, DiagnosisError> {
+    /// Predicts held-out parts with the simulator as given, with the recalibrated one, and with every set that is asked;
+    /// sets whose motion cannot be followed from parts of the data predict nothing and are left out.
+    pub(crate) fn predictions(&self, sets: &[&'a Fit]) -> Result<Predictions<'a>, DiagnosisError> {
+        let short = self.segments.base;
         let own = |followed: &'a Fit, fitted: &'a Fit| Both {
             longer: self.data,
             followed,
             segments: self.segments.data,
             fitted,
         };
-        let short = self.segments.base;
         let unjoined = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
         let nominal = unjoined.interleaved(Moving::Starts)?;
         let moving = self.calibrating();
-        let recalibrated_both = match moving {
+        let both = match moving {
             Moving::All => own(&self.base.calibrated, &short.calibrated),
             Moving::Starts => own(&self.base.nominal, &short.nominal),
         };
-        let recalibrated = recalibrated_both.interleaved(moving)?;
-        let third = recalibrated_both.last_third(moving)?;
-        let calibrated = self.pool.find(&[]).or(weighed.first().map(|w| w.fit));
-        let of = |w: &Weighed<'a>| {
-            // A set whose motion cannot be followed from parts of the data predicts nothing.
-            let fitted = shortened(self.segments.data, self.data, w.fit).ok()?;
-            let both =
-                Both { longer: self.data, followed: w.fit, segments: self.segments.data, fitted: &fitted };
-            let (after, later) =
-                rayon::join(|| both.interleaved(Moving::All), || both.last_third(Moving::All));
-            let (after, later) = (after.ok()?, later.ok()?);
-            let further = w.fit.globals() - self.base.calibrated.globals();
-            predicts(&after, &recalibrated, further, self.data.samples()).then(|| {
-                let last_third = [third, later];
-                let (nominal, recalibrated) = (nominal.clone(), recalibrated.clone());
-                Held { nominal, recalibrated, after, last_third, repaired: w.fit, fitted }
-            })
+        let recalibrated = both.interleaved(moving)?;
+        let of = |followed: &&'a Fit| {
+            let fitted = shortened(self.segments.data, self.data, followed).ok()?;
+            let both = Both { fitted: &fitted, ..own(followed, &short.calibrated) };
+            let after = both.interleaved(Moving::All).ok()?;
+            Some(Predicted { followed, fitted, after })
         };
-        let asked: Vec<&Weighed<'a>> = weighed
-            .iter()
-            .take(HELD_OUT)
-            .take_while(|weighed| !weighed.fit.hypothesis.candidates.is_empty())
-            .collect();
-        let tried: Vec<Held<'a>> = asked.into_par_iter().filter_map(of).collect();
-        let least = tried.iter().map(|held| held.after.mean_square()).fold(f64::INFINITY, f64::min);
-        if let Some(held) = tried.into_iter().find(|held| held.after.mean_square() <= CLEARLY_WORSE * least) {
-            return Ok(held);
+        let sets: Vec<Predicted<'a>> = sets.par_iter().filter_map(of).collect();
+        let last_third = both.last_third(moving)?;
+        Ok(Predictions { nominal, recalibrated, last_third, sets })
+    }
+
+    /// The named set with what it predicts; the recalibrated simulator where none is named or the set predicts no better.
+    pub(crate) fn held_out(
+        &self,
+        predictions: Predictions<'a>,
+        named: &[Candidate],
+    ) -> Result<Held<'a>, DiagnosisError> {
+        let Predictions { nominal, recalibrated, last_third: third, sets } = predictions;
+        let is_named = |own: &Predicted<'_>| own.followed.hypothesis.candidates == named;
+        let set = sets.into_iter().find(|own| !named.is_empty() && is_named(own));
+        if let Some(Predicted { followed, fitted, after }) = set {
+            let both = Both { longer: self.data, followed, segments: self.segments.data, fitted: &fitted };
+            let last_third = [third, both.last_third(Moving::All)?];
+            return Ok(Held { nominal, recalibrated, after, last_third, repaired: followed, fitted });
         }
-        let repaired = calibrated
+        let repaired = self
+            .pool
+            .find(&[])
             .ok_or_else(|| DiagnosisError::NotFitted { reason: "no set of effects was fitted".to_owned() })?;
         let after = recalibrated.clone();
-        let fitted = short.calibrated.clone();
+        let fitted = self.segments.base.calibrated.clone();
         Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
     }
 

@@ -6,6 +6,7 @@ pub(crate) mod context;
 pub(crate) mod determined;
 pub(crate) mod discrepancy;
 pub(crate) mod held_out;
+pub(crate) mod inclusion;
 pub(crate) mod left_over;
 pub(crate) mod likelihood;
 pub(crate) mod score;
