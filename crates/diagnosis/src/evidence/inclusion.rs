@@ -10,7 +10,8 @@ use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::Likelihood;
 use crate::evidence::weights::{TEMPERATURE, Weighed};
 use crate::fit::levenberg_marquardt::Fit;
-use crate::model::candidate::{Candidate, EvidenceClass};
+use crate::model::candidate::Candidate;
+use crate::model::candidates::EvidenceClass;
 use crate::noise::floor;
 use nalgebra::DVector;
 

@@ -4,7 +4,7 @@ use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
 use crate::fit::levenberg_marquardt::{Fit, UNBOUNDED};
-use crate::model::candidate::{Candidate, Distortion};
+use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::model::matrices::{entry, set};
 use crate::noise::statistics::normal_above;
@@ -60,32 +60,17 @@ pub(crate) fn parameters(work: &Context<'_>, fit: &Fit, candidate: Candidate) ->
                 name: parameter.name,
                 unit: unit(candidate, index, units, work.data.quantity),
                 estimate,
-                determined: says_something(facts, quantity(candidate, index), &estimate),
+                determined: says_something(facts, candidate.quantity(index), &estimate),
             }
         })
         .collect();
-    if candidate == Candidate::Chain(Distortion::ReadingHysteresis) {
+    if let Some(name) = candidate.step_parameter() {
         // Read off the values, without a fit.
         let unit = unit(candidate, 0, units, work.data.quantity);
         let estimate = around(facts.resolution, 0.0);
-        estimates.insert(0, ParameterEstimate { name: "step", unit, estimate, determined: true });
+        estimates.insert(0, ParameterEstimate { name, unit, estimate, determined: true });
     }
     estimates
-}
-
-/// What a parameter of an effect measures.
-pub(crate) fn quantity(candidate: Candidate, index: usize) -> dynamics::Quantity {
-    use dynamics::Quantity::{Angle, Observed, ObservedPerTime, Rate, Ratio, Time};
-    match candidate {
-        Candidate::System(effect) => {
-            effect.description().parameters.get(index).map_or(Ratio, |parameter| parameter.quantity)
-        }
-        Candidate::Chain(Distortion::Lag) => Time,
-        Candidate::Chain(Distortion::Nonlinearity) if index == 1 => Angle,
-        Candidate::Chain(Distortion::Drift) => ObservedPerTime,
-        Candidate::Chain(Distortion::Clock) => Rate,
-        Candidate::Chain(_) => Observed,
-    }
 }
 
 fn unit(candidate: Candidate, index: usize, units: Units, observed: Quantity) -> String {
@@ -95,7 +80,7 @@ fn unit(candidate: Candidate, index: usize, units: Units, observed: Quantity) ->
         Quantity::Velocity => Observed::Velocity,
         Quantity::Acceleration => Observed::Acceleration,
     };
-    quantity(candidate, index).unit_seen(units, observed).to_owned()
+    candidate.quantity(index).unit_seen(units, observed).to_owned()
 }
 
 /// What calibration makes of the oscillator's coefficients, without candidates and with them.

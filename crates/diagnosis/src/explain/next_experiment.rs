@@ -3,9 +3,8 @@
 use crate::answer::Experiment;
 use crate::data::segments::{Data, Segment};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
-use crate::model::candidate::Candidate;
 use crate::model::predictor::{Derivatives, Simulator};
-use dynamics::{DynamicsError, Input, SystemEffect};
+use dynamics::{DynamicsError, Input};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -41,15 +40,13 @@ const DRIVEN: [Plan; 2] = [
 /// An angle is released no farther than this; beyond it a spring or a stop is another one.
 const FARTHEST: f64 = 0.75 * PI;
 
-const GRAVITY: Candidate = Candidate::System(SystemEffect::Gravity);
-
-/// A point with its gravity's angle turned.
+/// A point with the angle of its weight turned.
 fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
     let mut point = model.point.globals.clone();
     let calibrated = model.hypothesis.calibrated.len();
     let mut at = calibrated;
     for candidate in &model.hypothesis.candidates {
-        if *candidate == GRAVITY
+        if candidate.is_weight()
             && let Some([p, q]) = point.get_mut(at..at + 2)
         {
             // The pair (size·cos, size·sin) turns with the mount.
@@ -140,7 +137,7 @@ fn distance(data: &Data, model: &Fit, rival: &Fit, plan: &Plan, noise: f64) -> O
 /// thinned data, divided by the square root of the stride).
 pub(crate) fn next(data: &Data, model: &Fit, rival: &Fit, noise: f64) -> Option<Experiment> {
     let driven = data.driven();
-    let has = |fit: &Fit| fit.hypothesis.candidates.contains(&GRAVITY);
+    let has = |fit: &Fit| fit.hypothesis.candidates.iter().any(|own| own.is_weight());
     let plans: &[Plan] = if driven { &DRIVEN } else { &FREE };
     let usable = plans.iter().filter(|plan| {
         let farther = plan.release <= 1.0 || plan.release * data.facts.amplitude <= FARTHEST;

@@ -7,9 +7,9 @@ use crate::error::DiagnosisError;
 use crate::evidence::context::OFF_BY_CHANCE;
 use crate::evidence::determined::{reach, says_something};
 use crate::evidence::weights::significant;
-use crate::explain::coefficients::{around, interval, quantity, spread, variance};
+use crate::explain::coefficients::{around, interval, spread, variance};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, first_starts, fit};
-use crate::model::candidate::{Candidate, Distortion};
+use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::matrices::{entry, set};
 use dynamics::{Active, DynamicsError, Effect, Nominal, NominalSimulator};
@@ -121,7 +121,7 @@ fn numbers(data: &Data, fit: &Fit) -> Vec<Number> {
         let values = effect.values(fitted).into_iter().zip(spread(fit, effect, place, fitted));
         for (at, ((value, error), parameter)) in values.zip(effect.parameters(facts)).enumerate() {
             let name = format!("{}.{}", effect.id(), parameter.name);
-            all.push(number(name, held.clone(), quantity(effect, at), &around(value, error)));
+            all.push(number(name, held.clone(), effect.quantity(at), &around(value, error)));
         }
     }
     all
@@ -247,7 +247,7 @@ fn active(
     let errors = place.and_then(|place| errors.get(place..)).unwrap_or_default().iter().copied();
     let values = effect.values(fitted).into_iter().zip(errors.chain(std::iter::repeat(0.0)));
     let values: Vec<f64> = values.map(|(value, error)| rounded(value, error)).collect();
-    if let Candidate::System(effect) = effect {
+    if let Some(effect) = effect.system() {
         return crate::model::hypothesis::active(effect, &values);
     }
     let kind = Effect::find(effect.id())?;
@@ -255,10 +255,8 @@ fn active(
     let own = |name: &str| names.iter().position(|own| *own == name).and_then(|at| values.get(at).copied());
     let parameters = kind.description().parameters.iter().map(|parameter| {
         let stated = || stated.and_then(|stated| stated.value(parameter.name));
-        own(parameter.name).or_else(stated).unwrap_or(match (effect, parameter.name) {
-            (Candidate::Chain(Distortion::ReadingHysteresis), "step") => step(data),
-            _ => 0.0,
-        })
+        let is_step = effect.step_parameter() == Some(parameter.name);
+        own(parameter.name).or_else(stated).unwrap_or(if is_step { step(data) } else { 0.0 })
     });
     Active::of(kind, &parameters.collect::<Vec<_>>())
 }

@@ -5,9 +5,8 @@ use crate::error::DiagnosisError;
 use crate::evidence::context::OFF_BY_CHANCE;
 use crate::evidence::weights::significant;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, first_starts, fit};
-use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
-use dynamics::{Hold, Nominal, NominalSimulator, SystemEffect};
+use dynamics::{Hold, Nominal, NominalSimulator};
 
 /// The given simulator and the recalibrated one.
 #[derive(Debug, Clone)]
@@ -83,8 +82,7 @@ fn swinging_at(omega: f64, simulator: &NominalSimulator, hypothesis: &Hypothesis
         *stiffness = (wanted - (stated - hypothesis.nominal.stiffness())).max(0.0);
         return;
     }
-    let weight = Candidate::System(SystemEffect::Gravity);
-    let known = hypothesis.known.iter().position(|known| known.candidate == weight);
+    let known = hypothesis.known.iter().position(|known| known.candidate.is_weight());
     let first = known.and_then(|known| place(Calibrated::Effect { known, parameter: 0 }));
     // Both of its parameters are parts of the torque.
     for torque in first.and_then(|at| globals.get_mut(at..at + 2)).into_iter().flatten() {

@@ -3,8 +3,9 @@ use crate::data::observations::Observations;
 use crate::data::segments::{Data, cut};
 use crate::fit::calibrate::baseline;
 use crate::model::candidate::Candidate;
+use crate::model::candidates::{Backlash, CoulombFriction, Hysteresis};
 use dynamics::reference::{Tolerance, simulate};
-use dynamics::{Active, Nominal, Start, System, SystemEffect};
+use dynamics::{Active, Nominal, Start, System};
 use rand_distr::{Distribution, StandardNormal};
 use record::{Clock, ClockChoice, Quantity, Record};
 use seed::Seed;
@@ -42,8 +43,9 @@ fn squares_are_those_of_the_fits_own_point() {
         let kept = [vec![true; observations.len()]];
         let data = cut(&[observations], &kept, &(&nominal()).into()).unwrap();
         let base = baseline(&data, &(&nominal()).into()).unwrap().calibrated;
-        for own in [SystemEffect::CoulombFriction, SystemEffect::Hysteresis, SystemEffect::Backlash] {
-            let candidate = Candidate::System(own);
+        for candidate in
+            [Candidate::new(&CoulombFriction), Candidate::new(&Hysteresis), Candidate::new(&Backlash)]
+        {
             let hypothesis = base.hypothesis.with(&[candidate]);
             let lows = candidate.parameters(&data.facts).into_iter();
             let values = lows.map(|p| if p.shape { 0.1 * p.upper } else { 0.05 });
@@ -53,7 +55,7 @@ fn squares_are_those_of_the_fits_own_point() {
             let squares = anew(&data, &found);
             assert!(
                 (squares / found.squares - 1.0).abs() < 1e-9,
-                "{own:?} {seed}: {squares} {}",
+                "{candidate:?} {seed}: {squares} {}",
                 found.squares
             );
             checked += 1;

@@ -1,16 +1,15 @@
 //! What every candidate would add to the observed values, to first order, at a fit.
 
-use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::levenberg_marquardt::{Fit, solve};
-use crate::model::candidate::{Candidate, Distortion};
-use crate::model::contact::bent;
+use crate::model::candidate::Candidate;
+use crate::model::candidates::{Lines, Mode};
 use crate::model::matrices::{element, entry};
 use crate::model::projection::Projection;
-use crate::model::tangent::{Path, matrix, plain_moment, stack};
-use crate::noise::spectrum::{decaying_lines, frequencies, lines};
-use crate::search::second_mode::{SecondMode, driven_modes};
-use dynamics::{Coefficients, DynamicsError, MOST_PARAMETERS, SystemEffect};
+use crate::model::tangent::{Path, matrix, stack};
+use crate::noise::spectrum::{Line, decaying_lines, frequencies, lines};
+use crate::search::second_mode::driven_modes;
+use dynamics::{Coefficients, DynamicsError};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 use std::ops::Range;
@@ -56,53 +55,38 @@ pub(crate) struct Gain {
     pub(crate) coefficients: Vec<f64>,
 }
 
-/// Shapes relative to the motion's scales.
-const STRIBECK: [f64; 3] = [0.02, 0.06, 0.2];
-const PLAY: [f64; 5] = [0.003, 0.01, 0.03, 0.1, 0.3];
-const BENDING: [f64; 5] = [0.005, 0.02, 0.06, 0.2, 0.6];
-const STOPS: [f64; 5] = [0.004, 0.015, 0.05, 0.12, 0.25];
-const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
-const LIMITS: [f64; 4] = [0.95, 0.85, 0.7, 0.5];
-const DELAYS: [f64; 2] = [0.01, 0.1];
-const LINES: usize = 3;
-/// A second body to begin with: how many lines, by how much of a radian it puts the swing out of phase over a
-/// segment, its part of the inertia at most.
-const SECOND_MODES: usize = 3;
-const OUT_OF_PHASE: f64 = 0.1;
-const FIRST_BODY: f64 = 0.02;
-
-/// A second body's part of the inertia to begin with: it lowers the swing's frequency by half its part, and
-/// over a long segment a body that is not yet where it belongs would lose count of the swings.
-fn second_body(data: &Data) -> f64 {
-    let phase = data.facts.frequency * data.longest_span();
-    (2.0 * OUT_OF_PHASE / phase.max(1.0)).min(FIRST_BODY)
+/// What the residual of a fit shows.
+struct Residual<'a> {
+    data: &'a Data,
+    residuals: &'a [&'a [f64]],
+    paths: &'a [Path],
+    projection: &'a Projection,
+    /// Residual of all segments, projected on what the fit may not move.
+    projected: &'a DMatrix<f64>,
 }
 
-/// The shapes that a candidate is tried at, as parameters of the fit with unit coefficients.
-pub(crate) fn shapes(candidate: Candidate, facts: &Scales) -> Vec<Vec<f64>> {
-    let grid = |scale: f64, parts: &[f64]| -> Vec<f64> { parts.iter().map(|part| part * scale).collect() };
-    let of = |values: Vec<f64>, make: &dyn Fn(f64) -> Vec<f64>| values.into_iter().map(make).collect();
-    match candidate {
-        Candidate::System(effect) => match effect {
-            SystemEffect::StribeckFriction => of(grid(facts.speed, &STRIBECK), &|v| vec![1.0, 1.0, v]),
-            SystemEffect::Gravity => vec![vec![1.0, 0.0]],
-            SystemEffect::Backlash => of(grid(facts.amplitude, &PLAY), &|b| vec![b]),
-            SystemEffect::Hysteresis => of(grid(facts.amplitude, &BENDING), &|d| vec![1.0, d]),
-            SystemEffect::EndStop => {
-                let span = facts.highest - facts.lowest;
-                let upper = STOPS.iter().map(|part| facts.highest - part * span);
-                let lower = STOPS.iter().map(|part| facts.lowest + part * span);
-                upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
-            }
-            SystemEffect::InputDelay => of(grid(1.0 / facts.frequency, &DELAYS), &|d| vec![d]),
-            SystemEffect::InputSaturation => of(grid(facts.input_torque, &LIMITS), &|t| vec![t]),
-            // Their frequencies come from the residual.
-            SystemEffect::PeriodicForcing | SystemEffect::FlexibleCoupling => Vec::new(),
-            _ => vec![vec![1.0]],
-        },
-        Candidate::Chain(Distortion::Saturation) => of(grid(facts.reading, &CLIPS), &|bound| vec![bound]),
-        Candidate::Chain(Distortion::Nonlinearity) => vec![vec![1.0, 0.0]],
-        Candidate::Chain(_) => vec![vec![1.0]],
+impl Lines for Residual<'_> {
+    fn steady(&self, most: usize) -> Vec<f64> {
+        lines(self.data, self.residuals, most).into_iter().map(|line| line.frequency).collect()
+    }
+
+    fn decaying(&self, most: usize) -> Vec<Mode> {
+        let lines = decaying_lines(self.data, self.residuals, most).into_iter();
+        let mode = |(line, rate): (Line, f64)| Mode {
+            frequency: line.frequency,
+            rate,
+            inertia: None,
+            gain: line.gain,
+        };
+        lines.map(mode).collect()
+    }
+
+    fn driven(&self, most: usize) -> Vec<Mode> {
+        driven_modes(self.data, self.paths, self.projection, self.projected, most)
+    }
+
+    fn longest_span(&self) -> f64 {
+        self.data.longest_span()
     }
 }
 
@@ -114,88 +98,9 @@ fn columns(
     data: &Data,
     nominal: &Coefficients<f64>,
 ) -> Vec<Vec<f64>> {
-    let (x, rate, _) = path.observed(data.quantity);
-    let torque = |values: &[f64]| law(candidate, values, path, nominal);
-    let respond = |torques: Vec<Vec<f64>>| -> Vec<Vec<f64>> {
-        torques.iter().map(|torque| path.response(torque, data.quantity)).collect()
-    };
-    match (candidate, shape) {
-        (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v]) => {
-            let sizes = [torque(&[1.0, 1.0, v]), torque(&[0.0, 1.0, v])];
-            respond(sizes.into_iter().skip(usize::from(data.facts.friction_known)).collect())
-        }
-        (Candidate::System(SystemEffect::Gravity), _) => {
-            respond(vec![torque(&[1.0, 0.0]), torque(&[1.0, std::f64::consts::FRAC_PI_2])])
-        }
-        (Candidate::System(SystemEffect::PeriodicForcing), &[_, frequency, _]) => respond(vec![
-            torque(&[1.0, frequency, 0.0]),
-            torque(&[1.0, frequency, std::f64::consts::FRAC_PI_2]),
-        ]),
-        (Candidate::System(SystemEffect::Hysteresis), &[_, displacement]) => {
-            respond(vec![bending(displacement, path, data, nominal)])
-        }
-        (Candidate::System(SystemEffect::InputDelay), &[delay]) => {
-            let input = data.inputs.get(path.record).and_then(Option::as_ref);
-            let shifted = path.times.iter().zip(&path.input).map(|(time, now)| {
-                input.map_or(0.0, |i| nominal.input_gain * crate::model::tangent::held(i, time - delay) - now)
-            });
-            respond(vec![shifted.collect()])
-        }
-        (Candidate::System(_), shape) => respond(vec![torque(shape)]),
-        (Candidate::Chain(distortion), shape) => match (distortion, shape) {
-            (Distortion::Lag, _) => vec![rate.iter().map(|rate| -rate).collect()],
-            (Distortion::Nonlinearity, _) => {
-                vec![x.iter().map(|x| x.sin()).collect(), x.iter().map(|x| x.cos()).collect()]
-            }
-            (Distortion::Drift, _) => vec![path.times.clone()],
-            (Distortion::Clock, _) => {
-                vec![rate.iter().zip(&path.times).map(|(rate, t)| -0.5 * t * t * rate).collect()]
-            }
-            (Distortion::Saturation, &[bound]) => {
-                vec![x.iter().map(|x| x.clamp(-bound, bound) - x).collect()]
-            }
-            (Distortion::Saturation, _) => Vec::new(),
-            (Distortion::ReadingHysteresis, _) => {
-                vec![rate.iter().map(|rate| if *rate < 0.0 { 1.0 } else { -1.0 }).collect()]
-            }
-        },
-    }
-}
-
-/// A law's torque along a path.
-fn law(candidate: Candidate, values: &[f64], path: &Path, nominal: &Coefficients<f64>) -> Vec<f64> {
-    let Candidate::System(effect) = candidate else { return Vec::new() };
-    let mut own = [0.0; MOST_PARAMETERS];
-    for (slot, value) in own.iter_mut().zip(values) {
-        *slot = *value;
-    }
-    (0..path.len())
-        .map(|index| {
-            let mut moment = plain_moment(path, index, nominal);
-            moment.region = effect.region(&own, &moment);
-            effect.torque(&own, &moment)
-        })
-        .collect()
-}
-
-/// −z along a path, for Dahl's law: exact between samples of a motion in one direction.
-fn bending(displacement: f64, path: &Path, data: &Data, nominal: &Coefficients<f64>) -> Vec<f64> {
-    let position = &path.motion.position;
-    let rest = nominal.rest_angle + data.facts.rest_moved;
-    let mut z = match (position.first(), path.motion.velocity.first()) {
-        (Some(position), Some(velocity)) if !path.first => {
-            bent(position - rest, velocity / data.facts.frequency, displacement).z
-        }
-        _ => 0.0,
-    };
-    let mut torque = vec![-z];
-    for (before, after) in position.iter().zip(position.iter().skip(1)) {
-        let way = after - before;
-        let direction = if way < 0.0 { -1.0 } else { 1.0 };
-        z = direction - (direction - z) * (-way.abs() / displacement).exp();
-        torque.push(-z);
-    }
-    torque
+    let respond = |torque: &[f64]| path.response(torque, data.quantity);
+    let command = data.inputs.get(path.record).and_then(Option::as_ref);
+    candidate.columns(shape, &path.along(data.quantity, &data.facts, nominal, command, &respond))
 }
 
 impl Dictionary {
@@ -218,17 +123,15 @@ impl Dictionary {
         candidates: &[Candidate],
     ) -> Self {
         let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
+        let stacked: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
+        let mut residual = DMatrix::from_vec(stacked.len(), 1, stacked);
+        projection.apply(&mut residual);
+        let shown = Residual { data, residuals: &residuals, paths, projection, projected: &residual };
         let mut entries = Vec::new();
+        let mut further = Vec::new();
         let mut all: Vec<Vec<f64>> = Vec::new();
         for &candidate in candidates {
-            let mut shapes = shapes(candidate, &data.facts);
-            if candidate == Candidate::System(SystemEffect::PeriodicForcing) {
-                shapes = lines(data, &residuals, LINES)
-                    .into_iter()
-                    .map(|line| vec![1.0, line.frequency, 0.0])
-                    .collect();
-            }
-            for shape in shapes {
+            for shape in candidate.shapes_for(&data.facts, &shown) {
                 let by_path: Vec<Vec<Vec<f64>>> =
                     paths.iter().map(|path| columns(candidate, &shape, path, data, nominal)).collect();
                 let count = by_path.first().map_or(0, Vec::len);
@@ -236,26 +139,11 @@ impl Dictionary {
                 for column in 0..count {
                     all.push(by_path.iter().filter_map(|c| c.get(column)).flatten().copied().collect());
                 }
-                let positive = match candidate {
-                    Candidate::System(
-                        SystemEffect::CubicStiffness
-                        | SystemEffect::AsymmetricStiffness
-                        | SystemEffect::ConstantTorque
-                        | SystemEffect::Gravity
-                        | SystemEffect::StiffnessDrift
-                        | SystemEffect::DampingDrift
-                        | SystemEffect::PeriodicForcing,
-                    ) => false,
-                    Candidate::System(_) => true,
-                    Candidate::Chain(distortion) => {
-                        matches!(
-                            distortion,
-                            Distortion::Lag | Distortion::Saturation | Distortion::ReadingHysteresis
-                        )
-                    }
-                };
+                let positive = candidate.is_non_negative();
                 entries.push(Entry { candidate, shape, columns: from..from + count, positive });
             }
+            let starts = candidate.starts(&data.facts, nominal.inertia, &shown).into_iter();
+            further.extend(starts.map(|(parameters, gain)| (candidate, parameters, gain)));
         }
         let mut columns = matrix(projection.rows(), &all);
         let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
@@ -264,20 +152,6 @@ impl Dictionary {
             if column.norm() <= INVISIBLE * raw {
                 column.fill(0.0);
             }
-        }
-        let residual: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
-        let mut residual = DMatrix::from_vec(residual.len(), 1, residual);
-        projection.apply(&mut residual);
-        let coupling = Candidate::System(SystemEffect::FlexibleCoupling);
-        let mut further = Vec::new();
-        if candidates.contains(&coupling) {
-            let body = second_body(data) * nominal.inertia;
-            let lines = decaying_lines(data, &residuals, SECOND_MODES).into_iter();
-            further.extend(lines.map(|(line, rate)| (coupling, vec![body, line.frequency, rate], line.gain)));
-            let driven = driven_modes(data, paths, projection, &residual, SECOND_MODES).into_iter();
-            further.extend(driven.map(|SecondMode { frequency, rate, inertia, gain }| {
-                (coupling, vec![inertia.min(body), frequency, rate], gain)
-            }));
         }
         Self {
             products: columns.tr_mul(&columns),
@@ -296,9 +170,9 @@ impl Dictionary {
 
     /// How many frequencies a gain is the best of: 1 for entries without one.
     pub(crate) fn looked(&self, gain: &Gain) -> f64 {
-        let forcing = Candidate::System(SystemEffect::PeriodicForcing);
         let mut entries = gain.entries.iter().filter_map(|&index| self.entries.get(index));
-        if entries.any(|entry| entry.candidate == forcing) { self.frequencies } else { 1.0 }
+        let by_frequency = entries.any(|entry| entry.candidate.is_chosen_by_frequency());
+        if by_frequency { self.frequencies } else { 1.0 }
     }
 
     /// Joint gain of some entries, their sizes not negative where the law says so; `None` where an entry is
@@ -358,26 +232,8 @@ impl Dictionary {
 
     /// The parameters that an entry's coefficients stand for.
     pub(crate) fn parameters(&self, entry: usize, coefficients: &[f64]) -> Vec<f64> {
-        let Some(entry) = self.entries.get(entry) else { return Vec::new() };
-        match (entry.candidate, entry.shape.as_slice(), coefficients) {
-            (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v], &[p, q]) => vec![p, q, v],
-            (Candidate::System(SystemEffect::StribeckFriction), &[_, _, v], &[q]) => vec![0.0, q, v],
-            (Candidate::System(SystemEffect::PeriodicForcing), &[_, frequency, _], &[p, q]) => {
-                vec![p, frequency, q]
-            }
-            (Candidate::System(SystemEffect::Hysteresis), &[_, displacement], &[c]) => vec![c, displacement],
-            (Candidate::System(SystemEffect::EndStop), &[angle, ..], &[c]) => vec![angle, c, 0.0],
-            // The shape is the parameter itself; the coefficient of its secant corrects it within reason.
-            (Candidate::System(SystemEffect::Backlash | SystemEffect::InputDelay), &[size], &[c]) => {
-                vec![size * c.clamp(0.3, 3.0)]
-            }
-            (
-                Candidate::System(SystemEffect::InputSaturation) | Candidate::Chain(Distortion::Saturation),
-                &[size],
-                _,
-            ) => vec![size],
-            (_, _, coefficients) => coefficients.to_vec(),
-        }
+        let entry = self.entries.get(entry);
+        entry.map(|entry| entry.candidate.linear_parameters(&entry.shape, coefficients)).unwrap_or_default()
     }
 }
 

@@ -1,7 +1,8 @@
 //! A hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
 
 use crate::data::scales::Scales;
-use crate::model::candidate::{Candidate, Distortion, Parameter};
+use crate::model::candidate::{Candidate, Parameter};
+use crate::model::sensor::Sensor;
 use dynamics::sensitivity::Free;
 use dynamics::{
     Active, Coefficients, DynamicsError, Effect, KnownEffect, Nominal, NominalSimulator, System, SystemEffect,
@@ -102,78 +103,6 @@ impl Known {
             })
         };
         simulator.effects().iter().filter_map(known).collect()
-    }
-}
-
-/// What the sensor does to the motion: the smooth effects of the measuring chain, in their physical order.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub(crate) struct Measurement {
-    pub(crate) lag: Option<f64>,
-    pub(crate) nonlinearity: Option<(f64, f64)>,
-    pub(crate) drift: Option<f64>,
-    pub(crate) clock: Option<f64>,
-    pub(crate) saturation: Option<f64>,
-    /// How far readings stay behind, in either direction: [`crate::reading`]. Not a map of one value.
-    pub(crate) reading: Option<f64>,
-}
-
-/// An observed value with its derivatives.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Observed {
-    pub(crate) value: f64,
-    /// With respect to the observed quantity, its first and its second time derivative.
-    pub(crate) by_motion: [f64; 3],
-    /// With respect to lag, nonlinearity's amplitude and phase, drift, clock change, saturation bound.
-    pub(crate) by_parameter: [f64; 6],
-}
-
-impl Measurement {
-    /// The true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
-    pub(crate) fn true_time(&self, stamp: f64) -> f64 {
-        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation where r′ is small.
-        self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
-    }
-
-    /// What the sensor shows where the observed quantity is `x` with time derivatives `rate` and `curvature`.
-    ///
-    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
-    /// answer up to (ω·T)³.
-    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
-        let mut by_motion = [1.0, 0.0, 0.0];
-        let mut by_parameter = [0.0; 6];
-        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
-        let mut value = x;
-        if let Some(lag) = self.lag {
-            value += -lag * rate + lag * lag * curvature;
-            by_motion = [1.0, -lag, lag * lag];
-            *by_lag = -rate + 2.0 * lag * curvature;
-        }
-        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
-        *by_clock = -0.5 * (time * time - start * start) * rate;
-        if let Some((amplitude, phase)) = self.nonlinearity {
-            let (sine, cosine) = (value + phase).sin_cos();
-            value += amplitude * sine;
-            let slope = 1.0 + amplitude * cosine;
-            by_motion = by_motion.map(|d| d * slope);
-            *by_lag *= slope;
-            *by_clock *= slope;
-            *by_amplitude = sine;
-            *by_phase = amplitude * cosine;
-        }
-        if let Some(drift) = self.drift {
-            value += drift * time;
-        }
-        *by_drift = time;
-        if let Some(bound) = self.saturation {
-            if value.abs() > bound {
-                value = bound * value.signum();
-                by_motion = [0.0; 3];
-                by_parameter = [0.0, 0.0, 0.0, 0.0, 0.0, value.signum()];
-            } else {
-                *by_bound = 0.0;
-            }
-        }
-        Observed { value, by_motion, by_parameter }
     }
 }
 
@@ -322,7 +251,7 @@ impl Hypothesis {
     pub(crate) fn system(&self, facts: &Scales, point: &[f64]) -> Result<System, DynamicsError> {
         let mut effects = Vec::new();
         for (candidate, _, own) in self.all_parts(facts, point) {
-            if let Candidate::System(effect) = candidate {
+            if let Some(effect) = candidate.system() {
                 effects.push(active(effect, &candidate.values(own))?);
             }
         }
@@ -333,46 +262,31 @@ impl Hypothesis {
     pub(crate) fn swinging(&self, facts: &Scales, point: &[f64]) -> Result<(Nominal, f64), DynamicsError> {
         let nominal = self.calibrated_nominal(point)?;
         let parts = self.all_parts(facts, point).into_iter().take(self.known.len());
-        let weight = parts.filter_map(|(known, _, own)| match known {
-            Candidate::System(effect @ SystemEffect::Gravity) => Some(active(effect, &known.values(own))),
-            _ => None,
+        let weight = parts.filter_map(|(known, _, own)| {
+            let effect = known.system().filter(|_| known.is_weight())?;
+            Some(active(effect, &known.values(own)))
         });
         let effects = weight.map(|active| Ok(KnownEffect { active: active?, recalibrate: true }));
         let simulator = NominalSimulator::new(nominal, effects.collect::<Result<_, DynamicsError>>()?)?;
         Ok((nominal, simulator.equilibrium().1))
     }
 
-    pub(crate) fn measurement(&self, facts: &Scales, point: &[f64]) -> Measurement {
-        let mut measurement = Measurement::default();
+    pub(crate) fn measurement(&self, facts: &Scales, point: &[f64]) -> Sensor {
+        let mut sensor = Sensor::default();
         for (candidate, _, own) in self.all_parts(facts, point) {
-            match (candidate, candidate.values(own).as_slice()) {
-                (Candidate::Chain(Distortion::Lag), &[lag]) => measurement.lag = Some(lag),
-                (Candidate::Chain(Distortion::Nonlinearity), &[amplitude, phase]) => {
-                    measurement.nonlinearity = Some((amplitude, phase));
-                }
-                (Candidate::Chain(Distortion::Drift), &[rate]) => measurement.drift = Some(rate),
-                (Candidate::Chain(Distortion::Clock), &[change]) => measurement.clock = Some(change),
-                (Candidate::Chain(Distortion::Saturation), &[bound]) => measurement.saturation = Some(bound),
-                (Candidate::Chain(Distortion::ReadingHysteresis), &[width]) => {
-                    measurement.reading = Some(width);
-                }
-                _ => {}
-            }
+            candidate.read(&candidate.values(own), &mut sensor);
         }
-        measurement
+        sensor
     }
 
     /// Whether the motion depends smoothly on everything that is fitted.
     pub(crate) fn smooth(&self) -> bool {
-        self.effects().all(|candidate| match candidate {
-            Candidate::System(effect) => effect.description().smooth,
-            Candidate::Chain(_) => true,
-        })
+        self.effects().all(|candidate| candidate.is_smooth())
     }
 
     /// State values of a segment that are fitted: position, velocity, hidden ones.
     pub(crate) fn start_length(&self) -> usize {
-        2 + self.effects().map(Candidate::free_hidden).sum::<usize>()
+        2 + self.effects().map(|effect| effect.free_hidden()).sum::<usize>()
     }
 
     /// The same without candidates: what every hypothesis fits.
@@ -398,43 +312,4 @@ pub(crate) fn active(effect: SystemEffect, values: &[f64]) -> Result<Active, Dyn
         if parameter.range.contains(value) { value } else { value.max(f64::MIN_POSITIVE) }
     });
     Active::of(Effect::System(effect), &inside.collect::<Vec<_>>())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::Measurement;
-
-    /// Derivatives of the sensor's map against central differences.
-    #[test]
-    fn a_sensors_derivatives_are_those_of_its_values() {
-        let full = Measurement {
-            lag: Some(0.004),
-            nonlinearity: Some((0.02, 0.4)),
-            drift: Some(0.003),
-            clock: Some(1e-3),
-            saturation: Some(5.0),
-            reading: None,
-        };
-        let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
-        let at = full.observe(x, rate, curvature, time, 0.0);
-        let h = 1e-6;
-        let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
-        let by_x = slope(
-            full.observe(x + h, rate, curvature, time, 0.0).value,
-            full.observe(x - h, rate, curvature, time, 0.0).value,
-        );
-        assert!((by_x - at.by_motion[0]).abs() < 1e-8);
-        let lag = |d: f64| {
-            Measurement { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value
-        };
-        assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
-        let phase = |d: f64| {
-            Measurement { nonlinearity: Some((0.02, 0.4 + d)), ..full }
-                .observe(x, rate, curvature, time, 0.0)
-                .value
-        };
-        assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
-        let stamp = full.true_time(time);
-        assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);
-    }
 }

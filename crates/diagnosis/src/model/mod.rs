@@ -1,10 +1,12 @@
 //! The simulator that is fitted: its hypotheses, what it predicts, and every effect it may lack.
 
 pub(crate) mod candidate;
+pub(crate) mod candidates;
 pub(crate) mod contact;
 pub(crate) mod dictionary;
 pub(crate) mod hypothesis;
 pub(crate) mod matrices;
 pub(crate) mod predictor;
 pub(crate) mod projection;
+pub(crate) mod sensor;
 pub(crate) mod tangent;

@@ -3,12 +3,13 @@
 use crate::data::scales::Scales;
 use crate::data::segments::{Data, Segment};
 use crate::measurement::encoder_hysteresis::readings;
-use crate::model::candidate::{Candidate, Distortion};
+use crate::model::candidate::Candidate;
 use crate::model::contact::{Bent, bent};
-use crate::model::hypothesis::{Calibrated, Hypothesis, Measurement, Source};
+use crate::model::hypothesis::{Calibrated, Hypothesis, Source};
 use crate::model::matrices::{entry, set};
+use crate::model::sensor::Sensor;
+use dynamics::DynamicsError;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
-use dynamics::{DynamicsError, SystemEffect};
 use nalgebra::{DMatrix, DVector};
 use record::Quantity;
 
@@ -38,7 +39,7 @@ pub(crate) struct Simulator<'a> {
     sources: Vec<Source>,
     /// The point that the model is set to.
     point: Vec<f64>,
-    measurement: Measurement,
+    measurement: Sensor,
     model: Model,
     response: Response,
     /// Where each global parameter's column stands in the response; none for the sensor's.
@@ -53,6 +54,8 @@ pub(crate) struct Simulator<'a> {
 #[derive(Debug, Clone, Copy)]
 struct Contact {
     effect: usize,
+    /// Place of the displacement among its parameters.
+    displacement: usize,
     hidden: usize,
     column: Option<usize>,
 }
@@ -106,16 +109,14 @@ impl<'a> Simulator<'a> {
             for (source, column) in sources.iter().zip(&mut columns) {
                 let own = match *source {
                     Source::Nominal(which) => which.free(),
-                    Source::Effect(index, parameter) => match hypothesis.effect(index) {
-                        Some(Candidate::System(effect)) => {
+                    Source::Effect(index, parameter) => {
+                        let effect = hypothesis.effect(index).and_then(Candidate::system);
+                        effect.and_then(|effect| {
                             let description = effect.description();
-                            description
-                                .parameters
-                                .get(parameter)
-                                .map(|own| Free::Effect { id: description.id, parameter: own.name })
-                        }
-                        _ => None,
-                    },
+                            let own = description.parameters.get(parameter)?;
+                            Some(Free::Effect { id: description.id, parameter: own.name })
+                        })
+                    }
                 };
                 *column = own.map(|own| {
                     free.push(own);
@@ -213,7 +214,7 @@ impl<'a> Simulator<'a> {
     fn bent(&self, segment: &Segment, start: &[f64]) -> Option<Bent> {
         let contact = self.contact.filter(|_| !segment.first)?;
         let parts = self.hypothesis.all_parts(self.facts(), &self.point);
-        let &(_, _, &[_, displacement]) = parts.get(contact.effect)? else { return None };
+        let &displacement = parts.get(contact.effect)?.2.get(contact.displacement)?;
         let &[position, velocity, ..] = start else { return None };
         let deflection = position - self.facts().rest(&self.point, self.hypothesis);
         Some(bent(deflection, velocity / self.facts().frequency, displacement))
@@ -229,7 +230,7 @@ impl<'a> Simulator<'a> {
             let number = |own: Source| self.sources.iter().position(|source| *source == own);
             let by_rest = number(Source::Nominal(Calibrated::RestAngle));
             all.extend(by_rest.map(|number| (starts + number, -bent.by_deflection)));
-            let by_displacement = number(Source::Effect(contact.effect, 1));
+            let by_displacement = number(Source::Effect(contact.effect, contact.displacement));
             all.extend(by_displacement.map(|number| (starts + number, bent.by_displacement)));
         }
         all
@@ -297,7 +298,8 @@ impl<'a> Simulator<'a> {
                 let value = match (column, *source) {
                     (Some(column), _) => through(*column),
                     (None, Source::Effect(index, parameter)) => {
-                        let which = sensor_parameter(self.hypothesis.effect(index), parameter);
+                        let effect = self.hypothesis.effect(index);
+                        let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
                         which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
                     }
                     (None, Source::Nominal(_)) => 0.0,
@@ -348,8 +350,7 @@ impl<'a> Simulator<'a> {
 
     /// Number of the reading hysteresis among the global parameters.
     fn by_width(&self) -> Option<usize> {
-        let own = Candidate::Chain(Distortion::ReadingHysteresis);
-        let index = self.hypothesis.effects().position(|effect| effect == own)?;
+        let index = self.hypothesis.effects().position(|effect| effect.holds_readings())?;
         self.sources.iter().position(|source| matches!(source, Source::Effect(at, _) if *at == index))
     }
 
@@ -402,39 +403,27 @@ impl Scales {
 }
 
 /// Effects of a hypothesis's system, with their numbers among all and those of their first hidden states.
-fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, SystemEffect, usize)> {
+fn system_effects(hypothesis: &Hypothesis) -> impl Iterator<Item = (usize, Candidate, usize)> {
     let mut hidden = 0;
-    hypothesis.effects().enumerate().filter_map(move |(number, effect)| {
-        let Candidate::System(effect) = effect else { return None };
+    hypothesis.effects().enumerate().filter_map(move |(number, candidate)| {
+        let effect = candidate.system()?;
         let from = hidden;
         hidden += effect.description().hidden_states;
-        Some((number, effect, from))
+        Some((number, candidate, from))
     })
 }
 
 /// The contact that bends among a hypothesis's effects.
 fn contact(hypothesis: &Hypothesis) -> Option<Contact> {
-    let mut effects = system_effects(hypothesis);
-    let own = effects.find(|(_, effect, _)| *effect == SystemEffect::Hysteresis);
-    own.map(|(effect, _, hidden)| Contact { effect, hidden, column: None })
+    system_effects(hypothesis).find_map(|(effect, candidate, hidden)| {
+        let displacement = candidate.bending_displacement()?;
+        Some(Contact { effect, displacement, hidden, column: None })
+    })
 }
 
 /// Numbers of the hidden states that each segment fits, among all of the system's.
 fn hidden(hypothesis: &Hypothesis) -> impl Iterator<Item = usize> {
-    system_effects(hypothesis)
-        .flat_map(|(_, effect, from)| from..from + Candidate::System(effect).free_hidden())
-}
-
-/// Place of a sensor effect's parameter in [`crate::model::hypothesis::Observed::by_parameter`].
-fn sensor_parameter(effect: Option<Candidate>, parameter: usize) -> Option<usize> {
-    match effect? {
-        Candidate::Chain(Distortion::Lag) => Some(0),
-        Candidate::Chain(Distortion::Nonlinearity) => Some(1 + parameter),
-        Candidate::Chain(Distortion::Drift) => Some(3),
-        Candidate::Chain(Distortion::Clock) => Some(4),
-        Candidate::Chain(Distortion::Saturation) => Some(5),
-        Candidate::Chain(Distortion::ReadingHysteresis) | Candidate::System(_) => None,
-    }
+    system_effects(hypothesis).flat_map(|(_, effect, from)| from..from + effect.free_hidden())
 }
 
 #[cfg(test)]

@@ -1,7 +1,8 @@
 use super::{Derivatives, Simulator};
 use crate::data::observations::Observations;
 use crate::data::segments::{Data, cut};
-use crate::model::candidate::{Candidate, Distortion};
+use crate::model::candidate::Candidate;
+use crate::model::candidates::{Hysteresis, SensorQuantization};
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use dynamics::Nominal;
 use record::{Clock, ClockChoice, Quantity, Record};
@@ -23,7 +24,7 @@ fn data() -> (Data, Nominal) {
 #[test]
 fn a_held_readings_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();
-    let candidates = vec![Candidate::Chain(Distortion::ReadingHysteresis)];
+    let candidates = vec![Candidate::new(&SensorQuantization)];
     let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
     let hypothesis = Hypothesis { nominal, known: Vec::new(), calibrated, candidates };
     let globals = [0.2, 36.0, 0.01, 0.4 * STEP];
@@ -52,7 +53,7 @@ fn a_held_readings_derivatives_are_those_of_its_values() {
 #[test]
 fn a_bent_contacts_derivatives_are_those_of_its_values() {
     let (data, nominal) = data();
-    let candidates = vec![Candidate::System(dynamics::SystemEffect::Hysteresis)];
+    let candidates = vec![Candidate::new(&Hysteresis)];
     let calibrated = vec![Calibrated::Damping, Calibrated::Stiffness, Calibrated::RestAngle];
     let hypothesis = Hypothesis { nominal, known: Vec::new(), calibrated, candidates };
     let globals = [0.2, 36.0, 0.01, 0.3, 0.02];

@@ -9,12 +9,10 @@
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::levenberg_marquardt::Fit;
-use crate::model::contact::bent;
+use crate::model::candidate::Candidate;
+use crate::model::candidates::{Along, held, padded};
 use crate::model::predictor::{Derivatives, Motion, Simulator};
-use dynamics::scalar::Dual;
-use dynamics::{
-    Coefficients, DynamicsError, Effect, MOST_HIDDEN, MOST_PARAMETERS, Moment, System, SystemEffect,
-};
+use dynamics::{Active, Coefficients, DynamicsError, Effect, Input, System, Values};
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use record::Quantity;
 
@@ -114,7 +112,7 @@ impl Path {
                 record: segment.record,
                 first: segment.first,
             };
-            path.linearize(&system, &data.facts);
+            path.linearize(&system, data.quantity, &data.facts);
             paths.push(path);
         }
         Ok(paths)
@@ -141,16 +139,20 @@ impl Path {
         self.times.len()
     }
 
-    fn linearize(&mut self, system: &System, facts: &Scales) {
+    fn linearize(&mut self, system: &System, quantity: Quantity, facts: &Scales) {
         let directed = system.effects().iter().any(|active| match active.effect() {
             Effect::System(effect) => effect.directed(),
             _ => false,
         });
-        for index in 0..self.len() {
-            let (stiffness, damping) = slopes(system, self, index, facts);
-            self.stiffness.push(stiffness);
-            self.damping.push(damping);
-        }
+        let fitted =
+            |active: &Active| Some((Candidate::that_fits(active.effect())?, padded(active.values())));
+        let effects: Vec<(Candidate, Values<f64>)> = system.effects().iter().filter_map(fitted).collect();
+        let nominal = system.nominal().coefficients();
+        let slopes: Vec<(f64, f64)> = {
+            let along = self.along(quantity, facts, &nominal, None, &|torque: &[f64]| torque.to_vec());
+            (0..self.len()).map(|index| slopes(&nominal, &effects, &along, index)).collect()
+        };
+        (self.stiffness, self.damping) = slopes.into_iter().unzip();
         let inertia = self.inertia;
         let pairs = |list: &[f64]| -> Vec<(f64, f64)> {
             list.iter().copied().zip(list.iter().copied().skip(1)).collect()
@@ -174,6 +176,31 @@ impl Path {
                 step
             })
             .collect();
+    }
+
+    /// The motion as a candidate sees it.
+    pub(crate) fn along<'a>(
+        &'a self,
+        quantity: Quantity,
+        facts: &'a Scales,
+        nominal: &'a Coefficients<f64>,
+        command: Option<&'a Input>,
+        respond: &'a dyn Fn(&[f64]) -> Vec<f64>,
+    ) -> Along<'a> {
+        let (observed, rate, _) = self.observed(quantity);
+        Along {
+            times: &self.times,
+            position: &self.motion.position,
+            velocity: &self.motion.velocity,
+            observed,
+            rate,
+            input: &self.input,
+            command,
+            first: self.first,
+            facts,
+            nominal,
+            respond,
+        }
     }
 
     /// The response of the observed quantity to a torque given at the samples, from rest.
@@ -217,87 +244,19 @@ fn observed(quantity: Quantity, motion: &Motion) -> (&[f64], &[f64], &[f64]) {
     }
 }
 
-/// The input at a time.
-pub(crate) fn held(input: &dynamics::Input, time: f64) -> f64 {
-    let at = input.times().partition_point(|knot| *knot <= time);
-    let value = |index: usize| input.values().get(index).copied();
-    let knot = |index: usize| input.times().get(index).copied();
-    let Some(before) = at.checked_sub(1) else { return value(0).unwrap_or(0.0) };
-    let low = value(before).unwrap_or(0.0);
-    match (input.hold(), value(at), knot(before), knot(at)) {
-        (dynamics::Hold::Linear, Some(high), Some(from), Some(to)) => {
-            low + (high - low) * (time - from) / (to - from)
-        }
-        _ => low,
-    }
-}
-
-/// A dual moment of the motion: derivatives with respect to position and velocity.
-fn moment(path: &Path, index: usize, system: &System, region: i8) -> Moment<Dual<2>> {
-    let at = |list: &[f64]| list.get(index).copied().unwrap_or(0.0);
-    let (position, velocity) = (at(&path.motion.position), at(&path.motion.velocity));
-    let c = system.nominal().coefficients();
-    let constant = |value: f64| Dual::<2>::from(value);
-    Moment {
-        time: constant(at(&path.times)),
-        position: Dual::variable(position, 0),
-        velocity: Dual::variable(velocity, 1),
-        input: constant(at(&path.input)),
-        hidden: [constant(0.0); MOST_HIDDEN],
-        nominal: Coefficients {
-            inertia: constant(c.inertia),
-            damping: constant(c.damping),
-            stiffness: constant(c.stiffness),
-            rest_angle: constant(c.rest_angle),
-            input_gain: constant(c.input_gain),
-        },
-        direction: if velocity < 0.0 { -1.0 } else { 1.0 },
-        region,
-    }
-}
-
-/// The moment that a law sees at a sample, in its first region.
-pub(crate) fn plain_moment(path: &Path, index: usize, coefficients: &Coefficients<f64>) -> Moment<f64> {
-    let at = |list: &[f64]| list.get(index).copied().unwrap_or(0.0);
-    let velocity = at(&path.motion.velocity);
-    Moment {
-        time: at(&path.times),
-        position: at(&path.motion.position),
-        velocity,
-        input: at(&path.input),
-        hidden: [0.0; MOST_HIDDEN],
-        nominal: *coefficients,
-        direction: if velocity < 0.0 { -1.0 } else { 1.0 },
-        region: 0,
-    }
-}
-
 /// κ = −∂τ/∂θ and γ = −∂τ/∂θ̇ of everything in the system at a sample.
-fn slopes(system: &System, path: &Path, index: usize, facts: &Scales) -> (f64, f64) {
-    let c = system.nominal().coefficients();
-    let (mut stiffness, mut damping) = (c.stiffness, c.damping);
-    let plain = plain_moment(path, index, &c);
-    for active in system.effects() {
-        let Effect::System(effect) = active.effect() else { continue };
-        let mut values = [0.0; MOST_PARAMETERS];
-        for (slot, value) in values.iter_mut().zip(active.values()) {
-            *slot = *value;
-        }
-        // A second body moves along at low frequency; a bent contact is a spring while it bends.
-        if effect == SystemEffect::FlexibleCoupling {
-            continue;
-        }
-        if let (SystemEffect::Hysteresis, &[torque, displacement, ..]) = (effect, &values) {
-            let deflection = plain.position - (c.rest_angle + facts.rest_moved);
-            let z = bent(deflection, plain.velocity / facts.frequency, displacement).z;
-            stiffness += torque * (1.0 - z * plain.direction).max(0.0) / displacement;
-            continue;
-        }
-        let region = effect.region(&values, &plain);
-        let torque = effect.torque(&values.map(Dual::<2>::from), &moment(path, index, system, region));
-        let [by_position, by_velocity] = torque.partials;
-        stiffness -= by_position;
-        damping -= by_velocity;
+fn slopes(
+    nominal: &Coefficients<f64>,
+    effects: &[(Candidate, Values<f64>)],
+    along: &Along<'_>,
+    index: usize,
+) -> (f64, f64) {
+    let (mut stiffness, mut damping) = (nominal.stiffness, nominal.damping);
+    let moment = along.moment(index);
+    for (candidate, values) in effects {
+        let [by_position, by_velocity] = candidate.stiffness_and_damping(values, &moment, along.facts);
+        stiffness += by_position;
+        damping += by_velocity;
     }
     (stiffness, damping)
 }

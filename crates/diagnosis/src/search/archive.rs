@@ -131,10 +131,10 @@ mod tests {
     use crate::evidence::score::calibrated_swing;
     use crate::fit::levenberg_marquardt::Fit;
     use crate::model::candidate::Candidate;
-    use dynamics::SystemEffect;
+    use crate::model::candidates::{FlexibleCoupling, Gravity, QuadraticDrag};
 
-    const GRAVITY: Candidate = Candidate::System(SystemEffect::Gravity);
-    const SECOND_BODY: Candidate = Candidate::System(SystemEffect::FlexibleCoupling);
+    const GRAVITY: Candidate = Candidate::new(&Gravity);
+    const SECOND_BODY: Candidate = Candidate::new(&FlexibleCoupling);
 
     #[test]
     fn a_search_led_by_what_does_not_stay_is_made_again_without_it() {
@@ -150,7 +150,7 @@ mod tests {
             rejected: Vec::new(),
         };
         let found = pool(&[&base, &leader, &other]);
-        let all = [GRAVITY, SECOND_BODY, Candidate::System(SystemEffect::QuadraticDrag)];
+        let all = [GRAVITY, SECOND_BODY, Candidate::new(&QuadraticDrag)];
         assert_eq!(found.misled(&pool(&[&base, &leader]), &all), None);
         let (known, others) = found.misled(&pool(&[&base, &other]), &all).unwrap();
         assert_eq!(known, [other]);

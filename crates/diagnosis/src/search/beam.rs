@@ -134,7 +134,7 @@ fn around(
     let size = base.hypothesis.candidates.iter().filter(|c| c.counts()).count();
     let ranked = singles(&dictionary);
     let time = base.autocorrelation_time();
-    let counts = |gain: &Gain| dictionary.candidate(gain).is_none_or(Candidate::counts);
+    let counts = |gain: &Gain| dictionary.candidate(gain).is_none_or(|own| own.counts());
     for gain in ranked.iter().filter(|gain| !counts(gain)) {
         if best && stands_out(base, time, gain.squares, threshold, 1.0) {
             proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));

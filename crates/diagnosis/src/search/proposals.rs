@@ -4,7 +4,7 @@ use crate::data::scales::Scales;
 use crate::data::segments::Data;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit, squares};
 use crate::model::candidate::Candidate;
-use crate::model::dictionary::{Dictionary, Gain, shapes};
+use crate::model::dictionary::{Dictionary, Gain};
 use crate::model::hypothesis::Hypothesis;
 use crate::search::archive::{Archive, gone};
 use rayon::prelude::*;
@@ -103,7 +103,7 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
     for (&special, part) in base.hypothesis.candidates.iter().zip(parts) {
         let Some(size) = part.first() else { continue };
         for &general in candidates.iter().filter(|general| general.generalizes() == Some(special)) {
-            for shape in shapes(general, &data.facts) {
+            for shape in general.shapes(&data.facts) {
                 let parameters = general.parameters(&data.facts);
                 let values = parameters.iter().zip(shape).enumerate();
                 let values = values.map(|(place, (parameter, shape))| match place {
@@ -165,12 +165,11 @@ mod tests {
     use crate::evidence::score::calibrated_swing;
     use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, squares};
     use crate::model::candidate::Candidate;
+    use crate::model::candidates::{CoulombFriction, Hysteresis, QuadraticDrag};
     use crate::search::archive::Archive;
-    use dynamics::SystemEffect;
-
-    const COULOMB: Candidate = Candidate::System(SystemEffect::CoulombFriction);
-    const DRAG: Candidate = Candidate::System(SystemEffect::QuadraticDrag);
-    const HYSTERESIS: Candidate = Candidate::System(SystemEffect::Hysteresis);
+    const COULOMB: Candidate = Candidate::new(&CoulombFriction);
+    const DRAG: Candidate = Candidate::new(&QuadraticDrag);
+    const HYSTERESIS: Candidate = Candidate::new(&Hysteresis);
 
     /// A decaying swing, and the simulator calibrated to it with members of some parameters.
     fn swing(members: &[(Candidate, &[f64])]) -> (Data, Fit) {

@@ -3,7 +3,8 @@
 use crate::data::segments::Data;
 use crate::evidence::weights::Weighed;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
-use crate::model::candidate::{Candidate, EvidenceClass};
+use crate::model::candidate::Candidate;
+use crate::model::candidates::EvidenceClass;
 use crate::search::archive::{Archive, vanished};
 use crate::search::proposals::{fit_all, generalized};
 use rayon::prelude::*;

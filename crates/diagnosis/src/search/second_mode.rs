@@ -6,6 +6,7 @@
 //! is driven all along shows it wherever the input has power, and as no line.
 
 use crate::data::segments::Data;
+use crate::model::candidates::Mode;
 use crate::model::projection::Projection;
 use crate::model::tangent::{Path, Step, matrix, stack};
 use crate::noise::spectrum::that_lie_apart;
@@ -20,15 +21,6 @@ const WIDTH: f64 = 0.02;
 /// Ratio of frequencies from which on two are not the same one.
 const APART: f64 = 1.1;
 
-/// A second body's frequency in rad/s and rate of decay in 1/s, its inertia, and what it would take away of the squares.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct SecondMode {
-    pub(crate) frequency: f64,
-    pub(crate) rate: f64,
-    pub(crate) inertia: f64,
-    pub(crate) gain: f64,
-}
-
 /// The most promising second bodies, the best first; none for records without an input.
 ///
 /// `residual` is projected on what the fit may not move.
@@ -38,7 +30,7 @@ pub(crate) fn driven_modes(
     projection: &Projection,
     residual: &DMatrix<f64>,
     most: usize,
-) -> Vec<SecondMode> {
+) -> Vec<Mode> {
     if !data.inputs.iter().any(Option::is_some) {
         return Vec::new();
     }
@@ -53,23 +45,23 @@ pub(crate) fn driven_modes(
         .collect();
     let mut columns = matrix(projection.rows(), &columns);
     projection.apply(&mut columns);
-    let mut modes: Vec<SecondMode> = frequencies
+    let mut modes: Vec<Mode> = frequencies
         .iter()
         .zip(columns.column_iter())
         .filter_map(|(&frequency, column)| {
             let score = column.dot(&residual.column(0));
             let inertia = score / column.norm_squared();
             let gain = score * inertia;
-            (inertia > 0.0 && gain.is_finite()).then_some(SecondMode {
+            (inertia > 0.0 && gain.is_finite()).then_some(Mode {
                 frequency,
                 rate: WIDTH * frequency,
-                inertia,
+                inertia: Some(inertia),
                 gain,
             })
         })
         .collect();
     modes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let ratio = |one: &SecondMode, other: &SecondMode| (one.frequency / other.frequency).ln().abs();
+    let ratio = |one: &Mode, other: &Mode| (one.frequency / other.frequency).ln().abs();
     that_lie_apart(modes, |one, other| ratio(one, other) > APART.ln(), most)
 }
 

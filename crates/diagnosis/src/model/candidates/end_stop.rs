@@ -1,0 +1,52 @@
+//! An elastic stop at one end of the swing.
+
+use super::{CandidateLaw, EvidenceClass, Parameter};
+use crate::data::scales::Scales;
+use dynamics::{Effect, SystemEffect};
+
+/// Places to begin with: distances from either end of the swing, relative to its span.
+const STOPS: [f64; 5] = [0.004, 0.015, 0.05, 0.12, 0.25];
+
+/// An elastic stop at one end of the swing: its place, its stiffness and its dissipation.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct EndStop;
+
+impl CandidateLaw for EndStop {
+    fn effect(&self) -> Effect {
+        Effect::System(SystemEffect::EndStop)
+    }
+
+    fn evidence_class(&self) -> EvidenceClass {
+        EvidenceClass::Play
+    }
+
+    fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
+        vec![
+            Parameter::shape("angle", facts.lowest, facts.highest),
+            Parameter::strength_up_to("stiffness", 1e5 * facts.stiffness),
+            Parameter::within("dissipation", 0.0, f64::INFINITY),
+        ]
+    }
+
+    fn is_non_negative(&self) -> bool {
+        true
+    }
+
+    fn is_flexible(&self) -> bool {
+        true
+    }
+
+    fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        let span = facts.highest - facts.lowest;
+        let upper = STOPS.iter().map(|part| facts.highest - part * span);
+        let lower = STOPS.iter().map(|part| facts.lowest + part * span);
+        upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
+    }
+
+    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        match (shape, coefficients) {
+            (&[angle, ..], &[stiffness]) => vec![angle, stiffness, 0.0],
+            _ => coefficients.to_vec(),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Classes of effects that explain alike.
+
+use crate::model::candidate::Candidate;
+use dynamics::{Class, Effect};
+
+/// A class of effects that explain alike: a record tells classes apart before it tells kinds within one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) enum EvidenceClass {
+    /// Dry friction of any kind.
+    Friction,
+    /// A restoring torque beside the spring's own.
+    Restoring,
+    /// A law of damping beside the viscous one.
+    Damping,
+    /// Play and stops.
+    Play,
+    /// A spring or a clock that drifts.
+    Drift,
+    /// A body tied on by a spring.
+    SecondBody,
+    /// A torque that repeats in time.
+    Forcing,
+    /// A constant torque.
+    Preload,
+    /// Delays and limits of the input.
+    Actuator,
+    /// What the sensor does to values.
+    Sensor,
+    /// What the host does to time stamps.
+    Stamps,
+}
+
+impl EvidenceClass {
+    /// The public id.
+    pub(crate) fn id(self) -> &'static str {
+        match self {
+            Self::Friction => "friction",
+            Self::Restoring => "restoring",
+            Self::Damping => "damping",
+            Self::Play => "play",
+            Self::Drift => "drift",
+            Self::SecondBody => "second_body",
+            Self::Forcing => "forcing",
+            Self::Preload => "preload",
+            Self::Actuator => "actuator",
+            Self::Sensor => "sensor",
+            Self::Stamps => "stamps",
+        }
+    }
+
+    /// The class of an effect: what its candidate's file says, or, where no fit follows the effect, what its part of a
+    /// gap budget says.
+    pub(crate) fn of(effect: Effect) -> Self {
+        Candidate::that_fits(effect).map_or_else(
+            || match effect.description().class {
+                Class::Clock => Self::Stamps,
+                Class::Sensor => Self::Sensor,
+                Class::Dissipative => Self::Damping,
+                Class::Conservative => Self::Restoring,
+                Class::TimeDependent => Self::Forcing,
+            },
+            |candidate| candidate.evidence_class(),
+        )
+    }
+}

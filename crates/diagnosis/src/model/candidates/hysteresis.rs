@@ -1,0 +1,93 @@
+//! Friction with a pre-sliding spring.
+
+use super::{Along, CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use crate::data::scales::Scales;
+use crate::model::candidate::Candidate;
+use crate::model::contact::bent;
+use dynamics::{Effect, Moment, SystemEffect, Values};
+
+/// Displacements to begin with, relative to the amplitude.
+const BENDING: [f64; 5] = [0.005, 0.02, 0.06, 0.2, 0.6];
+
+/// Friction with a pre-sliding spring: the torque once sliding, and the displacement over which it builds up.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Hysteresis;
+
+impl CandidateLaw for Hysteresis {
+    fn effect(&self) -> Effect {
+        Effect::System(SystemEffect::Hysteresis)
+    }
+
+    fn evidence_class(&self) -> EvidenceClass {
+        EvidenceClass::Friction
+    }
+
+    fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
+        let amplitude = facts.amplitude;
+        vec![
+            Parameter::strength("torque"),
+            Parameter::shape("displacement", 1e-3 * amplitude, 0.5 * amplitude),
+        ]
+    }
+
+    fn is_non_negative(&self) -> bool {
+        true
+    }
+
+    /// Hysteresis that builds up at once is Coulomb friction.
+    fn tends_to(&self) -> Option<Candidate> {
+        Some(Candidate::new(&CoulombFriction))
+    }
+
+    fn bending_displacement(&self) -> Option<usize> {
+        Some(1)
+    }
+
+    /// A bent contact is a spring while it bends.
+    fn stiffness_and_damping(
+        &self,
+        &[torque, displacement, ..]: &Values<f64>,
+        moment: &Moment<f64>,
+        facts: &Scales,
+    ) -> [f64; 2] {
+        let deflection = moment.position - (moment.nominal.rest_angle + facts.rest_moved);
+        let z = bent(deflection, moment.velocity / facts.frequency, displacement).z;
+        [torque * (1.0 - z * moment.direction).max(0.0) / displacement, 0.0]
+    }
+
+    fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(facts.amplitude, &BENDING, |displacement| vec![1.0, displacement])
+    }
+
+    fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
+        let &[_, displacement] = shape else { return Vec::new() };
+        vec![(along.respond)(&bending(displacement, along))]
+    }
+
+    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        match (shape, coefficients) {
+            (&[_, displacement], &[torque]) => vec![torque, displacement],
+            _ => coefficients.to_vec(),
+        }
+    }
+}
+
+/// −z along a motion, for Dahl's law: exact between samples of a motion in one direction.
+fn bending(displacement: f64, along: &Along<'_>) -> Vec<f64> {
+    let position = along.position;
+    let rest = along.nominal.rest_angle + along.facts.rest_moved;
+    let mut z = match (position.first(), along.velocity.first()) {
+        (Some(position), Some(velocity)) if !along.first => {
+            bent(position - rest, velocity / along.facts.frequency, displacement).z
+        }
+        _ => 0.0,
+    };
+    let mut torque = vec![-z];
+    for (before, after) in position.iter().zip(position.iter().skip(1)) {
+        let way = after - before;
+        let direction = if way < 0.0 { -1.0 } else { 1.0 };
+        z = direction - (direction - z) * (-way.abs() / displacement).exp();
+        torque.push(-z);
+    }
+    torque
+}

@@ -1,0 +1,52 @@
+//! An input that acts late.
+
+use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid, held, secant};
+use crate::data::scales::Scales;
+use dynamics::{Effect, Nominal, SystemEffect};
+
+/// Delays to begin with, relative to a radian of the swing.
+const DELAYS: [f64; 2] = [0.01, 0.1];
+
+/// An input that acts late, by less than a radian of the swing.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct InputDelay;
+
+impl CandidateLaw for InputDelay {
+    fn effect(&self) -> Effect {
+        Effect::System(SystemEffect::InputDelay)
+    }
+
+    fn evidence_class(&self) -> EvidenceClass {
+        EvidenceClass::Actuator
+    }
+
+    fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
+        vec![Parameter::strength_up_to("delay", 1.0 / facts.frequency)]
+    }
+
+    fn is_non_negative(&self) -> bool {
+        true
+    }
+
+    fn applies(&self, facts: &Scales, _nominal: &Nominal) -> bool {
+        facts.input_torque > 0.0
+    }
+
+    fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(1.0 / facts.frequency, &DELAYS, |delay| vec![delay])
+    }
+
+    /// What the input's torque of before would change.
+    fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
+        let &[delay] = shape else { return Vec::new() };
+        let shifted = along.times.iter().zip(along.input).map(|(time, now)| {
+            along.command.map_or(0.0, |input| along.nominal.input_gain * held(input, time - delay) - now)
+        });
+        vec![(along.respond)(&shifted.collect::<Vec<f64>>())]
+    }
+
+    /// The shape is the parameter itself; the coefficient of its secant corrects it within reason.
+    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        secant(shape, coefficients)
+    }
+}

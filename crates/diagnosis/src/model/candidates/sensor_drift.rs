@@ -1,0 +1,48 @@
+//! A sensor whose zero drifts.
+
+use super::{Along, CandidateLaw, EvidenceClass, Parameter};
+use crate::data::scales::Scales;
+use crate::model::sensor::{Observed, Sensor};
+use dynamics::{ChainEffect, Effect};
+
+/// A sensor whose zero drifts.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct SensorDrift;
+
+impl CandidateLaw for SensorDrift {
+    fn effect(&self) -> Effect {
+        Effect::MeasuringChain(ChainEffect::SensorDrift)
+    }
+
+    fn evidence_class(&self) -> EvidenceClass {
+        EvidenceClass::Sensor
+    }
+
+    fn parameters(&self, _facts: &Scales) -> Vec<Parameter> {
+        vec![Parameter::any("rate")]
+    }
+
+    fn is_non_negative(&self) -> bool {
+        false
+    }
+
+    fn is_flexible(&self) -> bool {
+        true
+    }
+
+    fn resembles(&self) -> &'static [&'static str] {
+        &["stiffness_drift"]
+    }
+
+    fn columns(&self, _shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
+        vec![along.times.to_vec()]
+    }
+
+    fn read(&self, values: &[f64], sensor: &mut Sensor) {
+        sensor.drift = values.first().copied();
+    }
+
+    fn sensor_derivative(&self, _parameter: usize) -> Option<usize> {
+        Some(Observed::BY_DRIFT)
+    }
+}

@@ -1,0 +1,81 @@
+//! Friction that falls with speed.
+
+use super::{CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use crate::data::scales::Scales;
+use crate::model::candidate::Candidate;
+use dynamics::{Effect, SystemEffect};
+
+/// Stribeck velocities to begin with, relative to the largest speed.
+const SPEEDS: [f64; 3] = [0.02, 0.06, 0.2];
+
+/// Friction that falls with speed: Coulomb's torque, the excess of the static torque over it, so that this stays at least
+/// the first, and the velocity over which the excess is lost.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct StribeckFriction;
+
+impl CandidateLaw for StribeckFriction {
+    fn effect(&self) -> Effect {
+        Effect::System(SystemEffect::StribeckFriction)
+    }
+
+    fn evidence_class(&self) -> EvidenceClass {
+        EvidenceClass::Friction
+    }
+
+    fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
+        let torque = if facts.friction_known { 0.0 } else { f64::INFINITY };
+        vec![
+            Parameter::within("torque", 0.0, torque),
+            Parameter::strength("static_torque"),
+            Parameter::simplifying_shape("velocity", 1e-3 * facts.speed, 0.5 * facts.speed),
+        ]
+    }
+
+    fn is_non_negative(&self) -> bool {
+        true
+    }
+
+    /// Without its excess it is Coulomb friction.
+    fn generalizes(&self) -> Option<Candidate> {
+        Some(Candidate::new(&CoulombFriction))
+    }
+
+    fn values(&self, fitted: &[f64]) -> Vec<f64> {
+        let mut values = fitted.to_vec();
+        if let [torque, excess, _] = values.as_mut_slice() {
+            *excess += *torque;
+        }
+        values
+    }
+
+    fn fitted(&self, values: &[f64]) -> Vec<f64> {
+        let mut fitted = values.to_vec();
+        if let [torque, excess, _] = fitted.as_mut_slice() {
+            *excess -= *torque;
+        }
+        fitted
+    }
+
+    fn slopes(&self, _fitted: &[f64]) -> Vec<(usize, usize, f64)> {
+        vec![(1, 0, 1.0)]
+    }
+
+    fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
+        grid(facts.speed, &SPEEDS, |velocity| vec![1.0, 1.0, velocity])
+    }
+
+    /// Coulomb's part and the excess. Where the nominal simulator has the first it would be the same number once more.
+    fn unit_values(&self, shape: &[f64], facts: &Scales) -> Vec<Vec<f64>> {
+        let &[_, _, velocity] = shape else { return Vec::new() };
+        let both = [vec![1.0, 1.0, velocity], vec![0.0, 1.0, velocity]];
+        both.into_iter().skip(usize::from(facts.friction_known)).collect()
+    }
+
+    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        match (shape, coefficients) {
+            (&[_, _, velocity], &[torque, excess]) => vec![torque, excess, velocity],
+            (&[_, _, velocity], &[excess]) => vec![0.0, excess, velocity],
+            _ => coefficients.to_vec(),
+        }
+    }
+}

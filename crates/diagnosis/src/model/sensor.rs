@@ -1,0 +1,121 @@
+//! What the sensor does to the motion before a reading is written down.
+
+/// What the sensor does to the motion: the smooth effects of the measuring chain, in their physical order.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Sensor {
+    pub(crate) lag: Option<f64>,
+    pub(crate) nonlinearity: Option<(f64, f64)>,
+    pub(crate) drift: Option<f64>,
+    pub(crate) clock: Option<f64>,
+    pub(crate) saturation: Option<f64>,
+    /// How far readings stay behind, in either direction: [`crate::measurement::encoder_hysteresis`]. Not a map of one value.
+    pub(crate) reading: Option<f64>,
+}
+
+/// An observed value with its derivatives.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Observed {
+    pub(crate) value: f64,
+    /// With respect to the observed quantity, its first and its second time derivative.
+    pub(crate) by_motion: [f64; 3],
+    /// With respect to the parameters of what the sensor does, at the places below.
+    pub(crate) by_parameter: [f64; 6],
+}
+
+impl Observed {
+    /// Places in [`Self::by_parameter`]: a lag, a nonlinearity's amplitude and phase, a drift, a clock's change, a bound.
+    pub(crate) const BY_LAG: usize = 0;
+    pub(crate) const BY_AMPLITUDE: usize = 1;
+    pub(crate) const BY_PHASE: usize = 2;
+    pub(crate) const BY_DRIFT: usize = 3;
+    pub(crate) const BY_CLOCK: usize = 4;
+    pub(crate) const BY_BOUND: usize = 5;
+}
+
+impl Sensor {
+    /// The true time at which a sample stamped `stamp` was taken: stamp = t + ½·r′·t².
+    pub(crate) fn true_time(&self, stamp: f64) -> f64 {
+        // 2·s/(1 + √(1 + 2·r′·s)) is the root near s, without cancellation where r′ is small.
+        self.clock.map_or(stamp, |change| 2.0 * stamp / (1.0 + (1.0 + 2.0 * change * stamp).max(0.0).sqrt()))
+    }
+
+    /// What the sensor shows where the observed quantity is `x` with time derivatives `rate` and `curvature`.
+    ///
+    /// The lag is expanded to second order: x − T·ẋ + T²·ẍ, which settles at once. That is the low-pass's own
+    /// answer up to (ω·T)³.
+    pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
+        let mut by_motion = [1.0, 0.0, 0.0];
+        let mut by_parameter = [0.0; 6];
+        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
+        let mut value = x;
+        if let Some(lag) = self.lag {
+            value += -lag * rate + lag * lag * curvature;
+            by_motion = [1.0, -lag, lag * lag];
+            *by_lag = -rate + 2.0 * lag * curvature;
+        }
+        // dt/dr′ at a given stamp, less that of the start: the start state moves along.
+        *by_clock = -0.5 * (time * time - start * start) * rate;
+        if let Some((amplitude, phase)) = self.nonlinearity {
+            let (sine, cosine) = (value + phase).sin_cos();
+            value += amplitude * sine;
+            let slope = 1.0 + amplitude * cosine;
+            by_motion = by_motion.map(|d| d * slope);
+            *by_lag *= slope;
+            *by_clock *= slope;
+            *by_amplitude = sine;
+            *by_phase = amplitude * cosine;
+        }
+        if let Some(drift) = self.drift {
+            value += drift * time;
+        }
+        *by_drift = time;
+        if let Some(bound) = self.saturation {
+            if value.abs() > bound {
+                value = bound * value.signum();
+                by_motion = [0.0; 3];
+                by_parameter = [0.0, 0.0, 0.0, 0.0, 0.0, value.signum()];
+            } else {
+                *by_bound = 0.0;
+            }
+        }
+        Observed { value, by_motion, by_parameter }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Sensor;
+
+    /// Derivatives of the sensor's map against central differences.
+    #[test]
+    fn a_sensors_derivatives_are_those_of_its_values() {
+        let full = Sensor {
+            lag: Some(0.004),
+            nonlinearity: Some((0.02, 0.4)),
+            drift: Some(0.003),
+            clock: Some(1e-3),
+            saturation: Some(5.0),
+            reading: None,
+        };
+        let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
+        let at = full.observe(x, rate, curvature, time, 0.0);
+        let h = 1e-6;
+        let slope = |plus: f64, minus: f64| (plus - minus) / (2.0 * h);
+        let by_x = slope(
+            full.observe(x + h, rate, curvature, time, 0.0).value,
+            full.observe(x - h, rate, curvature, time, 0.0).value,
+        );
+        assert!((by_x - at.by_motion[0]).abs() < 1e-8);
+        let lag =
+            |d: f64| Sensor { lag: Some(0.004 + d), ..full }.observe(x, rate, curvature, time, 0.0).value;
+        assert!((slope(lag(h), lag(-h)) - at.by_parameter[0]).abs() < 1e-6);
+        let phase = |d: f64| {
+            Sensor { nonlinearity: Some((0.02, 0.4 + d)), ..full }
+                .observe(x, rate, curvature, time, 0.0)
+                .value
+        };
+        assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
+        let stamp = full.true_time(time);
+        assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);
+    }
+}
