@@ -5,6 +5,8 @@ pub(crate) mod confidence;
 pub(crate) mod context;
 pub(crate) mod determined;
 pub(crate) mod discrepancy;
+#[allow(dead_code, reason = "the verdict asks it next")]
+pub(crate) mod half_swings;
 pub(crate) mod held_out;
 pub(crate) mod inclusion;
 pub(crate) mod left_over;

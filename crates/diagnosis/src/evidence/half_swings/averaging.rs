@@ -1,0 +1,80 @@
+//! Laws averaged over half a swing.
+
+use dynamics::{Coefficients, Law, Moment, Values};
+use std::f64::consts::PI;
+
+/// The restoring torque per inertia, ω²·(x + γ₃·x³ + γ₅·x⁵), as the durations of the swings have it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Restoring {
+    pub(crate) angular_frequency: f64,
+    pub(crate) cubic: f64,
+    pub(crate) quintic: f64,
+}
+
+/// Nodes of the quadrature over half a swing.
+const NODES: usize = 24;
+
+impl Restoring {
+    /// The restoring torque whose period at amplitude A is T₀·(1 + b₁·A² + b₂·A⁴).
+    ///
+    /// # Reference
+    /// Nayfeh, Mook, Nonlinear Oscillations, Wiley 1979, section 2.3: T/T₀ = 1 − 3/8·γ₃·A² + (57/256·γ₃² − 5/16·γ₅)·A⁴.
+    pub(crate) fn of_period(angular_frequency: f64, [first, second]: [f64; 2]) -> Self {
+        let cubic = -8.0 / 3.0 * first;
+        let quintic = 16.0 / 5.0 * (57.0 / 256.0 * cubic * cubic - second);
+        Self { angular_frequency, cubic, quintic }
+    }
+
+    /// Torque per inertia over ω².
+    fn torque(&self, x: f64) -> f64 {
+        x * (1.0 + x * x * (self.cubic + x * x * self.quintic))
+    }
+
+    /// Velocity at A·sin ψ in a swing of amplitude A, from its energy.
+    fn velocity(&self, amplitude: f64, sine: f64) -> f64 {
+        let (a, s) = (amplitude * amplitude, sine * sine);
+        let bend = 0.5 * self.cubic * a * (1.0 + s) + self.quintic * a * a * (1.0 + s + s * s) / 3.0;
+        let square = (1.0 - s) * (1.0 + bend).max(0.05);
+        self.angular_frequency * amplitude * square.max(0.0).sqrt()
+    }
+
+    /// Amplitude that an effect takes from half a swing; its values are per unit of inertia.
+    pub(crate) fn loss<L: Law>(&self, values: &Values<f64>, amplitude: f64) -> f64 {
+        self.averaged(amplitude, |moment| L::torque(values, moment))
+    }
+
+    /// Amplitude that viscous damping with a coefficient per unit of inertia takes from half a swing.
+    pub(crate) fn viscous(&self, coefficient: f64, amplitude: f64) -> f64 {
+        self.averaged(amplitude, |moment| -coefficient * moment.velocity)
+    }
+
+    /// The work −∫ torque dx from −A to A over the restoring torque at A (Krylov–Bogoliubov averaging of the energy).
+    fn averaged(&self, amplitude: f64, torque: impl Fn(&Moment<f64>) -> f64) -> f64 {
+        let step = PI / NODES as f64;
+        let nominal = Coefficients {
+            inertia: 1.0,
+            damping: 1.0,
+            stiffness: self.angular_frequency.powi(2),
+            rest_angle: 0.0,
+            input_gain: 0.0,
+        };
+        let work: f64 = (0..NODES)
+            .map(|node| {
+                let (sine, cosine) = (step * (node as f64 + 0.5) - 0.5 * PI).sin_cos();
+                let moment = Moment {
+                    time: 0.0,
+                    position: amplitude * sine,
+                    velocity: self.velocity(amplitude, sine),
+                    input: 0.0,
+                    hidden: [0.0; dynamics::MOST_HIDDEN],
+                    nominal,
+                    direction: 1.0,
+                    region: 0,
+                };
+                -torque(&moment) * amplitude * cosine * step
+            })
+            .sum();
+        let force = self.torque(amplitude).max(0.05 * amplitude);
+        work / (self.angular_frequency.powi(2) * force)
+    }
+}

@@ -1,0 +1,348 @@
+//! Half swings as a witness: amplitude, duration and center of every half swing over a whole record, and what they say
+//! for laws of loss and of the restoring torque.
+//!
+//! Segments with start states of their own forget what the amplitude did over a whole record; half swings do not. Phase
+//! is what real disturbances reach first and amplitude is quiet, so that this is a second witness with other weaknesses
+//! than a fit's. It tells classes of laws, not kinds within a class.
+
+mod averaging;
+mod regression;
+#[cfg(test)]
+#[allow(clippy::print_stdout, reason = "a table is read, not only checked")]
+mod tests;
+mod turning_points;
+
+use crate::data::observations::Observations;
+use crate::noise::statistics::autocorrelation_time;
+use averaging::Restoring;
+use dynamics::effects::{CoulombFriction, QuadraticDrag};
+use record::Quantity;
+pub(crate) use regression::Estimate;
+use regression::{Hypothesis, Increments, Prior, by_replacement, hypotheses};
+use turning_points::{Turn, turning_points};
+
+/// Half a swing, from one turning point to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct HalfSwing {
+    /// Number of the record it belongs to.
+    pub(crate) record: usize,
+    /// Middle between its turning points, in seconds since the record's first sample.
+    pub(crate) time_s: f64,
+    /// Half the distance of its turning points, in the observed unit, with its standard error from the noise.
+    pub(crate) amplitude: Estimate,
+    /// Time between its turning points in seconds.
+    pub(crate) duration_s: Estimate,
+    /// Mean of its turning points.
+    pub(crate) center: Estimate,
+}
+
+/// Evidence of half swings for laws: natural logarithms of evidence by replacement, that is of the best combination with
+/// the law less the best without it. `None` where the records cannot tell.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub(crate) struct Witness {
+    /// Number of half swings.
+    pub(crate) count: usize,
+    /// Number of independent ones among them, by what the best law of loss leaves of the amplitudes.
+    pub(crate) effective: f64,
+    /// Loss that does not depend on the amplitude: dry friction.
+    pub(crate) friction: Option<f64>,
+    /// Loss that grows with the amplitude's square: quadratic drag.
+    pub(crate) drag: Option<f64>,
+    /// Loss in proportion to the amplitude.
+    pub(crate) viscous: Option<f64>,
+    /// Duration that depends on even powers of the amplitude: cubic stiffness, gravity.
+    pub(crate) even_stiffness: Option<f64>,
+    /// Duration that depends on time: a drifting stiffness or clock.
+    pub(crate) period_drift: Option<f64>,
+    /// Center that depends on the amplitude's square: asymmetric stiffness, a weight at an angle.
+    pub(crate) asymmetric: Option<f64>,
+    /// Center that depends on time: a drifting sensor or rest position.
+    pub(crate) center_drift: Option<f64>,
+    /// Duration that grows with 1/A: play, a dead band.
+    pub(crate) play: Option<f64>,
+    /// Amplitude that dry friction takes from half a swing, in the observed unit.
+    pub(crate) dry_loss: Estimate,
+    /// Share of the amplitude that viscous damping takes from half a swing.
+    pub(crate) viscous_loss: Estimate,
+    /// Share of the amplitude that quadratic drag takes from half a swing, per unit of amplitude.
+    pub(crate) quadratic_loss: Estimate,
+    /// Relative change of the duration from small amplitudes to the largest.
+    pub(crate) softening: Estimate,
+}
+
+/// Half swings of records of one system, and what they say.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct HalfSwings {
+    pub(crate) swings: Vec<HalfSwing>,
+    pub(crate) witness: Witness,
+}
+
+/// Fewest half swings that say anything of laws.
+const FEWEST: usize = 8;
+/// Largest relative change of the duration that is thought of before, over the amplitudes or over the record.
+const LARGEST_CHANGE: f64 = 0.5;
+/// Largest shift of the center that is thought of before, over the largest amplitude.
+const LARGEST_SHIFT: f64 = 0.5;
+
+/// A run of successive turning points of a record.
+struct Run {
+    record: usize,
+    turns: Vec<Turn>,
+    swings: Vec<HalfSwing>,
+}
+
+/// Half swings of all freely swinging records of a system and their evidence for laws; `None` where no record swings
+/// freely or fewer than two half swings stand out.
+///
+/// `kept` tells which samples are no outliers and belong to the free swing; `angular_frequency` in rad/s is what the
+/// nominal simulator expects, a hint within a factor of two. Records that are driven, or of a velocity or acceleration,
+/// are left out. Laws are shared by all records, amplitudes are their own.
+pub(crate) fn half_swings(
+    records: &[Observations],
+    kept: &[Vec<bool>],
+    angular_frequency: f64,
+) -> Option<HalfSwings> {
+    let mut runs = Vec::new();
+    for (number, (record, kept)) in records.iter().zip(kept).enumerate() {
+        if record.input.is_none() && record.quantity == Quantity::Position {
+            let found = turning_points(record, kept, angular_frequency);
+            runs.extend(found.into_iter().map(|turns| Run {
+                record: number,
+                swings: swings(number, &turns),
+                turns,
+            }));
+        }
+    }
+    let swings: Vec<HalfSwing> = runs.iter().flat_map(|run| run.swings.iter().copied()).collect();
+    if swings.len() < 2 {
+        return None;
+    }
+    let witness = if swings.len() < FEWEST {
+        Witness { count: swings.len(), effective: swings.len() as f64, ..Witness::default() }
+    } else {
+        witness(&runs, &swings)
+    };
+    Some(HalfSwings { swings, witness })
+}
+
+fn swings(record: usize, turns: &[Turn]) -> Vec<HalfSwing> {
+    let pairs = turns.windows(2).filter_map(|pair| match pair {
+        [one, next] => Some((one, next)),
+        _ => None,
+    });
+    pairs
+        .map(|(one, next)| {
+            let error = 0.5 * (one.value_variance + next.value_variance).sqrt();
+            HalfSwing {
+                record,
+                time_s: 0.5 * (one.time_s + next.time_s),
+                amplitude: Estimate { value: 0.5 * (next.value - one.value).abs(), error },
+                duration_s: Estimate {
+                    value: next.time_s - one.time_s,
+                    error: (one.time_variance + next.time_variance).sqrt(),
+                },
+                center: Estimate { value: 0.5 * (next.value + one.value), error },
+            }
+        })
+        .collect()
+}
+
+fn witness(runs: &[Run], swings: &[HalfSwing]) -> Witness {
+    let mut witness = Witness { count: swings.len(), ..Witness::default() };
+    let durations = durations(runs, swings, &mut witness);
+    let restoring = restoring(durations.as_ref(), swings);
+    losses(runs, swings, &restoring, &mut witness);
+    centers(runs, swings, &mut witness);
+    witness
+}
+
+fn largest(swings: &[HalfSwing]) -> f64 {
+    swings.iter().map(|swing| swing.amplitude.value).fold(f64::MIN_POSITIVE, f64::max)
+}
+
+fn span(swings: &[HalfSwing]) -> f64 {
+    let times = || swings.iter().map(|swing| swing.time_s);
+    (times().fold(f64::MIN, f64::max) - times().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
+}
+
+/// Terms of the durations.
+const CONSTANT: usize = 0;
+const SQUARE: usize = 1;
+const FOURTH: usize = 2;
+const TIME: usize = 3;
+const INVERSE: usize = 4;
+
+/// Durations over even powers of the amplitude, time and 1/A; gives the best combination.
+fn durations(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) -> Option<Hypothesis> {
+    let (most, span) = (largest(swings), span(swings));
+    let typical =
+        crate::noise::statistics::median(&swings.iter().map(|s| s.duration_s.value).collect::<Vec<_>>());
+    let least = swings.iter().map(|swing| swing.amplitude.value / most).fold(1.0, f64::min);
+    let increments: Vec<Increments> = runs
+        .iter()
+        .map(|run| {
+            let each = |term: &dyn Fn(&HalfSwing) -> f64| run.swings.iter().map(term).collect::<Vec<f64>>();
+            let part = |swing: &HalfSwing| swing.amplitude.value / most;
+            let variances: Vec<f64> = run.swings.iter().map(|swing| swing.duration_s.error.powi(2)).collect();
+            let shared = run.turns.iter().skip(1).map(|turn| -turn.time_variance).collect();
+            Increments {
+                values: each(&|swing| swing.duration_s.value),
+                terms: vec![
+                    each(&|_| 1.0),
+                    each(&|swing| part(swing).powi(2)),
+                    each(&|swing| part(swing).powi(4)),
+                    each(&|swing| swing.time_s / span),
+                    each(&|swing| least / part(swing)),
+                ],
+                covariance: [variances, shared, vec![0.0; run.swings.len()]],
+            }
+        })
+        .collect();
+    let change = LARGEST_CHANGE * typical;
+    let priors = [
+        Prior::Always,
+        Prior::Within(change),
+        Prior::Within(change),
+        Prior::Within(change),
+        Prior::UpTo(change),
+    ];
+    // A fourth power only beside a second.
+    let allowed = |acts: &[bool]| {
+        !acts.get(FOURTH).is_some_and(|acts| *acts) || acts.get(SQUARE).is_some_and(|acts| *acts)
+    };
+    let found = hypotheses(&increments, &priors, &allowed);
+    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
+    witness.even_stiffness = inclusion(SQUARE);
+    witness.period_drift = inclusion(TIME);
+    witness.play = inclusion(INVERSE);
+    let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
+    let base = of(CONSTANT).value;
+    let error = of(SQUARE).error.hypot(of(FOURTH).error) / base;
+    witness.softening = Estimate { value: (of(SQUARE).value + of(FOURTH).value) / base, error };
+    Some(best)
+}
+
+/// The restoring torque that the durations tell.
+fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing]) -> Restoring {
+    let of = |term: usize| {
+        durations.and_then(|found| found.coefficients.get(term)).map_or(0.0, |estimate| estimate.value)
+    };
+    let base = of(CONSTANT).max(f64::MIN_POSITIVE);
+    let most = largest(swings);
+    Restoring::of_period(
+        std::f64::consts::PI / base,
+        [of(SQUARE) / base / most.powi(2), of(FOURTH) / base / most.powi(4)],
+    )
+}
+
+/// Increments of what turning points measure on either side: a half swing's amplitude or center, whose errors are
+/// shared with the next but one.
+fn of_turns(
+    run: &Run,
+    measured: &dyn Fn(&HalfSwing) -> f64,
+    terms: &[&dyn Fn(&HalfSwing, &HalfSwing) -> f64],
+) -> Increments {
+    let steps = || {
+        run.swings.windows(2).filter_map(|pair| match pair {
+            [one, next] => Some((one, next)),
+            _ => None,
+        })
+    };
+    let ends = run.turns.iter().zip(run.turns.iter().skip(2));
+    let variances: Vec<f64> =
+        ends.map(|(from, to)| 0.25 * (from.value_variance + to.value_variance)).collect();
+    let shared = run.turns.iter().skip(2).map(|turn| -0.25 * turn.value_variance).collect();
+    Increments {
+        values: steps().map(|(one, next)| measured(next) - measured(one)).collect(),
+        terms: terms.iter().map(|term| steps().map(|(one, next)| term(one, next)).collect()).collect(),
+        covariance: [variances, vec![0.0; run.swings.len()], shared],
+    }
+}
+
+/// Loss of amplitude as dry, viscous and quadratic, each averaged over the swing that the durations tell.
+fn losses(runs: &[Run], swings: &[HalfSwing], restoring: &Restoring, witness: &mut Witness) {
+    let most = largest(swings);
+    let omega = restoring.angular_frequency;
+    // Units: half the amplitude, and shares of the amplitude, lost in a harmonic half swing.
+    let dry = |a: f64| restoring.loss::<CoulombFriction>(&[0.5 * omega * omega, 0.0, 0.0, 0.0], a);
+    let viscous = |a: f64| restoring.viscous(2.0 * omega / std::f64::consts::PI, a);
+    let quadratic = |a: f64| restoring.loss::<QuadraticDrag>(&[0.75, 0.0, 0.0, 0.0], a);
+    let mean = |law: &dyn Fn(f64) -> f64, one: &HalfSwing, next: &HalfSwing| {
+        -0.5 * (law(one.amplitude.value) + law(next.amplitude.value))
+    };
+    let increments: Vec<Increments> = runs
+        .iter()
+        .map(|run| {
+            of_turns(
+                run,
+                &|swing| swing.amplitude.value,
+                &[
+                    &|one, next| mean(&dry, one, next),
+                    &|one, next| mean(&viscous, one, next),
+                    &|one, next| mean(&quadratic, one, next),
+                ],
+            )
+        })
+        .collect();
+    // A coefficient is at most what explains all that is lost.
+    let lost: f64 = -increments.iter().flat_map(|run| &run.values).sum::<f64>();
+    let bound = |term: usize| {
+        let all: f64 = -increments.iter().filter_map(|run| run.terms.get(term)).flatten().sum::<f64>();
+        Prior::UpTo((lost / all).max(1e-6 * most / all.max(f64::MIN_POSITIVE)))
+    };
+    let found = hypotheses(&increments, &[bound(0), bound(1), bound(2)], &|_| true);
+    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
+    witness.friction = inclusion(0);
+    witness.viscous = inclusion(1);
+    witness.drag = inclusion(2);
+    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else { return };
+    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
+    (witness.dry_loss, witness.viscous_loss, witness.quadratic_loss) = (of(0), of(1), of(2));
+    witness.effective = effective(&increments, best);
+}
+
+/// Number of independent amplitudes by what a combination leaves of them.
+fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
+    let pieces: Vec<Vec<f64>> = increments
+        .iter()
+        .map(|run| {
+            let mut level = 0.0;
+            let mut levels = vec![0.0];
+            for (at, value) in run.values.iter().enumerate() {
+                let explained = run.terms.iter().zip(&best.coefficients);
+                level += value
+                    - explained.map(|(term, c)| c.value * term.get(at).copied().unwrap_or(0.0)).sum::<f64>();
+                levels.push(level);
+            }
+            let mean = levels.iter().sum::<f64>() / levels.len() as f64;
+            levels.iter().map(|level| level - mean).collect()
+        })
+        .collect();
+    let count: usize = pieces.iter().map(Vec::len).sum();
+    let pieces: Vec<&[f64]> = pieces.iter().map(Vec::as_slice).collect();
+    count as f64 / autocorrelation_time(&pieces).max(2.0)
+}
+
+/// Centers over the amplitude's square and time.
+fn centers(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) {
+    let (most, span) = (largest(swings), span(swings));
+    let increments: Vec<Increments> = runs
+        .iter()
+        .map(|run| {
+            of_turns(
+                run,
+                &|swing| swing.center.value,
+                &[
+                    &|one, next| (next.amplitude.value.powi(2) - one.amplitude.value.powi(2)) / (most * most),
+                    &|one, next| (next.time_s - one.time_s) / span,
+                ],
+            )
+        })
+        .collect();
+    let within = Prior::Within(LARGEST_SHIFT * most);
+    let found = hypotheses(&increments, &[within, within], &|_| true);
+    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
+    witness.asymmetric = inclusion(0);
+    witness.center_drift = inclusion(1);
+}

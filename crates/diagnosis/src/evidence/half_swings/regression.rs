@@ -1,0 +1,255 @@
+//! Regression of increments from swing to swing whose errors are those of the turning points and a random walk beside.
+//!
+//! An increment holds the errors of the two turning points it spans, with opposite signs, so that they do not add up
+//! over the record; what no law explains (a discrepancy of each swing) does add up. Their ratio is not known: the
+//! evidence is its mean over a grid of ratios, and the common scale is integrated out.
+
+use nalgebra::{DMatrix, DVector};
+use statrs::distribution::{ContinuousCDF, Normal};
+use statrs::function::gamma::ln_gamma;
+use std::f64::consts::PI;
+
+/// Increments of one run of swings.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Increments {
+    pub(crate) values: Vec<f64>,
+    /// One list a term, each as long as the values.
+    pub(crate) terms: Vec<Vec<f64>>,
+    /// Covariance of the measured values: variances, and covariances with the next and the next but one.
+    pub(crate) covariance: [Vec<f64>; 3],
+}
+
+/// What is known of a term's coefficient before.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Prior {
+    /// Part of every hypothesis.
+    Always,
+    /// Evenly distributed from 0 to a largest value.
+    UpTo(f64),
+    /// Evenly distributed between minus and plus a largest value.
+    Within(f64),
+}
+
+/// A coefficient with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(crate) struct Estimate {
+    pub(crate) value: f64,
+    pub(crate) error: f64,
+}
+
+/// One hypothesis: which terms act, its log evidence, their coefficients (0 for those that do not act).
+#[derive(Debug, Clone)]
+pub(crate) struct Hypothesis {
+    pub(crate) acts: Vec<bool>,
+    pub(crate) evidence: f64,
+    pub(crate) coefficients: Vec<Estimate>,
+    /// Variance that the discrepancy of a swing adds, over that of a measured increment.
+    pub(crate) ratio: f64,
+}
+
+/// Powers of ten of the discrepancy's variance over a measured increment's, half a power apart, and none.
+const RATIOS: std::ops::RangeInclusive<i32> = -12..=6;
+
+/// Inner products of the whitened increments at one ratio.
+struct Whitened {
+    ratio: f64,
+    normal: DMatrix<f64>,
+    right: DVector<f64>,
+    squares: f64,
+    log_determinant: f64,
+    count: usize,
+}
+
+/// All sets of terms that `allowed` lets pass, with their evidence; empty where there are too few increments.
+pub(crate) fn hypotheses(
+    runs: &[Increments],
+    priors: &[Prior],
+    allowed: &dyn Fn(&[bool]) -> bool,
+) -> Vec<Hypothesis> {
+    let scale = typical_variance(runs);
+    let whitened: Vec<Whitened> = std::iter::once(0.0)
+        .chain(RATIOS.map(|power| 10_f64.powf(0.5 * f64::from(power))))
+        .filter_map(|ratio| whiten(runs, priors.len(), ratio, scale))
+        .collect();
+    let subsets = 0..1_usize << priors.len();
+    subsets
+        .map(|bits| (0..priors.len()).map(|at| bits >> at & 1 == 1).collect::<Vec<bool>>())
+        .filter(|acts| acts.iter().zip(priors).all(|(acts, prior)| *acts || *prior != Prior::Always))
+        .filter(|acts| allowed(acts))
+        .filter_map(|acts| hypothesis(&whitened, priors, &acts))
+        .collect()
+}
+
+/// Log evidence of the best set with a term less that of the best without it; `None` where either is missing.
+pub(crate) fn by_replacement(found: &[Hypothesis], has: &dyn Fn(&[bool]) -> bool) -> Option<f64> {
+    let best = |wanted: bool| {
+        let evidences = found.iter().filter(|one| has(&one.acts) == wanted).map(|one| one.evidence);
+        evidences.reduce(f64::max)
+    };
+    Some(best(true)? - best(false)?)
+}
+
+fn typical_variance(runs: &[Increments]) -> f64 {
+    let all: Vec<f64> =
+        runs.iter().flat_map(|run| run.covariance.iter().take(1).flatten().copied()).collect();
+    crate::noise::statistics::median(&all).max(f64::MIN_POSITIVE)
+}
+
+fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<Whitened> {
+    let mut whitened = Whitened {
+        ratio,
+        normal: DMatrix::zeros(terms, terms),
+        right: DVector::zeros(terms),
+        squares: 0.0,
+        log_determinant: 0.0,
+        count: 0,
+    };
+    for run in runs {
+        let factor = Banded::of(&run.covariance, ratio * scale)?;
+        let values = factor.solve(&run.values);
+        let columns: Vec<Vec<f64>> = run.terms.iter().map(|term| factor.solve(term)).collect();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        whitened.normal += DMatrix::from_fn(terms, terms, |row, column| {
+            columns.get(row).zip(columns.get(column)).map_or(0.0, |(a, b)| dot(a, b))
+        });
+        whitened.right +=
+            DVector::from_fn(terms, |row, _| columns.get(row).map_or(0.0, |term| dot(term, &values)));
+        whitened.squares += dot(&values, &values);
+        whitened.log_determinant += factor.log_determinant();
+        whitened.count += run.values.len();
+    }
+    Some(whitened)
+}
+
+/// Lower Cholesky factor of a covariance with two neighbors on either side.
+struct Banded {
+    diagonal: Vec<f64>,
+    next: Vec<f64>,
+    second: Vec<f64>,
+}
+
+impl Banded {
+    fn of(covariance: &[Vec<f64>; 3], added: f64) -> Option<Self> {
+        let [variances, first, second] = covariance;
+        let mut factor = Self { diagonal: Vec::new(), next: Vec::new(), second: Vec::new() };
+        for (row, variance) in variances.iter().enumerate() {
+            let back = |list: &[f64], by: usize| {
+                row.checked_sub(by).and_then(|at| list.get(at)).copied().unwrap_or(0.0)
+            };
+            // Entries of this row: two before, one before, itself.
+            let far = if row >= 2 { back(second, 2) / back(&factor.diagonal, 2) } else { 0.0 };
+            let near = if row >= 1 {
+                (back(first, 1) - far * factor.next.last().copied().unwrap_or(0.0))
+                    / back(&factor.diagonal, 1)
+            } else {
+                0.0
+            };
+            // A part in 10⁹ keeps a chain of increments that cancel from being singular.
+            let own = variance * (1.0 + 1e-9) + added - near * near - far * far;
+            if !(own > 0.0) {
+                return None;
+            }
+            factor.diagonal.push(own.sqrt());
+            factor.next.push(near);
+            factor.second.push(far);
+        }
+        Some(factor)
+    }
+
+    fn solve(&self, values: &[f64]) -> Vec<f64> {
+        let mut solved: Vec<f64> = Vec::with_capacity(values.len());
+        let rows = self.diagonal.iter().zip(&self.next).zip(&self.second).zip(values);
+        for (row, (((diagonal, near), far), value)) in rows.enumerate() {
+            let back = |by: usize| row.checked_sub(by).and_then(|at| solved.get(at)).copied().unwrap_or(0.0);
+            let own = (value - near * back(1) - far * back(2)) / diagonal;
+            solved.push(own);
+        }
+        solved
+    }
+
+    fn log_determinant(&self) -> f64 {
+        2.0 * self.diagonal.iter().map(|entry| entry.ln()).sum::<f64>()
+    }
+}
+
+fn hypothesis(whitened: &[Whitened], priors: &[Prior], acts: &[bool]) -> Option<Hypothesis> {
+    let places: Vec<usize> = acts.iter().enumerate().filter(|(_, acts)| **acts).map(|(at, _)| at).collect();
+    let fits: Vec<(f64, f64, Vec<Estimate>)> = whitened
+        .iter()
+        .filter_map(|one| evidence(one, priors, &places).map(|(log, own)| (log, one.ratio, own)))
+        .collect();
+    let (most, ratio, own) = fits.iter().max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let sum: f64 = fits.iter().map(|(log, ..)| (log - most).exp()).sum();
+    let mut coefficients = vec![Estimate::default(); acts.len()];
+    for (place, estimate) in places.iter().zip(own) {
+        if let Some(slot) = coefficients.get_mut(*place) {
+            *slot = *estimate;
+        }
+    }
+    Some(Hypothesis {
+        acts: acts.to_vec(),
+        evidence: most + (sum / whitened.len() as f64).ln(),
+        coefficients,
+        ratio: *ratio,
+    })
+}
+
+/// Log evidence of a set at one ratio, scale and coefficients integrated out; coefficients with standard errors.
+fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(f64, Vec<Estimate>)> {
+    let terms = places.len();
+    let freedom = whitened.count.checked_sub(terms).filter(|left| *left >= 3)? as f64;
+    let entry = |row: usize, column: usize| {
+        places
+            .get(row)
+            .zip(places.get(column))
+            .and_then(|place| whitened.normal.get((*place.0, *place.1)))
+            .copied()
+    };
+    let normal = DMatrix::from_fn(terms, terms, |row, column| entry(row, column).unwrap_or_default());
+    let right = DVector::from_fn(terms, |row, _| {
+        places.get(row).and_then(|place| whitened.right.get(*place)).copied().unwrap_or_default()
+    });
+    // Units differ by many orders: columns of length 1 before the factorization.
+    let lengths = normal.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
+    let unit = DMatrix::from_fn(terms, terms, |row, column| {
+        let length = |at: usize| lengths.get(at).copied().unwrap_or(1.0);
+        normal.get((row, column)).copied().unwrap_or_default() / (length(row) * length(column))
+    });
+    let factor = unit.cholesky()?;
+    let solved = factor.solve(&right.component_div(&lengths));
+    let squares =
+        (whitened.squares - solved.dot(&right.component_div(&lengths))).max(1e-12 * whitened.squares);
+    let inverse = factor.inverse();
+    let log_determinant = 2.0
+        * factor
+            .l_dirty()
+            .diagonal()
+            .iter()
+            .zip(lengths.iter())
+            .map(|(l, length)| (l * length).ln())
+            .sum::<f64>();
+    let variance = squares / freedom;
+    let mut log = -0.5 * (whitened.log_determinant + log_determinant) + ln_gamma(0.5 * freedom)
+        - 0.5 * freedom * (PI * squares).ln();
+    let mut estimates = Vec::with_capacity(terms);
+    for (at, place) in places.iter().enumerate() {
+        let length = lengths.get(at).copied().unwrap_or(1.0);
+        let value = solved.get(at).copied().unwrap_or_default() / length;
+        let error = (variance * inverse.get((at, at)).copied().unwrap_or_default()).sqrt() / length;
+        log += match priors.get(*place) {
+            Some(Prior::UpTo(most)) => log_above(value / error) - most.ln(),
+            Some(Prior::Within(most)) => -(2.0 * most).ln(),
+            _ => 0.0,
+        };
+        estimates.push(Estimate { value, error });
+    }
+    log.is_finite().then_some((log, estimates))
+}
+
+/// Logarithm of the probability that a standard normal variable is below z.
+fn log_above(z: f64) -> f64 {
+    if z < -8.0 {
+        return -0.5 * z * z - (-z * (2.0 * PI).sqrt()).ln();
+    }
+    Normal::new(0.0, 1.0).map_or(0.0, |normal| normal.cdf(z).ln())
+}

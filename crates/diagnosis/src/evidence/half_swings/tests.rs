@@ -1,0 +1,153 @@
+//! Half swings of simulated systems whose laws are known, and a table of measured ones.
+
+use super::{HalfSwings, half_swings};
+use crate::data::observations::Observations;
+use crate::fixtures;
+use crate::measurement::signatures;
+use dynamics::chain::{Chain, Observed};
+use dynamics::{Active, Nominal, System};
+use record::{Clock, ClockChoice, CsvColumns, Format, ReadOptions, read_file};
+use std::path::{Path, PathBuf};
+
+const OMEGA: f64 = 7.0 * std::f64::consts::PI;
+
+/// Half swings of a system released at 0.7 rad, 25 s at 260 Hz, through white noise and effects of the measuring chain.
+fn witnessed(
+    damping_ratio: f64,
+    effects: &[(&str, &[f64])],
+    noise: f64,
+    chain: &[(&str, &[f64])],
+    seed: u64,
+) -> HalfSwings {
+    released(0.7, damping_ratio, effects, noise, chain, seed)
+}
+
+fn released(
+    release: f64,
+    damping_ratio: f64,
+    effects: &[(&str, &[f64])],
+    noise: f64,
+    chain: &[(&str, &[f64])],
+    seed: u64,
+) -> HalfSwings {
+    let active =
+        |list: &[(&str, &[f64])]| list.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
+    let nominal = Nominal::new(1.0, 2.0 * damping_ratio * OMEGA, OMEGA * OMEGA, 0.0).unwrap();
+    let system = System::new(nominal, active(effects)).unwrap();
+    let chain = Chain::new(Observed::Position, noise, active(chain)).unwrap();
+    let record = fixtures::record(&system, release, 6500, &chain, seed);
+    let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap());
+    let kept = signatures::kept(&observations);
+    // The hint is off by a sixth.
+    half_swings(&[observations], &[kept], 1.17 * OMEGA).unwrap()
+}
+
+fn line(name: &str, found: &HalfSwings) -> String {
+    let w = &found.witness;
+    let nats = |value: Option<f64>| value.map_or("    -".to_owned(), |value| format!("{value:5.0}"));
+    let (first, last) = (found.swings.first().unwrap(), found.swings.last().unwrap());
+    format!(
+        "{name:12} {:4} {:5.0} {:8.3e}..{:8.3e} ±{:7.1e} | friction {} viscous {} drag {} | even {} time {} play {} | asymmetric {} time {} | dry {:.4}±{:.4} viscous {:.5}±{:.5} quadratic {:.5}±{:.5} softening {:+.5}±{:.5}",
+        w.count,
+        w.effective,
+        first.amplitude.value,
+        last.amplitude.value,
+        first.amplitude.error,
+        nats(w.friction),
+        nats(w.viscous),
+        nats(w.drag),
+        nats(w.even_stiffness),
+        nats(w.period_drift),
+        nats(w.play),
+        nats(w.asymmetric),
+        nats(w.center_drift),
+        w.dry_loss.value / first.amplitude.value,
+        w.dry_loss.error / first.amplitude.value,
+        w.viscous_loss.value,
+        w.viscous_loss.error,
+        w.quadratic_loss.value * first.amplitude.value,
+        w.quadratic_loss.error * first.amplitude.value,
+        w.softening.value,
+        w.softening.error,
+    )
+}
+
+fn shared(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data").join(name)
+}
+
+/// `cargo test -p diagnosis half_swings::tests::measured -- --ignored --nocapture`
+#[test]
+#[ignore = "a table to read"]
+fn measured() {
+    let csv = |value: Option<&str>| ReadOptions {
+        columns: CsvColumns { value: value.map(str::to_owned), ..CsvColumns::default() },
+        ..ReadOptions::default()
+    };
+    let log = ReadOptions { format: Format::HostLog, ..ReadOptions::default() };
+    let (angle, plain, meters) = (csv(Some("angle_rad")), csv(Some("angle")), csv(Some("displacement_m")));
+    for (record, nominal, options) in [
+        ("horizontal-pendulum/80P.txt", "nominal", &log),
+        ("horizontal-pendulum/60.txt", "nominal", &log),
+        ("horizontal-pendulum/100.txt", "nominal", &log),
+        ("encoder-pendulum/record-a.csv", "nominal", &plain),
+        ("servo-pendulum/swing-a.csv", "nominal-a", &angle),
+        ("servo-pendulum/swing-b.csv", "nominal-b", &angle),
+        ("disc-oscillator/free-a.csv", "nominal", &angle),
+        ("disc-oscillator/free-b.csv", "nominal", &angle),
+        ("disc-oscillator/brake-a.csv", "nominal", &angle),
+        ("disc-oscillator/brake-b.csv", "nominal", &angle),
+        ("air-disc/release-a.csv", "nominal", &meters),
+        ("air-disc/release-b.csv", "nominal", &meters),
+        ("net-oscillator/record.csv", "nominal", &meters),
+    ] {
+        let path = shared(record);
+        if !path.exists() {
+            println!("skipped: {record} is not here");
+            continue;
+        }
+        let (measured, _) = read_file(&path, options).unwrap();
+        let observations = Observations::new(&measured, &Clock::new(&measured, ClockChoice::Auto).unwrap());
+        let text = std::fs::read_to_string(path.with_file_name(format!("{nominal}.toml"))).unwrap();
+        let nominal: Nominal = toml::from_str(&text).unwrap();
+        let kept = signatures::kept(&observations);
+        let omega = (nominal.stiffness() / nominal.inertia()).sqrt();
+        match half_swings(&[observations], &[kept], omega) {
+            Some(found) => println!("{}", line(record.split('/').next_back().unwrap(), &found)),
+            None => println!("{record}: no half swings"),
+        }
+    }
+}
+
+/// As [`measured`]: records of known systems, with and without defects of the measuring chain.
+#[test]
+#[ignore = "a table to read"]
+fn simulated() {
+    let laws: [(&str, f64, &[(&str, &[f64])]); 12] = [
+        ("viscous", 0.006, &[]),
+        ("dry", 0.0, &[("coulomb_friction", &[1.0])]),
+        ("quadratic", 0.0, &[("quadratic_drag", &[0.05])]),
+        ("dry, visc", 0.003, &[("coulomb_friction", &[0.4])]),
+        ("visc, quad", 0.003, &[("quadratic_drag", &[0.02])]),
+        ("dry, quad", 0.0, &[("coulomb_friction", &[0.4]), ("quadratic_drag", &[0.02])]),
+        ("cubic", 0.006, &[("cubic_stiffness", &[-20.0])]),
+        ("gravity", 0.006, &[("gravity", &[150.0, 0.0])]),
+        ("gravity 1.2", 0.006, &[("gravity", &[150.0, 1.2])]),
+        ("asymmetric", 0.006, &[("asymmetric_stiffness", &[10.0])]),
+        ("drift", 0.006, &[("stiffness_drift", &[0.001])]),
+        ("backlash", 0.006, &[("backlash", &[0.004])]),
+    ];
+    let chains: [(&str, &[(&str, &[f64])]); 5] = [
+        ("plain", &[]),
+        ("outliers", &[("outliers", &[0.01, 0.35])]),
+        ("steps", &[("sensor_quantization", &[0.05])]),
+        ("jitter", &[("timestamp_jitter", &[0.001])]),
+        ("drift", &[("sensor_drift", &[0.0004])]),
+    ];
+    for (kind, chain) in chains {
+        println!("{kind}");
+        for (name, ratio, effects) in laws {
+            println!("{}", line(name, &witnessed(ratio, effects, 1e-3, chain, 3)));
+        }
+    }
+}

@@ -1,0 +1,341 @@
+//! Turning points of a free swing, each from a local fit, tracked from one to the next.
+//!
+//! The local half period is carried along from turn to turn, so a frequency that changes with the amplitude is followed;
+//! no frequency is fixed but for the first turn, and there it is looked for within a factor of [`HINT`] of the expected one.
+
+use crate::data::observations::Observations;
+use crate::noise::statistics::median;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::{PI, TAU};
+
+/// A turning point of the motion.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Turn {
+    pub(crate) time_s: f64,
+    pub(crate) value: f64,
+    /// Variances from the samples' scatter about the local fit.
+    pub(crate) value_variance: f64,
+    pub(crate) time_variance: f64,
+}
+
+/// Largest factor between the expected frequency and the one of the first swings.
+const HINT: f64 = 2.2;
+/// Frequencies at which the first swings are looked for.
+const FREQUENCIES: usize = 32;
+/// Length of the stretch in which the first turn is looked for, in expected periods.
+const STRETCH: f64 = 3.0;
+/// Stretches that are looked at, at most.
+const MOST_STRETCHES: usize = 40;
+/// Most samples of a stretch that are looked at.
+const MOST_SAMPLES: usize = 256;
+/// Half the width of the stretch around a turning point that is fitted, in periods.
+const HALF_WIDTH: f64 = 0.2;
+/// Largest distance of a turning point from where it is expected, in half periods.
+const FARTHEST: f64 = 0.3;
+/// Longest stretch without a sample in a half swing, in half periods.
+const LONGEST_GAP: f64 = 0.35;
+/// Turns in a row that may be missed before the motion counts as ended.
+const MOST_MISSED: usize = 4;
+/// Standard errors by which an amplitude has to stand out.
+const SMALLEST: f64 = 4.0;
+/// Weight of the last half period in the one that is carried along.
+const NEWEST: f64 = 0.4;
+/// Fewest samples for the five-term fit.
+const FEWEST_FULL: usize = 9;
+/// Tukey's constant for 95 % efficiency.
+const TUKEY: f64 = 4.685;
+
+/// Times and values of the samples that are used, and the largest rounding error's standard deviation.
+struct Samples {
+    times: Vec<f64>,
+    values: Vec<f64>,
+    rounding: f64,
+}
+
+impl Samples {
+    fn between(&self, from: f64, to: f64) -> std::ops::Range<usize> {
+        let at = |limit: f64| self.times.partition_point(|&time| time < limit);
+        at(from)..at(to)
+    }
+
+    fn points(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let range = self.between(from, to);
+        let pick = |list: &[f64]| list.get(range.clone()).unwrap_or_default().to_vec();
+        pick(&self.times).into_iter().zip(pick(&self.values))
+    }
+
+    /// Longest time without a sample between two moments.
+    fn gap(&self, from: f64, to: f64) -> f64 {
+        let inside = self.points(from, to).map(|point| point.0).chain([to]);
+        inside.fold((from, 0.0_f64), |(last, gap), time| (time, gap.max(time - last))).1
+    }
+}
+
+/// Runs of successive turning points of a record, alternating between top and bottom: no half swing in a run has a gap.
+///
+/// `angular_frequency` in rad/s is a hint only. Empty where no swing stands out.
+pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequency: f64) -> Vec<Vec<Turn>> {
+    let pairs = record.times_s.iter().zip(&record.values).zip(kept);
+    let (times, values) = pairs
+        .filter(|((time, value), kept)| **kept && time.is_finite() && value.is_finite())
+        .map(|((time, value), _)| (*time, *value))
+        .unzip();
+    let samples = Samples { times, values, rounding: record.resolution.unwrap_or(0.0) / 12_f64.sqrt() };
+    let Some((start, half)) = first(&samples, angular_frequency) else { return Vec::new() };
+    let mut turns: Vec<Option<Local>> = track(&samples, start, half, -1.0);
+    turns.reverse();
+    let forward = track(&samples, start, half, 1.0);
+    turns.extend(forward.into_iter().skip(1));
+    runs(&samples, &turns)
+}
+
+/// Fit of a sine and a constant: squares that the sine takes away per sample, constant, cosine, sine.
+fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
+    let count = points.len();
+    let middle = points.iter().map(|point| point.1).sum::<f64>() / count as f64;
+    let design = DMatrix::from_fn(count, 3, |row, column| {
+        let phase = frequency * points.get(row).map_or(0.0, |point| point.0);
+        [1.0, phase.cos(), phase.sin()].get(column).copied().unwrap_or_default()
+    });
+    let values = DVector::from_iterator(count, points.iter().map(|point| point.1 - middle));
+    let solved = design.tr_mul(&design).cholesky()?.solve(&design.tr_mul(&values));
+    let rest = (&values - &design * &solved).norm_squared();
+    let &[level, cosine, sine] = solved.as_slice() else { return None };
+    Some(((values.norm_squared() - rest) / count as f64, [level + middle, cosine, sine]))
+}
+
+/// Time of a turning point in the stretch that swings most, and half the period there.
+fn first(samples: &Samples, angular_frequency: f64) -> Option<(f64, f64)> {
+    let (begin, end) = (*samples.times.first()?, *samples.times.last()?);
+    let expected = TAU / angular_frequency;
+    let length = STRETCH * expected;
+    if !(expected.is_finite() && expected > 0.0 && end > begin) {
+        return None;
+    }
+    let hop = (0.5 * length).max((end - begin) / MOST_STRETCHES as f64);
+    let mut best: Option<(f64, f64, f64)> = None;
+    for number in 0..MOST_STRETCHES {
+        let from = begin + hop * number as f64;
+        if number > 0 && from + length > end {
+            break;
+        }
+        let middle = from + 0.5 * length;
+        let range: Vec<(f64, f64)> =
+            samples.points(from, from + length).map(|(time, value)| (time - middle, value)).collect();
+        let thinned: Vec<(f64, f64)> =
+            range.iter().copied().step_by(range.len().div_ceil(MOST_SAMPLES).max(1)).collect();
+        if thinned.len() < 8 {
+            continue;
+        }
+        for step in 0..FREQUENCIES {
+            let part = 2.0 * step as f64 / (FREQUENCIES - 1) as f64 - 1.0;
+            let frequency = angular_frequency * HINT.powf(part);
+            let Some((power, [_, cosine, sine])) = sinusoid(&thinned, frequency) else { continue };
+            if best.is_none_or(|(most, ..)| power > most) {
+                // The extreme nearest to the stretch's middle: a top or a bottom.
+                let phase = sine.atan2(cosine);
+                let nearest = phase - PI * (phase / PI).round();
+                best = Some((power, middle + nearest / frequency, PI / frequency));
+            }
+        }
+    }
+    best.map(|(_, time, half)| (time, half))
+}
+
+/// A turning point as its local fit has it.
+#[derive(Debug, Clone, Copy)]
+struct Local {
+    time: f64,
+    value: f64,
+    /// 1 for a top, −1 for a bottom.
+    sign: f64,
+    half: f64,
+    /// Standard deviation of a sample about the fit.
+    scatter: f64,
+    /// Variances of value and time for samples of variance 1.
+    value_leverage: f64,
+    time_leverage: f64,
+}
+
+/// Turning points from a first one on, forward or backward; `None` for one that is missed.
+fn track(samples: &Samples, start: f64, half: f64, direction: f64) -> Vec<Option<Local>> {
+    let (Some(&begin), Some(&end)) = (samples.times.first(), samples.times.last()) else { return Vec::new() };
+    let Some(mut last) = local(samples, start, half, None) else { return Vec::new() };
+    let mut half = half;
+    let mut turns = vec![Some(last)];
+    let mut missed = 0;
+    let mut expected = last.time;
+    let mut sign = last.sign;
+    loop {
+        expected += direction * half;
+        sign = -sign;
+        if expected < begin - FARTHEST * half || expected > end + FARTHEST * half || missed >= MOST_MISSED {
+            break;
+        }
+        match local(samples, expected, half, Some(sign)) {
+            Some(found) => {
+                if missed == 0 {
+                    half += NEWEST * ((found.time - last.time).abs() - half);
+                }
+                (last, expected, missed) = (found, found.time, 0);
+                turns.push(Some(found));
+            }
+            None => {
+                missed += 1;
+                turns.push(None);
+            }
+        }
+    }
+    turns.truncate(turns.len() - missed);
+    turns
+}
+
+/// The turning point of a kind near a moment; `None` where there is no clear one.
+fn local(samples: &Samples, expected: f64, half: f64, sign: Option<f64>) -> Option<Local> {
+    let first = fit(samples, expected, half)?;
+    // The stretch is laid about the turn that a first fit finds.
+    let found = fit(samples, first.time, half)?;
+    let is_near = (found.time - expected).abs() <= FARTHEST * half;
+    (is_near && sign.is_none_or(|sign| sign == found.sign)).then_some(found)
+}
+
+/// Terms of the local fit at a phase, and their first and second derivatives: a sine with a constant, and a parabola
+/// beside it where there are samples enough.
+fn terms(phase: f64, derivative: usize) -> [f64; 5] {
+    let (sine, cosine) = phase.sin_cos();
+    match derivative {
+        0 => [1.0, cosine, sine, phase, phase * phase],
+        1 => [0.0, -sine, cosine, 1.0, 2.0 * phase],
+        _ => [0.0, -cosine, -sine, 0.0, 2.0],
+    }
+}
+
+/// The extreme of a robust local fit about a moment.
+fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
+    let reach = 2.0 * HALF_WIDTH * half;
+    let points: Vec<(f64, f64)> = samples
+        .points(center - reach, center + reach)
+        .map(|(time, value)| (PI * (time - center) / half, value))
+        .collect();
+    let before = points.iter().filter(|point| point.0 < 0.0).count();
+    if before < 2 || points.len() - before < 2 {
+        return None;
+    }
+    let count = if points.len() >= FEWEST_FULL { 5 } else { 3 };
+    let design = DMatrix::from_fn(points.len(), count, |row, column| {
+        let phase = points.get(row).map_or(0.0, |point| point.0);
+        terms(phase, 0).get(column).copied().unwrap_or_default()
+    });
+    let values = DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
+    let (solved, inverse, scatter) = robust(&design, &values, samples.rounding)?;
+    let at = |phase: f64, derivative: usize| {
+        DVector::from_row_slice(terms(phase, derivative).get(..count).unwrap_or_default())
+    };
+    let mut phase = 0.0_f64;
+    for _ in 0..20 {
+        let step = at(phase, 1).dot(&solved) / at(phase, 2).dot(&solved);
+        phase = (phase - step).clamp(-TAU * HALF_WIDTH, TAU * HALF_WIDTH);
+        if step.abs() < 1e-12 {
+            break;
+        }
+    }
+    let (slope, bend) = (at(phase, 1), at(phase, 2).dot(&solved));
+    let is_inside = slope.dot(&solved).abs() <= 1e-6 * bend.abs() && phase.abs() < 0.99 * TAU * HALF_WIDTH;
+    let leverage = |row: &DVector<f64>| row.dot(&(&inverse * row));
+    let to_seconds = half / PI;
+    (is_inside && bend != 0.0).then(|| Local {
+        time: center + to_seconds * phase,
+        value: at(phase, 0).dot(&solved),
+        sign: -bend.signum(),
+        half,
+        scatter,
+        value_leverage: leverage(&at(phase, 0)),
+        time_leverage: leverage(&slope) * (to_seconds / bend).powi(2),
+    })
+}
+
+/// Coefficients of a fit with Tukey's biweight, inverse of its normal matrix, and standard deviation of a sample.
+fn robust(
+    design: &DMatrix<f64>,
+    values: &DVector<f64>,
+    rounding: f64,
+) -> Option<(DVector<f64>, DMatrix<f64>, f64)> {
+    let (rows, columns) = design.shape();
+    let mut weights = DVector::from_element(rows, 1.0);
+    // Two samples more than coefficients say nothing of which is wrong.
+    let rounds = if rows >= columns + 3 { 4 } else { 1 };
+    let mut found = None;
+    for _ in 0..rounds {
+        let weighted = DMatrix::from_fn(rows, columns, |row, column| {
+            design.get((row, column)).copied().unwrap_or_default()
+                * weights.get(row).copied().unwrap_or_default()
+        });
+        let inverse = weighted.tr_mul(design).cholesky()?.inverse();
+        let solved = &inverse * weighted.tr_mul(values);
+        let rest = values - design * &solved;
+        let squares: f64 = rest.iter().zip(weights.iter()).map(|(rest, weight)| weight * rest * rest).sum();
+        let freedom = (weights.sum() - columns as f64).max(1.0);
+        let sizes: Vec<f64> = rest.iter().map(|rest| rest.abs()).collect();
+        // The median of what is left is too small by the share of the coefficients.
+        let robust = 1.4826 * median(&sizes) * (rows as f64 / (rows as f64 - columns as f64).max(1.0)).sqrt();
+        let scale = TUKEY * robust.max(rounding);
+        found = Some((solved, inverse, (squares / freedom).sqrt()));
+        if scale <= 0.0 {
+            break;
+        }
+        weights = rest.map(|rest| (1.0 - (rest / scale).powi(2)).max(0.0).powi(2));
+        if weights.sum() < columns as f64 + 1.0 {
+            break;
+        }
+    }
+    found
+}
+
+/// Cuts turning points into runs without gaps, from the largest swing to the last that stands out.
+fn runs(samples: &Samples, turns: &[Option<Local>]) -> Vec<Vec<Turn>> {
+    let scatters: Vec<f64> = turns.iter().flatten().map(|turn| turn.scatter).collect();
+    let noise = median(&scatters).max(samples.rounding);
+    let turn = |local: &Local| Turn {
+        time_s: local.time,
+        value: local.value,
+        value_variance: noise * noise * local.value_leverage,
+        time_variance: noise * noise * local.time_leverage,
+    };
+    let amplitude = |pair: &[Option<Local>]| match pair {
+        [Some(one), Some(next)] => Some(0.5 * (next.value - one.value).abs()),
+        _ => None,
+    };
+    let amplitudes: Vec<Option<f64>> = turns.windows(2).map(amplitude).collect();
+    // What goes before the largest swing is the release.
+    let largest = amplitudes.iter().enumerate().filter_map(|(at, amplitude)| Some((at, (*amplitude)?)));
+    let Some((start, _)) = largest.max_by(|a, b| a.1.total_cmp(&b.1).then(b.0.cmp(&a.0))) else {
+        return Vec::new();
+    };
+    let mut runs: Vec<Vec<Turn>> = Vec::new();
+    let mut run: Vec<Turn> = Vec::new();
+    for (pair, amplitude) in turns.windows(2).zip(&amplitudes).skip(start) {
+        let joined = match (pair, amplitude) {
+            ([Some(one), Some(next)], Some(amplitude)) => {
+                let (from, to) = (turn(one), turn(next));
+                let error = 0.5 * (from.value_variance + to.value_variance).sqrt();
+                if *amplitude < SMALLEST * error.max(samples.rounding) {
+                    break;
+                }
+                (samples.gap(one.time, next.time) <= LONGEST_GAP * one.half).then_some((from, to))
+            }
+            _ => None,
+        };
+        match joined {
+            Some((from, to)) => {
+                if run.is_empty() {
+                    run.push(from);
+                }
+                run.push(to);
+            }
+            None => runs.push(std::mem::take(&mut run)),
+        }
+    }
+    runs.push(run);
+    runs.retain(|run| run.len() >= 4);
+    runs
+}
