@@ -72,6 +72,57 @@ pub struct EffectProbability {
     pub gap_share: Option<Interval>,
 }
 
+/// An effect within a class.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Kind {
+    /// Its id.
+    pub id: &'static str,
+    /// Probability that it is this one, given that the class is there; all of a class add up to 1.
+    pub share: f64,
+}
+
+/// What speaks for a class of effects, as natural logarithms of ratios.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize)]
+pub struct ClassEvidence {
+    /// Log evidence of the best set of effects with the class over the best one without it, by what they predict of parts
+    /// that they were not fitted to.
+    pub replacement: f64,
+    /// The same from the amplitudes, durations and centers of half swings; `None` where these do not show the class.
+    pub half_swings: Option<f64>,
+}
+
+/// Effects that explain alike, and whether a system with these records has any of them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EffectClass {
+    /// Its id.
+    pub id: &'static str,
+    /// Probability that the system has it.
+    pub probability: f64,
+    /// Shapley share of the gap that the repaired simulator closes, for classes of the verdict.
+    pub gap_share: Option<Interval>,
+    /// Its members that were fitted, the most probable first.
+    pub kinds: Vec<Kind>,
+    /// Whether these data tell which of them it is.
+    pub kind_is_told: bool,
+    /// Error on held-out parts of the best set without the class, and with it, in the observed quantity's unit.
+    pub error_without: f64,
+    /// See `error_without`.
+    pub error_with: f64,
+    /// Part of the draws of segments, with replacement, in which the class is better supported than what takes its place.
+    pub stability: f64,
+    /// What the probability follows from.
+    pub evidence: ClassEvidence,
+}
+
+/// What the named effects leave.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LeftOver {
+    /// Share of the gap, beyond the noise, that has no name: 1 less the closure.
+    pub share_of_gap: f64,
+    /// Held-out error over the noise.
+    pub over_noise: f64,
+}
+
 /// How far the gap shrinks. Root mean squares on parts not fitted, in the observed quantity's unit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Gap {
@@ -315,6 +366,10 @@ pub struct Diagnosis {
     /// `none`, `calibration`, `unknown`, every effect that is named, and every other whose sets have a
     /// probability above 0.01 together; best first.
     pub effects: Vec<EffectProbability>,
+    /// Classes of effects, the most probable first.
+    pub classes: Vec<EffectClass>,
+    /// What the named effects leave.
+    pub left_over: LeftOver,
     /// How far the gap shrinks.
     pub gap: Gap,
     /// Where it lies.

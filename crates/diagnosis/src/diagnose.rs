@@ -1,18 +1,21 @@
 //! From observations to an answer, stage by stage.
 
-use crate::answer::{Budget, Cell, Diagnosis, Finding, MeasuringChain, Series, SetScore, Stage, Where};
+use crate::answer::{
+    Budget, Cell, Diagnosis, Finding, LeftOver, MeasuringChain, Series, SetScore, Stage, Where,
+};
 use crate::data::observations::Observations;
 use crate::data::release;
 use crate::data::segments::{Data, MOST_SEARCHED, cut};
 use crate::data::shooting_interval::ShootingInterval;
 use crate::error::DiagnosisError;
-use crate::evidence::conclusion::{Parts, probabilities, verdict};
-use crate::evidence::context::{Context, Predicted, Thin, Unjoined};
+use crate::evidence::conclusion::{self, Parts, likely, probabilities, verdict};
+use crate::evidence::context::{Context, Thin, Unjoined};
 use crate::evidence::discrepancy;
+use crate::evidence::half_swings::half_swings;
 use crate::evidence::held_out::HeldOut;
-use crate::evidence::inclusion::{asked, weighed};
+use crate::evidence::inclusion::{Inclusion, asked};
 use crate::evidence::left_over::unexplained;
-use crate::evidence::weights::{Weighing, acts, by_members, unknown, without_passed_over};
+use crate::evidence::weights::{Weighing, acts, unknown};
 use crate::explain::attribution::budget;
 use crate::explain::coefficients::{calibration, known};
 use crate::explain::gap::{Stages, gap, paired};
@@ -28,10 +31,9 @@ use crate::model::tangent::Path;
 use crate::noise::floor as noise;
 use crate::search::archive::Archive;
 use crate::search::beam::{Breadth, search};
+use crate::search::null;
 use crate::search::plain::plain_family;
 use crate::search::refine::refine;
-use crate::search::surrogates::Question;
-use crate::search::{null, surrogates};
 use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
 use seed::Seed;
@@ -157,20 +159,13 @@ pub fn diagnose(
     let work = Context { data, base, segments, pool: &pool, thin, time, settings };
     let predictions = work.predictions(&asked(&fitted))?;
     let bare = pool.find(&[]).unwrap_or(&base.calibrated);
-    let weighed = weighed(segments.data, &predictions, bare, vocabulary);
-    let further = |set: &Predicted<'_>| set.followed.globals().saturating_sub(base.calibrated.globals());
-    let better: Vec<&[Candidate]> = predictions
-        .sets
-        .iter()
-        .filter(|set| set.is_better_than(&predictions.recalibrated, further(set), data.samples()))
-        .map(|set| set.followed.hypothesis.candidates.as_slice())
-        .collect();
-    let chosen = weighed.iter().map(|w| w.fit.hypothesis.candidates.as_slice());
-    let chosen: Vec<Candidate> =
-        chosen.into_iter().find(|own| own.is_empty() || better.contains(own)).unwrap_or_default().to_vec();
+    let inclusion = Inclusion::of(segments.data, &predictions, bare, vocabulary);
+    let swings = half_swings(records, &kept, simulator.angular_frequency());
+    let classes = inclusion.classes(swings.as_ref().map(|own| &own.witness), &settings.seed);
+    let weighed = &inclusion.weighed;
+    let chosen = inclusion.best_of(&likely(&classes));
     let held = work.held_out(predictions, &chosen)?;
     let repaired = held.repaired;
-    let weighed = without_passed_over(weighed, repaired);
     let shift = if settings.considers("constant_torque") { work.shift(repaired) } else { None };
     lap("held out");
     let unnamed = unnamed(&work, &held)?;
@@ -198,6 +193,8 @@ pub fn diagnose(
     );
     lap("gap");
 
+    let left_over_of_gap =
+        LeftOver { share_of_gap: 1.0 - figures.closure.value, over_noise: figures.ratio_to_floor.value };
     let noise_square = floor.value * floor.value;
     let excess = figures.recalibrated.powi(2) - noise_square;
     let left = unexplained(data, repaired)?;
@@ -259,9 +256,9 @@ pub fn diagnose(
         candidates: &candidates,
         repaired,
         unnamed: unnamed.as_ref(),
-        named: &named,
         shares: &shares,
-        weighed: &weighed,
+        weighed,
+        classes: &classes,
         nameless,
         left_over,
         calibrated_off,
@@ -270,6 +267,7 @@ pub fn diagnose(
         findings: &measuring_chain.findings,
     };
     let (effects, verdict) = (probabilities(&parts), verdict(&parts));
+    let classes = conclusion::classes(&parts, &effects);
     let calibration = calibration(&work, complete);
     let is_rounded = measuring_chain.findings.iter().any(|own| own.effect == Some("sensor_quantization"));
     let own = ShootingInterval { by: horizon.by, data: data.clone(), calibrated: complete.clone() };
@@ -292,6 +290,8 @@ pub fn diagnose(
     Ok(Diagnosis {
         verdict,
         effects,
+        classes,
+        left_over: left_over_of_gap,
         gap: figures,
         place: Where { budget, time: over_time, amplitude, phase, frequency },
         measuring_chain,

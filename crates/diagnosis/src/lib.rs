@@ -37,9 +37,9 @@ mod search;
 mod trials;
 
 pub use answer::{
-    Budget, Calibrated, Cell, Detectability, Diagnosis, EffectProbability, Experiment, Finding, Gap,
-    Interval, KnownRow, MeasuringChain, ParameterEstimate, RepairedSimulator, Rivalry, Series, SetScore,
-    Stage, Status, Undetermined, Verdict, Where,
+    Budget, Calibrated, Cell, ClassEvidence, Detectability, Diagnosis, EffectClass, EffectProbability,
+    Experiment, Finding, Gap, Interval, Kind, KnownRow, LeftOver, MeasuringChain, ParameterEstimate,
+    RepairedSimulator, Rivalry, Series, SetScore, Stage, Status, Undetermined, Verdict, Where,
 };
 pub use data::observations::Observations;
 pub use diagnose::{Settings, diagnose};

@@ -1,13 +1,15 @@
 //! What the fits say: a probability for every effect, and the verdict in words.
 
-use crate::answer::{EffectProbability, Finding, Interval, ParameterEstimate, Rivalry, Status, Verdict};
-use crate::evidence::confidence::{SHOWN, confidence, of_effect, stand_in};
-use crate::evidence::context::{Context, Shift};
-use crate::evidence::weights::{Weighed, marginal};
+use crate::answer::{
+    ClassEvidence, EffectClass, EffectProbability, Finding, Interval, Kind, ParameterEstimate, Rivalry,
+    Status, Verdict,
+};
+use crate::evidence::context::{Context, OFF_BY_CHANCE, Shift};
+use crate::evidence::weights::Weighed;
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::levenberg_marquardt::Fit;
-use crate::model::candidate::Candidate;
+use crate::model::candidate::{Candidate, evidence_class};
 
 /// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
 /// other in one of twenty records.
@@ -16,6 +18,13 @@ pub const DISTINCT_DISTANCE: f64 = 3.29;
 /// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and
 /// no calibration.
 const SHIFTED: f64 = 0.9;
+
+/// Probability of an effect that stamps or values show by themselves: all 385 of the training banks were there. One
+/// more that is, and one that is not.
+const SHOWN: f64 = 386.0 / 387.0;
+
+/// Probability from which on a class is named: it is likelier there than not.
+const LIKELY: f64 = 0.5;
 
 /// What is known once everything is fitted.
 #[derive(Clone, Copy)]
@@ -26,10 +35,10 @@ pub(crate) struct Parts<'a> {
     pub(crate) repaired: &'a Fit,
     /// The torque without a name that stands beside them.
     pub(crate) unnamed: Option<&'a Unnamed>,
-    pub(crate) named: &'a [Candidate],
     pub(crate) shares: &'a [(f64, Interval)],
     pub(crate) weighed: &'a [Weighed<'a>],
-    /// Probability that what is missing has no name.
+    pub(crate) classes: &'a [EffectClass],
+    /// Probability that all that is missing has no name.
     pub(crate) nameless: f64,
     /// Probability that anything is left beside the named effects, however little.
     pub(crate) left_over: f64,
@@ -40,21 +49,38 @@ pub(crate) struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// How many places of a set the named effects take.
-    fn fitted(&self) -> usize {
-        self.named.iter().filter(|candidate| candidate.counts()).count()
+    fn named(&self) -> &[Candidate] {
+        &self.repaired.hypothesis.candidates
     }
+
+    /// Probability that the system has a candidate: that of its class, times its share there.
+    fn probability(&self, candidate: Candidate) -> f64 {
+        let id = candidate.evidence_class().id();
+        let class = self.classes.iter().find(|class| class.id == id);
+        class.map_or(0.0, |class| {
+            let kind = class.kinds.iter().find(|kind| kind.id == candidate.id());
+            class.probability * kind.map_or(0.0, |kind| kind.share)
+        })
+    }
+
+    /// Probability that the system has none of the classes.
+    fn bare(&self) -> f64 {
+        self.classes.iter().map(|class| 1.0 - class.probability).product()
+    }
+}
+
+/// Classes that are likelier there than not.
+pub(crate) fn likely(classes: &[EffectClass]) -> Vec<&'static str> {
+    classes.iter().filter(|class| class.probability >= LIKELY).map(|class| class.id).collect()
 }
 
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
 pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     let Parts { work, candidates, repaired, shares, weighed, nameless, calibrated_off, shift, .. } = *parts;
-    let bare: f64 =
-        weighed.iter().filter(|w| w.fit.hypothesis.candidates.is_empty()).map(|w| w.probability).sum();
-    let bare = bare * (1.0 - nameless);
+    let bare = parts.bare() * (1.0 - nameless);
     // The significance of the calibration was tested at 1 %.
-    let of_calibration = if calibrated_off { 0.99 } else { 0.01 };
-    let of_shift = if shift.is_some() && parts.named.is_empty() { SHIFTED } else { 0.0 };
+    let of_calibration = if calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE };
+    let of_shift = if shift.is_some() && parts.named().is_empty() { SHIFTED } else { 0.0 };
     let plain =
         |id, probability| EffectProbability { id, probability, parameters: Vec::new(), gap_share: None };
     // Named effects share what the torque without a name leaves them.
@@ -69,14 +95,14 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         EffectProbability {
             parameters: of_unnamed.unwrap_or_default(),
             gap_share: parts.unnamed.map(|torque| torque.share),
-            ..plain("unknown", nameless + (1.0 - nameless) * stand_in(parts.fitted()))
+            ..plain("unknown", nameless.max(parts.left_over))
         },
         plain("none", bare * (1.0 - of_calibration)),
         plain("calibration", bare * of_calibration * (1.0 - of_shift)),
     ];
     if let Some(shift) = shift {
         // A shift was looked for beside the named effects, or beside none.
-        let beside = if parts.named.is_empty() { bare * of_calibration } else { 1.0 - nameless - bare };
+        let beside = if parts.named().is_empty() { bare * of_calibration } else { 1.0 };
         let units = work.base.calibrated.hypothesis.nominal.units();
         list.push(EffectProbability {
             parameters: vec![ParameterEstimate {
@@ -89,8 +115,8 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         });
     }
     for &candidate in candidates {
-        let probability = marginal(weighed, candidate) * (1.0 - nameless);
-        let place = repaired.hypothesis.candidates.iter().position(|own| *own == candidate);
+        let probability = parts.probability(candidate);
+        let place = parts.named().iter().position(|own| *own == candidate);
         if probability < 0.01 && place.is_none() {
             continue;
         }
@@ -98,7 +124,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         let source = if place.is_some() { Some(complete) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),
-            probability: of_effect(parts.fitted(), place.is_some(), probability, parts.left_over),
+            probability,
             parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
             gap_share: place.and_then(|place| shares.get(place)).map(|share| of_named(share.1)),
         });
@@ -113,15 +139,56 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     list
 }
 
+/// The classes with their shares of the gap, and those that stamps, values and the rest angle show, the most probable first.
+pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<EffectClass> {
+    let mut classes = parts.classes.to_vec();
+    for class in &mut classes {
+        let own =
+            parts.named().iter().zip(parts.shares).filter(|(own, _)| own.evidence_class().id() == class.id);
+        let sum = |share: Option<Interval>, own: Interval| {
+            let known = share.unwrap_or(Interval { value: 0.0, interval_95: [0.0; 2] });
+            let [low, high] = known.interval_95;
+            let [own_low, own_high] = own.interval_95;
+            Some(Interval {
+                value: (known.value + own.value).min(1.0),
+                interval_95: [(low + own_low).min(1.0), (high + own_high).min(1.0)],
+            })
+        };
+        class.gap_share = own.map(|(_, share)| share.1).fold(None, sum);
+    }
+    let shown = parts.findings.iter().filter_map(|finding| finding.effect);
+    for id in shown.chain(parts.shift.map(|_| "constant_torque")) {
+        let Some(class) = evidence_class(id) else { continue };
+        let probability = effects.iter().find(|row| row.id == id).map_or(SHOWN, |row| row.probability);
+        match classes.iter_mut().find(|own| own.id == class) {
+            Some(own) => {
+                own.probability = own.probability.max(probability);
+                if !own.kinds.iter().any(|kind| kind.id == id) {
+                    own.kinds.push(Kind { id, share: 1.0 });
+                }
+            }
+            None => classes.push(EffectClass {
+                id: class,
+                probability,
+                gap_share: None,
+                kinds: vec![Kind { id, share: 1.0 }],
+                kind_is_told: true,
+                error_without: f64::NAN,
+                error_with: f64::NAN,
+                stability: 1.0,
+                evidence: ClassEvidence::default(),
+            }),
+        }
+    }
+    classes.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    classes
+}
+
 /// Status, names, classes and confidence.
 pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     let mut order: Vec<(Candidate, f64)> =
-        parts.named.iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
+        parts.named().iter().copied().zip(parts.shares.iter().map(|share| share.0)).collect();
     order.sort_by(|a, b| b.1.total_cmp(&a.1));
-    // What has no name is left unnamed: effects that explain a part of it stand in the list with their probabilities.
-    if parts.nameless > 0.5 {
-        order.clear();
-    }
     let mut effects: Vec<&'static str> = order.iter().map(|(candidate, _)| candidate.id()).collect();
     let mut equivalent: Vec<Vec<&'static str>> = Vec::new();
     for effect in &effects {
@@ -139,19 +206,15 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
             equivalent.push(class);
         }
     }
-    if parts.shift.is_some() && parts.nameless <= 0.5 {
+    let is_nameless = effects.is_empty() && parts.nameless > LIKELY;
+    if parts.shift.is_some() && !is_nameless {
         effects.push("constant_torque");
         equivalent.push(vec!["constant_torque", "calibration"]);
     }
     for finding in parts.findings {
         effects.extend(finding.effect.filter(|id| !effects.contains(id)));
     }
-    let set = parts
-        .weighed
-        .iter()
-        .find(|w| w.fit.hypothesis.candidates == parts.named)
-        .map_or(0.0, |w| w.probability);
-    let status = if parts.nameless > 0.5 {
+    let status = if is_nameless {
         Status::Unknown
     } else if !effects.is_empty() {
         Status::Effect
@@ -160,7 +223,24 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
     } else {
         Status::None
     };
-    let probability = if status == Status::Unknown { parts.nameless } else { set * (1.0 - parts.nameless) };
-    let confidence = confidence(status, parts.fitted(), probability, parts.left_over);
-    Verdict { status, effects, confidence, left_over: parts.left_over, equivalent }
+    Verdict { status, effects, confidence: confidence(parts, status), left_over: parts.left_over, equivalent }
+}
+
+/// Probability of a status with exactly these effects: every named class is there with the named kinds, no other is.
+fn confidence(parts: &Parts<'_>, status: Status) -> f64 {
+    let is_named =
+        |class: &&EffectClass| parts.named().iter().any(|own| own.evidence_class().id() == class.id);
+    let classes = parts.classes.iter().map(|class| {
+        if !is_named(&class) {
+            return 1.0 - class.probability;
+        }
+        let of = |kind: &&Kind| parts.named().iter().any(|own| own.id() == kind.id);
+        class.probability * class.kinds.iter().filter(of).map(|kind| kind.share).sum::<f64>().min(1.0)
+    });
+    let of_nameless = match status {
+        Status::Unknown => parts.nameless,
+        Status::Effect if !parts.named().is_empty() => 1.0,
+        _ => 1.0 - parts.nameless,
+    };
+    of_nameless * classes.product::<f64>()
 }

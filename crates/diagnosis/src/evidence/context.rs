@@ -90,20 +90,6 @@ pub(crate) struct Shift {
     pub(crate) torque: Interval,
 }
 
-impl Predicted<'_> {
-    /// Whether a set predicts better than the recalibrated simulator, with so many `further` parameters: where it
-    /// goes on from what was fitted; or from start states, and going on no worse than what these parameters'
-    /// scatter costs. What shows only where a record begins, as a mode that is struck there or a stop that the
-    /// first swings reach, has nothing to go on from.
-    pub(crate) fn is_better_than(&self, recalibrated: &HeldOut, further: usize, samples: usize) -> bool {
-        // Fitted to one half of the samples, each parameter adds two parts in so many to the mean square of the other.
-        let scatter = 1.0 + 2.0 * further as f64 / samples.max(1) as f64;
-        self.after.continued < recalibrated.continued
-            || self.after.continued < scatter * recalibrated.continued
-                && self.after.mean_square() < recalibrated.mean_square()
-    }
-}
-
 impl<'a> Context<'a> {
     /// Whether, beside the effects of a set, a shifted rest angle alone does what the whole calibration does:
     /// that is a constant torque.

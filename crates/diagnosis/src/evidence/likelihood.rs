@@ -20,7 +20,7 @@ use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
 /// Bands about every half harmonic of the swing, from its mean value up.
-const BANDS: usize = 25;
+pub(crate) const BANDS: usize = 25;
 
 /// Independent squares in a bin under a Hann window, with its neighbors in the same band: a third of those in three, whose
 /// amplitudes have the correlations 2/3 and 1/6.
@@ -33,6 +33,8 @@ struct Bins {
     waves: DMatrix<f64>,
     /// Band of each bin.
     bands: Vec<usize>,
+    /// Bins by band.
+    counts: [f64; BANDS],
 }
 
 /// Likelihood of residuals on the same samples.
@@ -66,7 +68,13 @@ impl Bins {
             rows.extend(window.iter().zip(times).map(|(w, t)| w / norm * (omega * (t - first)).sin()));
             bands.push(((2.0 * omega / frequency).round() as usize).min(BANDS - 1));
         }
-        Self { waves: DMatrix::from_row_slice(2 * bands.len(), count, &rows), bands }
+        let mut counts = [0.0; BANDS];
+        for &band in &bands {
+            if let Some(slot) = counts.get_mut(band) {
+                *slot += 1.0;
+            }
+        }
+        Self { waves: DMatrix::from_row_slice(2 * bands.len(), count, &rows), bands, counts }
     }
 
     /// Sum of the periodogram by band.
@@ -79,16 +87,6 @@ impl Bins {
             }
         }
         powers
-    }
-
-    fn counts(&self) -> [f64; BANDS] {
-        let mut counts = [0.0; BANDS];
-        for band in &self.bands {
-            if let Some(slot) = counts.get_mut(*band) {
-                *slot += 1.0;
-            }
-        }
-        counts
     }
 }
 
@@ -108,14 +106,24 @@ impl Likelihood {
         Self { bins, worth, noise: noise * noise }
     }
 
+    /// Power of residuals by segment and band.
+    pub(crate) fn powers(&self, residuals: &[DVector<f64>]) -> Vec<[f64; BANDS]> {
+        self.bins.iter().zip(residuals).map(|(bins, residual)| bins.powers(residual)).collect()
+    }
+
     /// Log likelihood of residuals, up to a constant common to all.
     pub(crate) fn log(&self, residuals: &[DVector<f64>]) -> f64 {
+        let all: Vec<usize> = (0..self.bins.len()).collect();
+        self.log_of(&self.powers(residuals), &all)
+    }
+
+    /// The same of the segments that are `drawn`, from the [`Self::powers`] of all.
+    pub(crate) fn log_of(&self, by_segment: &[[f64; BANDS]], drawn: &[usize]) -> f64 {
         let mut powers = [0.0; BANDS];
         let mut counts = [0.0; BANDS];
-        for (bins, residual) in self.bins.iter().zip(residuals) {
-            let (own, number) = (bins.powers(residual), bins.counts());
+        for (own, bins) in drawn.iter().filter_map(|&at| by_segment.get(at).zip(self.bins.get(at))) {
             for ((power, count), (own, number)) in
-                powers.iter_mut().zip(&mut counts).zip(own.iter().zip(number))
+                powers.iter_mut().zip(&mut counts).zip(own.iter().zip(bins.counts))
             {
                 *power += own;
                 *count += number;
@@ -143,7 +151,7 @@ impl Likelihood {
 fn worth(bins: &[Bins], closest: &[DVector<f64>], band: usize) -> f64 {
     let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
     for (bins, residual) in bins.iter().zip(closest) {
-        let own = bins.counts().get(band).copied().unwrap_or_default();
+        let own = bins.counts.get(band).copied().unwrap_or_default();
         if own > 0.0 {
             let power = bins.powers(residual).get(band).copied().unwrap_or_default();
             all += power;

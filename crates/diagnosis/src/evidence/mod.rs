@@ -1,7 +1,6 @@
 //! What the fits are evidence of: sets, classes and effects, and what is left over.
 
 pub(crate) mod conclusion;
-pub(crate) mod confidence;
 pub(crate) mod context;
 pub(crate) mod determined;
 pub(crate) mod discrepancy;
@@ -11,5 +10,6 @@ pub(crate) mod held_out;
 pub(crate) mod inclusion;
 pub(crate) mod left_over;
 pub(crate) mod likelihood;
+pub(crate) mod probability;
 pub(crate) mod score;
 pub(crate) mod weights;

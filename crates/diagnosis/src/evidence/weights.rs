@@ -114,59 +114,6 @@ pub(crate) fn beyond(size: usize, price: f64, threshold: f64, vocabulary: usize)
     (0.5 * size as f64 * threshold - price).max(0.0) - odds.ln() + 0.5 * sets
 }
 
-/// Part of the best set's probability down to which another can come before it for its members' sake.
-const NEAR_BEST: f64 = 0.2;
-
-/// The same with that set in front, of the size of the best and nearly as probable, whose members are each
-/// the most probable: where rivals share the probability of one part of a set, the rest should not decide
-/// between them.
-///
-/// # Reference
-/// Barbieri, Berger, Annals of Statistics 32 (2004) 870: the median probability model.
-pub(crate) fn by_members(mut weighed: Vec<Weighed<'_>>) -> Vec<Weighed<'_>> {
-    let Some(best) = weighed.first() else { return weighed };
-    let (size, least) = (best.fit.hypothesis.candidates.len(), NEAR_BEST * best.probability);
-    let near: Vec<(usize, f64)> = weighed
-        .iter()
-        .enumerate()
-        .filter(|(_, w)| w.probability >= least && w.fit.hypothesis.candidates.len() == size)
-        .map(|(place, w)| {
-            let members = w.fit.hypothesis.candidates.iter();
-            (place, members.map(|candidate| marginal(&weighed, *candidate)).sum())
-        })
-        .collect();
-    // Of equals the more probable stays in front.
-    let front = near.into_iter().rev().max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |near| near.0);
-    if let Some(part) = weighed.get_mut(..=front) {
-        part.rotate_right(1);
-    }
-    weighed
-}
-
-/// The same after sets have been passed over, for what they predict, in favor of one behind them: they lose
-/// their probability to the others.
-pub(crate) fn without_passed_over<'a>(mut weighed: Vec<Weighed<'a>>, chosen: &Fit) -> Vec<Weighed<'a>> {
-    let own = &chosen.hypothesis.candidates;
-    let place = weighed.iter().position(|w| w.fit.hypothesis.candidates == *own).unwrap_or(0);
-    for w in weighed.iter_mut().take(place) {
-        w.probability = 0.0;
-    }
-    let total: f64 = weighed.iter().map(|w| w.probability).sum();
-    if total > 0.0 {
-        for w in &mut weighed {
-            w.probability /= total;
-        }
-    }
-    weighed.sort_by(|a, b| b.probability.total_cmp(&a.probability));
-    weighed
-}
-
-/// Probability that an effect acts: that of all sets with it.
-pub(crate) fn marginal(weighed: &[Weighed<'_>], candidate: Candidate) -> f64 {
-    let with = weighed.iter().filter(|w| w.fit.hypothesis.candidates.contains(&candidate));
-    with.map(|w| w.probability).sum()
-}
-
 /// Probability that anything acts that has no name, from the evidence for it.
 pub(crate) fn acts(evidence: f64) -> f64 {
     1.0 / (1.0 + (-evidence).exp() / UNKNOWN_ODDS)

@@ -7,4 +7,3 @@ pub(crate) mod plain;
 pub(crate) mod proposals;
 pub(crate) mod refine;
 pub(crate) mod second_mode;
-pub(crate) mod surrogates;

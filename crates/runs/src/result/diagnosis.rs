@@ -23,6 +23,12 @@ pub struct DiagnosisResult {
     pub verdict: DiagnosisVerdict,
     /// Every id with a probability above 0.01, and `none`, `calibration` and `unknown`; best first.
     pub effects: Vec<EffectRow>,
+    /// Classes of effects that explain alike, the most probable first. Empty in files of older versions.
+    #[serde(default)]
+    pub classes: Vec<ClassRow>,
+    /// What the named effects leave. Absent from files of older versions.
+    #[serde(default)]
+    pub left_over: Option<LeftOverRow>,
     /// How far the gap shrinks.
     pub gap: GapSummary,
     /// Where it lies.
@@ -323,6 +329,61 @@ pub struct DetectabilityRow {
     /// What leaving it out costs, in noise units.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub d: f64,
+}
+
+/// A class of effects that explain alike.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClassRow {
+    /// Its id.
+    pub id: String,
+    /// Probability that a system with these records has it.
+    pub probability: f64,
+    /// Share of the gap that the repaired simulator closes, for classes of the verdict.
+    pub gap_share: Option<WithInterval>,
+    /// Its members, the most probable first.
+    pub kinds: Vec<KindRow>,
+    /// Whether these data tell which of them it is.
+    pub kind_is_told: bool,
+    /// Error on held-out parts of the best set without the class, and with it, in the observed quantity's unit.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub error_without: f64,
+    /// See `error_without`.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub error_with: f64,
+    /// Part of the draws of segments in which the class is better supported than what takes its place.
+    pub stability: f64,
+    /// What the probability follows from.
+    pub evidence: ClassEvidenceRow,
+}
+
+/// A member of a class.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct KindRow {
+    /// Its id.
+    pub id: String,
+    /// Probability that it is this one, given the class.
+    pub share: f64,
+}
+
+/// Natural logarithms of evidence for a class.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ClassEvidenceRow {
+    /// Of the best set with the class over the best one without it, by what they predict of held-out parts.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub replacement: f64,
+    /// Of the amplitudes, durations and centers of half swings.
+    pub half_swings: Option<f64>,
+}
+
+/// What the named effects leave.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LeftOverRow {
+    /// Share of the gap, beyond the noise, that has no name.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub share_of_gap: f64,
+    /// Held-out error over the noise.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub over_noise: f64,
 }
 
 /// A set of effects that was fitted.

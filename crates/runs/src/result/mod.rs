@@ -15,10 +15,10 @@ mod trials;
 pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
-    Backbone, BackbonePoint, BatchResult, BudgetShares, ChainFinding, ChainSummary, DIAGNOSIS_SCHEMA,
-    DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation, FailedCase,
-    GapMaps, GapSummary, MapCell, NextExperiment, ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow,
-    StageRow, SurfaceCell, WithInterval,
+    Backbone, BackbonePoint, BatchResult, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow,
+    ClassRow, DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
+    EffectRow, Equation, FailedCase, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment,
+    ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

@@ -2,16 +2,16 @@
 
 use super::read::Given;
 use diagnosis::{
-    Calibrated, Cell, Diagnosis, Interval, KnownRow, ParameterEstimate, Series, Status, Swing, backbone,
-    surface,
+    Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
+    backbone, surface,
 };
 use dynamics::{Effect, Quantity, Units};
 use export::{Repaired, equation_latex, equation_text};
 use runs::result::{
     Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
-    DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow, Equation, GapMaps,
-    GapSummary, KnownEffectRow, MapCell, NextExperiment, ParameterRow, RivalRow, SeriesRow, SetRow, StageRow,
-    SurfaceCell, WithInterval,
+    ClassEvidenceRow, ClassRow, DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
+    EffectRow, Equation, GapMaps, GapSummary, KindRow, KnownEffectRow, LeftOverRow, MapCell, NextExperiment,
+    ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 
 use super::sentence;
@@ -107,6 +107,11 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .iter()
             .map(|row| DetectabilityRow { effect: row.effect.to_owned(), d: row.d })
             .collect(),
+        classes: found.classes.iter().map(class_row).collect(),
+        left_over: Some(LeftOverRow {
+            share_of_gap: found.left_over.share_of_gap,
+            over_noise: found.left_over.over_noise,
+        }),
         sets: found
             .sets
             .iter()
@@ -136,6 +141,24 @@ fn status(status: Status) -> &'static str {
         Status::Calibration => "calibration",
         Status::Effect => "effect",
         Status::Unknown => "unknown",
+    }
+}
+
+/// A class of effects as it is stored.
+fn class_row(class: &EffectClass) -> ClassRow {
+    ClassRow {
+        id: class.id.to_owned(),
+        probability: class.probability,
+        gap_share: class.gap_share.map(with_interval),
+        kinds: class.kinds.iter().map(|kind| KindRow { id: kind.id.to_owned(), share: kind.share }).collect(),
+        kind_is_told: class.kind_is_told,
+        error_without: class.error_without,
+        error_with: class.error_with,
+        stability: class.stability,
+        evidence: ClassEvidenceRow {
+            replacement: class.evidence.replacement,
+            half_swings: class.evidence.half_swings,
+        },
     }
 }
 
