@@ -29,6 +29,7 @@ use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::model::tangent::Path;
 use crate::noise::floor as noise;
+use crate::search::alternatives::alternatives;
 use crate::search::archive::Archive;
 use crate::search::beam::{Breadth, search};
 use crate::search::null;
@@ -37,6 +38,7 @@ use crate::search::refine::refine;
 use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
 use seed::Seed;
+use std::cell::OnceCell;
 
 /// How to diagnose.
 #[derive(Debug, Clone, PartialEq)]
@@ -70,6 +72,9 @@ const MOST_EFFECTS: usize = 5;
 /// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first
 /// order stays below it up to a correlation of 0.84 from sample to sample.
 const FAR_ABOVE: f64 = 3.0;
+
+/// Log evidence by which the set of all likely classes may predict worse than the best set of some of them.
+const WORSE: f64 = 3.0;
 
 /// Searches on longer horizons at most.
 const MOST_HORIZONS: usize = 3;
@@ -143,6 +148,7 @@ pub fn diagnose(
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
     let vocabulary = candidates.len();
+    alternatives(coarse, coarse_base, &mut found, &candidates, (threshold, vocabulary));
     let weighing = Weighing::of(coarse, coarse_base, &found, threshold, vocabulary);
     let sets = weighing.weigh(&found);
     let mut pool = refine(data, &Archive::of(&base.calibrated), &sets, &found.rejected, &candidates);
@@ -155,15 +161,25 @@ pub fn diagnose(
     let weighing = Weighing::of(data, &base.calibrated, &pool, threshold, vocabulary);
     let fitted = weighing.weigh(&pool);
     lap("fits");
+    let completed = OnceCell::new();
     let thin = Thin { data: coarse, calibrated: coarse_base, pool: &found };
     let work = Context { data, base, segments, pool: &pool, thin, time, settings };
-    let predictions = work.predictions(&asked(&fitted))?;
+    let mut predictions = work.predictions(&asked(&fitted))?;
     let bare = pool.find(&[]).unwrap_or(&base.calibrated);
     let inclusion = Inclusion::of(segments.data, &predictions, bare, vocabulary);
     let swings = half_swings(records, &kept, simulator.angular_frequency());
     let classes = inclusion.classes(swings.as_ref().map(|own| &own.witness), &settings.seed);
-    let weighed = &inclusion.weighed;
-    let chosen = inclusion.best_of(&likely(&classes));
+    let names = likely(&classes);
+    let within = inclusion.within(&names);
+    let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
+    if let Some(fit) = inclusion.completed(data, &names) {
+        let least = within.map_or(0.0, |w| w.evidence) - WORSE;
+        let set = work.predicted(completed.get_or_init(|| fit));
+        if let Some(set) = set.filter(|set| inclusion.evidence(set) > least) {
+            chosen.clone_from(&set.followed.hypothesis.candidates);
+            predictions.sets.push(set);
+        }
+    }
     let held = work.held_out(predictions, &chosen)?;
     let repaired = held.repaired;
     let shift = if settings.considers("constant_torque") { work.shift(repaired) } else { None };
@@ -257,8 +273,8 @@ pub fn diagnose(
         repaired,
         unnamed: unnamed.as_ref(),
         shares: &shares,
-        weighed,
         classes: &classes,
+        inclusion: &inclusion,
         nameless,
         left_over,
         calibrated_off,
@@ -275,7 +291,8 @@ pub fn diagnose(
     let followed = if is_whole { segments.data } else { data };
     let repaired = repaired_simulator(own, followed, simulator, is_rounded)?;
     let series = series(segments.data, [&held.nominal, &held.recalibrated, after], &paths);
-    let sets = weighed
+    let sets = inclusion
+        .weighed
         .iter()
         .map(|w| SetScore {
             effects: w.fit.hypothesis.ids(),

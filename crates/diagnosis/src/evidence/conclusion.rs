@@ -5,7 +5,7 @@ use crate::answer::{
     Status, Verdict,
 };
 use crate::evidence::context::{Context, OFF_BY_CHANCE, Shift};
-use crate::evidence::weights::Weighed;
+use crate::evidence::inclusion::Inclusion;
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::levenberg_marquardt::Fit;
@@ -36,8 +36,8 @@ pub(crate) struct Parts<'a> {
     /// The torque without a name that stands beside them.
     pub(crate) unnamed: Option<&'a Unnamed>,
     pub(crate) shares: &'a [(f64, Interval)],
-    pub(crate) weighed: &'a [Weighed<'a>],
     pub(crate) classes: &'a [EffectClass],
+    pub(crate) inclusion: &'a Inclusion<'a>,
     /// Probability that all that is missing has no name.
     pub(crate) nameless: f64,
     /// Probability that anything is left beside the named effects, however little.
@@ -57,10 +57,7 @@ impl Parts<'_> {
     fn probability(&self, candidate: Candidate) -> f64 {
         let id = candidate.evidence_class().id();
         let class = self.classes.iter().find(|class| class.id == id);
-        class.map_or(0.0, |class| {
-            let kind = class.kinds.iter().find(|kind| kind.id == candidate.id());
-            class.probability * kind.map_or(0.0, |kind| kind.share)
-        })
+        class.map_or(0.0, |class| class.probability * self.inclusion.membership(candidate))
     }
 
     /// Probability that the system has none of the classes.
@@ -76,7 +73,7 @@ pub(crate) fn likely(classes: &[EffectClass]) -> Vec<&'static str> {
 
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
 pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
-    let Parts { work, candidates, repaired, shares, weighed, nameless, calibrated_off, shift, .. } = *parts;
+    let Parts { work, candidates, repaired, shares, inclusion, nameless, calibrated_off, shift, .. } = *parts;
     let bare = parts.bare() * (1.0 - nameless);
     // The significance of the calibration was tested at 1 %.
     let of_calibration = if calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE };
@@ -120,7 +117,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         if probability < 0.01 && place.is_none() {
             continue;
         }
-        let best = weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
+        let best = inclusion.weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
         let source = if place.is_some() { Some(complete) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),
@@ -205,6 +202,11 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
         if class.len() > 1 {
             equivalent.push(class);
         }
+    }
+    // Classes that are likely, and that the best set of these does not have.
+    for class in parts.classes.iter().filter(|class| class.probability >= LIKELY) {
+        let is_named = parts.named().iter().any(|own| own.counts() && own.evidence_class().id() == class.id);
+        effects.extend(class.kinds.first().filter(|_| !is_named).map(|kind| kind.id));
     }
     let is_nameless = effects.is_empty() && parts.nameless > LIKELY;
     if parts.shift.is_some() && !is_nameless {

@@ -166,15 +166,18 @@ impl<'a> Context<'a> {
             Moving::Starts => own(&self.base.nominal, &short.nominal),
         };
         let recalibrated = both.interleaved(moving)?;
-        let of = |followed: &&'a Fit| {
-            let fitted = shortened(self.segments.data, self.data, followed).ok()?;
-            let both = Both { fitted: &fitted, ..own(followed, &short.calibrated) };
-            let after = both.interleaved(Moving::All).ok()?;
-            Some(Predicted { followed, fitted, after })
-        };
-        let sets: Vec<Predicted<'a>> = sets.par_iter().filter_map(of).collect();
+        let sets: Vec<Predicted<'a>> = sets.par_iter().filter_map(|set| self.predicted(set)).collect();
         let last_third = both.last_third(moving)?;
         Ok(Predictions { nominal, recalibrated, last_third, sets })
+    }
+
+    /// What a set predicts of held-out parts; none where its motion cannot be followed from parts of the data.
+    pub(crate) fn predicted(&self, followed: &'a Fit) -> Option<Predicted<'a>> {
+        let segments = self.segments.data;
+        let fitted = shortened(segments, self.data, followed).ok()?;
+        let both = Both { longer: self.data, followed, segments, fitted: &fitted };
+        let after = both.interleaved(Moving::All).ok()?;
+        Some(Predicted { followed, fitted, after })
     }
 
     /// The named set with what it predicts; the recalibrated simulator where none is named or the set predicts no better.

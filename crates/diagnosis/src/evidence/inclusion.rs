@@ -12,10 +12,12 @@ use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::probability;
 use crate::evidence::weights::{TEMPERATURE, Weighed};
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::noise::floor;
+use crate::search::archive::vanished;
+use crate::search::proposals::proposal;
 use nalgebra::DVector;
 use seed::Seed;
 
@@ -47,7 +49,7 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
 
 /// Whether a set has an effect of a class.
 pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
-    fit.hypothesis.candidates.iter().any(|own| own.evidence_class() == class)
+    fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class() == class)
 }
 
 /// Sets weighed by what they predict.
@@ -57,6 +59,8 @@ pub(crate) struct Inclusion<'a> {
     /// For each of these the held-out error and the power that it leaves, by segment and band.
     left: Vec<Left>,
     likelihood: Likelihood,
+    /// Log likelihood of the recalibrated simulator.
+    bare: f64,
     /// Standard deviation of the sensor's noise.
     noise: f64,
     /// What each effect of a set costs.
@@ -71,7 +75,7 @@ struct Left {
 /// Draws of segments for a class's stability.
 const DRAWS: usize = 200;
 
-/// Share of a class's most probable member from which on the data tell its kind.
+/// Probability of a member, given its class, from which on it is told; and the same for its absence.
 const TOLD: f64 = 0.9;
 
 impl<'a> Inclusion<'a> {
@@ -112,14 +116,15 @@ impl<'a> Inclusion<'a> {
             w.probability = odds(w.evidence) / total;
             w.evidence -= base;
         }
-        Self { weighed, left, likelihood, noise, price }
+        Self { weighed, left, likelihood, bare: base, noise, price }
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
     pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
         let mut ids: Vec<EvidenceClass> = Vec::new();
-        for own in self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates) {
+        let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
+        for own in members.filter(|own| own.counts()) {
             if !ids.contains(&own.evidence_class()) {
                 ids.push(own.evidence_class());
             }
@@ -132,20 +137,18 @@ impl<'a> Inclusion<'a> {
         let (with, without) = (place(true)?, place(false)?);
         let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
         let error = |at: usize| self.left.get(at).map_or(0.0, |left| left.error);
-        let kinds = self.kinds(class);
-        let kind_is_told = kinds.first().is_some_and(|kind| kind.share >= TOLD);
         let mut class_row = EffectClass {
             id: class.id(),
             probability: 0.0,
             gap_share: None,
-            kinds,
-            kind_is_told,
+            kinds: self.kinds(class),
+            kind_is_told: self.is_kind_told(class),
             error_without: error(without),
             error_with: error(with),
             stability: self.stability(class, seed),
             evidence: ClassEvidence {
                 replacement: evidence(with) - evidence(without),
-                half_swings: witness.and_then(|witness| shown(witness, class)),
+                half_swings: witness.and_then(|witness| shown(witness, class, self.kinds(class).first()?.id)),
             },
         };
         let members = self.weighed.get(with).map(|w| w.fit.hypothesis.candidates.as_slice());
@@ -155,35 +158,81 @@ impl<'a> Inclusion<'a> {
         Some(class_row)
     }
 
-    /// The best set of effects of some classes, preferably one with all of them.
-    pub(crate) fn best_of(&self, classes: &[&str]) -> Vec<Candidate> {
-        let within = |w: &&Weighed<'_>| {
-            w.fit.hypothesis.candidates.iter().all(|own| classes.contains(&own.evidence_class().id()))
-        };
-        let best = self.weighed.iter().find(within);
-        best.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default()
+    /// The best set of effects of some classes only.
+    pub(crate) fn within(&self, classes: &[&str]) -> Option<&Weighed<'a>> {
+        let is_one = |own: &Candidate| !own.counts() || classes.contains(&own.evidence_class().id());
+        self.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
     }
 
-    /// The members of a class by the sets that have them.
-    fn kinds(&self, class: EvidenceClass) -> Vec<Kind> {
-        let mut kinds: Vec<Kind> = Vec::new();
-        let best = self.weighed.iter().find(|w| holds(w.fit, class)).map_or(0.0, |w| w.evidence);
-        for w in &self.weighed {
-            let odds = ((w.evidence - best) / TEMPERATURE).exp();
-            for own in w.fit.hypothesis.candidates.iter().filter(|own| own.evidence_class() == class) {
-                match kinds.iter_mut().find(|kind| kind.id == own.id()) {
-                    Some(kind) => kind.share += odds,
-                    None => kinds.push(Kind { id: own.id(), share: odds }),
+    /// The fit of that set with the classes that it lacks, each with the members and where these are in the best set that
+    /// has the class; none where it lacks nothing.
+    pub(crate) fn completed(&self, data: &Data, classes: &[&str]) -> Option<Fit> {
+        let base = self.within(classes)?.fit;
+        let has = |fit: &Fit, id: &str| {
+            fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class().id() == id)
+        };
+        let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
+        for &id in classes.iter().filter(|id| !has(base, id)) {
+            let Some(from) = self.weighed.iter().find(|w| has(w.fit, id)) else { continue };
+            let parts = from.fit.hypothesis.parts(&data.facts, &from.fit.point.globals);
+            let members = from.fit.hypothesis.candidates.iter().zip(parts);
+            let own = members.filter(|(own, _)| own.counts() && own.evidence_class().id() == id);
+            added.extend(own.map(|(own, part)| (*own, part.to_vec())));
+        }
+        if added.is_empty() {
+            return None;
+        }
+        let begun = proposal(data, base, &[], &added);
+        let ended = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
+        (!vanished(data, &ended)).then_some(ended)
+    }
+
+    /// Log evidence of a set by what it predicts, on the scale of the others.
+    pub(crate) fn evidence(&self, set: &Predicted<'_>) -> f64 {
+        let whole: Vec<usize> = (0..set.after.residuals.len()).collect();
+        let powers = self.likelihood.powers(&scaled(&set.after));
+        self.likelihood.log_of(&powers, &whole) - places(set.followed) * self.price - self.bare
+    }
+
+    /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
+    fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
+        let with = || self.weighed.iter().filter(|w| holds(w.fit, class));
+        let best = with().next().map_or(0.0, |w| w.evidence);
+        let odds = |w: &Weighed<'_>| ((w.evidence - best) / TEMPERATURE).exp();
+        let total: f64 = with().map(odds).sum();
+        let mut members: Vec<(Candidate, f64)> = Vec::new();
+        for w in with() {
+            for &own in
+                w.fit.hypothesis.candidates.iter().filter(|own| own.counts() && own.evidence_class() == class)
+            {
+                match members.iter_mut().find(|(known, _)| *known == own) {
+                    Some((_, sum)) => *sum += odds(w) / total,
+                    None => members.push((own, odds(w) / total)),
                 }
             }
         }
-        let total: f64 = kinds.iter().map(|kind| kind.share).sum();
-        for kind in &mut kinds {
-            kind.share /= total;
-        }
-        kinds.retain(|kind| kind.share > LEAST_SHARE);
+        members
+    }
+
+    /// Probability that the system has a candidate, given its class.
+    pub(crate) fn membership(&self, candidate: Candidate) -> f64 {
+        let members = self.memberships(candidate.evidence_class());
+        members.iter().find(|(own, _)| *own == candidate).map_or(0.0, |(_, share)| *share)
+    }
+
+    /// The same with shares that add up to 1.
+    fn kinds(&self, class: EvidenceClass) -> Vec<Kind> {
+        let members = self.memberships(class);
+        let total: f64 = members.iter().map(|(_, share)| share).sum();
+        let of = |(own, share): &(Candidate, f64)| Kind { id: own.id(), share: share / total };
+        let mut kinds: Vec<Kind> = members.iter().map(of).filter(|kind| kind.share > LEAST_SHARE).collect();
         kinds.sort_by(|a, b| b.share.total_cmp(&a.share));
         kinds
+    }
+
+    /// Whether these data tell the kind of a class: every member either acts for certain, or not at all.
+    fn is_kind_told(&self, class: EvidenceClass) -> bool {
+        self.memberships(class).iter().all(|(_, share)| *share >= TOLD || *share <= 1.0 - TOLD)
     }
 
     /// Part of the draws of segments in which the best set has the class.
@@ -214,8 +263,8 @@ fn places(fit: &Fit) -> f64 {
     fit.hypothesis.candidates.iter().filter(|own| own.counts()).count() as f64
 }
 
-/// What half swings say of a class.
-fn shown(witness: &Witness, class: EvidenceClass) -> Option<f64> {
+/// What half swings say of a class, of which a kind leads.
+fn shown(witness: &Witness, class: EvidenceClass, kind: &str) -> Option<f64> {
     let larger = |one: Option<f64>, other: Option<f64>| match (one, other) {
         (Some(one), Some(other)) => Some(one.max(other)),
         (one, other) => one.or(other),
@@ -226,6 +275,7 @@ fn shown(witness: &Witness, class: EvidenceClass) -> Option<f64> {
         EvidenceClass::Damping => witness.drag,
         EvidenceClass::Play => witness.play,
         EvidenceClass::Drift => witness.period_drift,
+        EvidenceClass::Sensor if kind == "sensor_drift" => witness.center_drift,
         EvidenceClass::SecondBody
         | EvidenceClass::Forcing
         | EvidenceClass::Preload

@@ -24,13 +24,13 @@ struct Learned {
 }
 
 const LEARNED: Learned = Learned {
-    constant: -2.0,
-    replacement: 0.8,
-    half_swings: 0.3,
-    error: 0.5,
-    left_over: -0.3,
-    stability: 1.0,
-    flexible: -0.7,
+    constant: -1.71,
+    replacement: 0.1,
+    half_swings: 0.2,
+    error: 0.8,
+    left_over: 0.0,
+    stability: 1.4,
+    flexible: -0.8,
 };
 
 fn compressed(x: f64) -> f64 {

@@ -4,7 +4,6 @@ use crate::data::segments::Data;
 use crate::evidence::likelihood::Likelihood;
 use crate::evidence::score::further_starts;
 use crate::fit::levenberg_marquardt::Fit;
-use crate::model::candidate::Candidate;
 use crate::noise::statistics::chi_squared_above;
 use crate::search::archive::Archive;
 use rayon::prelude::*;

@@ -1,5 +1,6 @@
 //! The search over sets of effects.
 
+pub(crate) mod alternatives;
 pub(crate) mod archive;
 pub(crate) mod beam;
 pub(crate) mod null;

@@ -20,7 +20,7 @@ const HOPELESS: f64 = 30.0;
 const MOST: usize = 6;
 
 /// Refits the best [`MOST`] of weighed sets on other data with the same segments, as many more that differ from the best of
-/// their size in one member (its rivals), and for every class of effects in the best set the best one without it.
+/// their size in one member (its rivals), and the best set with every class of effects and without every class of the best.
 /// What has been `refined` already, the calibrated simulator first, stays as it is.
 pub(crate) fn refine(
     data: &Data,
@@ -57,8 +57,10 @@ pub(crate) fn refine(
         };
         let classes = best.fit.hypothesis.candidates.iter().map(|own| own.evidence_class());
         let without = classes.filter_map(|class| waiting.iter().find(|w| lacks(w, class)));
+        let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
+        let with = classes.filter_map(|class| waiting.iter().find(|w| !lacks(w, class)));
         let mut chosen: Vec<&Fit> = Vec::new();
-        for fit in batch.iter().take(MOST).chain(further).chain(without).map(|w| w.fit) {
+        for fit in batch.iter().take(MOST).chain(further).chain(without).chain(with).map(|w| w.fit) {
             if !chosen.iter().any(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
                 chosen.push(fit);
             }

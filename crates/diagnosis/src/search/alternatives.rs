@@ -1,0 +1,110 @@
+//! What could be added to the best set of effects, and what could take a class's place in it.
+//!
+//! A search goes by what sets gain. Once they are weighed, the best of them may be one that the search has not gone on
+//! from. So effects are added to it, one of each class at a time, for as long as that makes a better one; and then every
+//! class of it is taken out and replaced, since a class is as well supported as the best set with it is over the best one
+//! without.
+
+use crate::data::segments::Data;
+use crate::evidence::weights::Weighing;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::candidates::EvidenceClass;
+use crate::model::dictionary::Dictionary;
+use crate::search::archive::Archive;
+use crate::search::beam::singles;
+use crate::search::proposals::{Proposal, additions, fit_all, proposal};
+use rayon::prelude::*;
+
+/// Effects that are added to the best set at most.
+const ROUNDS: usize = 2;
+
+/// Classes that are tried beside a set, and effects in the place of one.
+const BESIDE: usize = 5;
+const INSTEAD: usize = 2;
+
+/// Fits what could be added to the best set of an archive, and what could take a class's place in it.
+pub(crate) fn alternatives(
+    data: &Data,
+    calibrated: &Fit,
+    archive: &mut Archive,
+    candidates: &[Candidate],
+    (threshold, vocabulary): (f64, usize),
+) {
+    let best = |archive: &Archive| {
+        let weighing = Weighing::of(data, calibrated, archive, threshold, vocabulary);
+        weighing.weigh(archive).first().map_or(calibrated.clone(), |w| w.fit.clone())
+    };
+    let mut top = best(archive);
+    for _ in 0..ROUNDS {
+        let beside = |own: &Candidate| !top.hypothesis.candidates.contains(own);
+        let others: Vec<Candidate> = candidates.iter().copied().filter(beside).collect();
+        let added = proposals(data, &top, &others, BESIDE, archive);
+        if added.is_empty() {
+            break;
+        }
+        for fit in fit_all(data, &added, |_| Stopping::SEARCH) {
+            archive.admit(data, fit);
+        }
+        let better = best(archive);
+        if better.hypothesis.candidates == top.hypothesis.candidates {
+            break;
+        }
+        top = better;
+    }
+    let mut classes: Vec<EvidenceClass> = Vec::new();
+    for own in top.hypothesis.candidates.iter().filter(|own| own.counts()) {
+        if !classes.contains(&own.evidence_class()) {
+            classes.push(own.evidence_class());
+        }
+    }
+    let known: &Archive = archive;
+    let replaced: Vec<(Option<Fit>, Vec<Proposal>)> =
+        classes.par_iter().map(|&class| without(data, &top, class, candidates, known)).collect();
+    let (bare, begun): (Vec<Option<Fit>>, Vec<Vec<Proposal>>) = replaced.into_iter().unzip();
+    let begun: Vec<Proposal> = begun.into_iter().flatten().collect();
+    for fit in fit_all(data, &begun, |_| Stopping::SEARCH).into_iter().chain(bare.into_iter().flatten()) {
+        archive.admit(data, fit);
+    }
+}
+
+/// A set without a class, and proposals of what could take its place.
+fn without(
+    data: &Data,
+    set: &Fit,
+    class: EvidenceClass,
+    candidates: &[Candidate],
+    archive: &Archive,
+) -> (Option<Fit>, Vec<Proposal>) {
+    let members = set.hypothesis.candidates.iter().copied().filter(|own| own.evidence_class() == class);
+    let reduced = proposal(data, set, &members.collect::<Vec<_>>(), &[]);
+    let known = archive.find(&reduced.hypothesis.candidates).cloned();
+    let fitted = || fit(data, &reduced.hypothesis, reduced.point.clone(), Moving::All, Stopping::SEARCH).ok();
+    let Some(bare) = known.or_else(fitted) else { return (None, Vec::new()) };
+    let is_other =
+        |own: &Candidate| own.evidence_class() != class && !bare.hypothesis.candidates.contains(own);
+    let others: Vec<Candidate> = candidates.iter().copied().filter(is_other).collect();
+    let begun = proposals(data, &bare, &others, INSTEAD, archive);
+    (Some(bare), begun)
+}
+
+/// What could be added to a set: of each class the candidate that gains most to first order, the best of so many classes.
+/// Sets that are known are left out.
+fn proposals(data: &Data, set: &Fit, others: &[Candidate], most: usize, archive: &Archive) -> Vec<Proposal> {
+    let Ok(dictionary) = Dictionary::at(data, set, others) else { return Vec::new() };
+    let mut classes: Vec<EvidenceClass> = Vec::new();
+    let mut begun = Vec::new();
+    for gain in singles(&dictionary) {
+        let Some(class) = dictionary.candidate(&gain).map(|own| own.evidence_class()) else { continue };
+        if classes.contains(&class) {
+            continue;
+        }
+        classes.push(class);
+        begun.push(proposal(data, set, &[], &additions(&data.facts, &dictionary, &gain)));
+        if begun.len() == most {
+            break;
+        }
+    }
+    begun.retain(|own| archive.find(&own.hypothesis.candidates).is_none());
+    begun
+}
