@@ -13,7 +13,7 @@ mod tests;
 mod turning_points;
 
 use crate::data::observations::Observations;
-use crate::noise::statistics::autocorrelation_time;
+use crate::noise::statistics::{autocorrelation_time, median};
 use averaging::Restoring;
 use dynamics::effects::{CoulombFriction, QuadraticDrag};
 use record::Quantity;
@@ -58,8 +58,10 @@ pub(crate) struct Witness {
     pub(crate) asymmetric: Option<f64>,
     /// Center that depends on time: a drifting sensor or rest position.
     pub(crate) center_drift: Option<f64>,
-    /// Duration that grows with 1/A: play, a dead band.
+    /// Duration that grows toward small amplitudes: play, a dead band.
     pub(crate) play: Option<f64>,
+    /// Duration that shrinks toward small amplitudes: friction that bends before it slides.
+    pub(crate) presliding: Option<f64>,
     /// Amplitude that dry friction takes from half a swing, in the observed unit.
     pub(crate) dry_loss: Estimate,
     /// Share of the amplitude that viscous damping takes from half a swing.
@@ -151,8 +153,8 @@ fn witness(runs: &[Run], swings: &[HalfSwing]) -> Witness {
     let mut witness = Witness { count: swings.len(), ..Witness::default() };
     let durations = durations(runs, swings, &mut witness);
     let restoring = restoring(durations.as_ref(), swings);
-    losses(runs, swings, &restoring, &mut witness);
-    centers(runs, swings, &mut witness);
+    let lost = losses(runs, swings, &restoring, &mut witness);
+    centers(runs, swings, &lost, &mut witness);
     witness
 }
 
@@ -165,56 +167,63 @@ fn span(swings: &[HalfSwing]) -> f64 {
     (times().fold(f64::MIN, f64::max) - times().fold(f64::MAX, f64::min)).max(f64::MIN_POSITIVE)
 }
 
-/// Terms of the durations.
+/// Terms of the durations, and their powers of the amplitude.
 const CONSTANT: usize = 0;
 const SQUARE: usize = 1;
 const FOURTH: usize = 2;
-const TIME: usize = 3;
-const INVERSE: usize = 4;
+const PLAY: std::ops::Range<usize> = 3..5;
+const PRESLIDING: std::ops::Range<usize> = 5..7;
+const TIME: usize = 7;
+const POWERS: [i32; TIME] = [0, 2, 4, -1, -2, -1, -2];
 
-/// Durations over even powers of the amplitude, time and 1/A; gives the best combination.
+/// Durations over even and inverse powers of the amplitude and time; gives the best combination.
+///
+/// Inverse powers lengthen the small swings (play) or shorten them (friction that bends before it slides), never both; a
+/// fourth power stands only beside a second.
 fn durations(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) -> Option<Hypothesis> {
     let (most, span) = (largest(swings), span(swings));
-    let typical =
-        crate::noise::statistics::median(&swings.iter().map(|s| s.duration_s.value).collect::<Vec<_>>());
-    let least = swings.iter().map(|swing| swing.amplitude.value / most).fold(1.0, f64::min);
+    let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
+    let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
+    let power = |term: usize, swing: &HalfSwing| {
+        let power = POWERS.get(term).copied().unwrap_or_default();
+        let part = (swing.amplitude.value / if power < 0 { least } else { most }).powi(power);
+        if PRESLIDING.contains(&term) { -part } else { part }
+    };
     let increments: Vec<Increments> = runs
         .iter()
         .map(|run| {
             let each = |term: &dyn Fn(&HalfSwing) -> f64| run.swings.iter().map(term).collect::<Vec<f64>>();
-            let part = |swing: &HalfSwing| swing.amplitude.value / most;
-            let variances: Vec<f64> = run.swings.iter().map(|swing| swing.duration_s.error.powi(2)).collect();
+            let powers = (0..TIME).map(|term| each(&|swing| power(term, swing)));
+            let variances = each(&|swing| swing.duration_s.error.powi(2));
             let shared = run.turns.iter().skip(1).map(|turn| -turn.time_variance).collect();
             Increments {
                 values: each(&|swing| swing.duration_s.value),
-                terms: vec![
-                    each(&|_| 1.0),
-                    each(&|swing| part(swing).powi(2)),
-                    each(&|swing| part(swing).powi(4)),
-                    each(&|swing| swing.time_s / span),
-                    each(&|swing| least / part(swing)),
-                ],
+                terms: powers.chain([each(&|swing| swing.time_s / span)]).collect(),
                 covariance: [variances, shared, vec![0.0; run.swings.len()]],
             }
         })
         .collect();
     let change = LARGEST_CHANGE * typical;
-    let priors = [
-        Prior::Always,
-        Prior::Within(change),
-        Prior::Within(change),
-        Prior::Within(change),
-        Prior::UpTo(change),
-    ];
-    // A fourth power only beside a second.
+    let mut priors = vec![Prior::Within(change); TIME + 1];
+    for (term, prior) in priors.iter_mut().enumerate() {
+        match term {
+            CONSTANT => *prior = Prior::Always,
+            term if PLAY.contains(&term) || PRESLIDING.contains(&term) => *prior = Prior::UpTo(change),
+            _ => {}
+        }
+    }
+    let any = |acts: &[bool], terms: std::ops::Range<usize>| {
+        acts.get(terms).is_some_and(|acts| acts.contains(&true))
+    };
+    let one = |acts: &[bool], term: usize| any(acts, term..term + 1);
     let allowed = |acts: &[bool]| {
-        !acts.get(FOURTH).is_some_and(|acts| *acts) || acts.get(SQUARE).is_some_and(|acts| *acts)
+        (one(acts, SQUARE) || !one(acts, FOURTH)) && !(any(acts, PLAY) && any(acts, PRESLIDING))
     };
     let found = hypotheses(&increments, &priors, &allowed);
-    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
-    witness.even_stiffness = inclusion(SQUARE);
-    witness.period_drift = inclusion(TIME);
-    witness.play = inclusion(INVERSE);
+    witness.even_stiffness = by_replacement(&found, &|acts| one(acts, SQUARE));
+    witness.period_drift = by_replacement(&found, &|acts| one(acts, TIME));
+    witness.play = by_replacement(&found, &|acts| any(acts, PLAY));
+    witness.presliding = by_replacement(&found, &|acts| any(acts, PRESLIDING));
     let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
     let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
     let base = of(CONSTANT).value;
@@ -236,70 +245,66 @@ fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing]) -> Restoring 
     )
 }
 
-/// Increments of what turning points measure on either side: a half swing's amplitude or center, whose errors are
-/// shared with the next but one.
-fn of_turns(
-    run: &Run,
-    measured: &dyn Fn(&HalfSwing) -> f64,
-    terms: &[&dyn Fn(&HalfSwing, &HalfSwing) -> f64],
-) -> Increments {
-    let steps = || {
-        run.swings.windows(2).filter_map(|pair| match pair {
-            [one, next] => Some((one, next)),
-            _ => None,
-        })
-    };
+/// Increments of what turning points measure on either side, a half swing's amplitude or center, over increments of
+/// terms: the errors are shared with the next but one.
+fn of_turns(run: &Run, measured: &dyn Fn(&HalfSwing) -> f64, terms: Vec<Vec<f64>>) -> Increments {
     let ends = run.turns.iter().zip(run.turns.iter().skip(2));
     let variances: Vec<f64> =
         ends.map(|(from, to)| 0.25 * (from.value_variance + to.value_variance)).collect();
     let shared = run.turns.iter().skip(2).map(|turn| -0.25 * turn.value_variance).collect();
-    Increments {
-        values: steps().map(|(one, next)| measured(next) - measured(one)).collect(),
-        terms: terms.iter().map(|term| steps().map(|(one, next)| term(one, next)).collect()).collect(),
-        covariance: [variances, vec![0.0; run.swings.len()], shared],
-    }
+    let values: Vec<f64> = run.swings.iter().map(measured).collect();
+    Increments { values: steps(&values), terms, covariance: [variances, vec![0.0; run.swings.len()], shared] }
 }
 
-/// Loss of amplitude as dry, viscous and quadratic, each averaged over the swing that the durations tell.
-fn losses(runs: &[Run], swings: &[HalfSwing], restoring: &Restoring, witness: &mut Witness) {
+fn steps(values: &[f64]) -> Vec<f64> {
+    values.iter().zip(values.iter().skip(1)).map(|(one, next)| next - one).collect()
+}
+
+/// Loss of amplitude as dry, viscous and quadratic, each averaged over the swing that the durations tell; gives what the
+/// best combination takes from each swing of each run.
+fn losses(runs: &[Run], swings: &[HalfSwing], restoring: &Restoring, witness: &mut Witness) -> Vec<Vec<f64>> {
     let most = largest(swings);
     let omega = restoring.angular_frequency;
-    // Units: half the amplitude, and shares of the amplitude, lost in a harmonic half swing.
-    let dry = |a: f64| restoring.loss::<CoulombFriction>(&[0.5 * omega * omega, 0.0, 0.0, 0.0], a);
-    let viscous = |a: f64| restoring.viscous(2.0 * omega / std::f64::consts::PI, a);
-    let quadratic = |a: f64| restoring.loss::<QuadraticDrag>(&[0.75, 0.0, 0.0, 0.0], a);
-    let mean = |law: &dyn Fn(f64) -> f64, one: &HalfSwing, next: &HalfSwing| {
-        -0.5 * (law(one.amplitude.value) + law(next.amplitude.value))
+    // Units: the amplitude, and shares of the amplitude, lost in a harmonic half swing.
+    let laws = |a: f64| {
+        [
+            restoring.loss::<CoulombFriction>(&[0.5 * omega * omega, 0.0, 0.0, 0.0], a),
+            restoring.viscous(2.0 * omega / std::f64::consts::PI, a),
+            restoring.loss::<QuadraticDrag>(&[0.75, 0.0, 0.0, 0.0], a),
+        ]
     };
+    let of_laws = |run: &Run| run.swings.iter().map(|swing| laws(swing.amplitude.value)).collect::<Vec<_>>();
+    let lost: Vec<Vec<[f64; 3]>> = runs.iter().map(of_laws).collect();
     let increments: Vec<Increments> = runs
         .iter()
-        .map(|run| {
-            of_turns(
-                run,
-                &|swing| swing.amplitude.value,
-                &[
-                    &|one, next| mean(&dry, one, next),
-                    &|one, next| mean(&viscous, one, next),
-                    &|one, next| mean(&quadratic, one, next),
-                ],
-            )
+        .zip(&lost)
+        .map(|(run, lost)| {
+            let term = |law: usize| {
+                let own: Vec<f64> = lost.iter().filter_map(|laws| laws.get(law)).copied().collect();
+                own.iter().zip(own.iter().skip(1)).map(|(one, next)| -0.5 * (one + next)).collect()
+            };
+            of_turns(run, &|swing| swing.amplitude.value, (0..3).map(term).collect())
         })
         .collect();
     // A coefficient is at most what explains all that is lost.
-    let lost: f64 = -increments.iter().flat_map(|run| &run.values).sum::<f64>();
+    let all: f64 = -increments.iter().flat_map(|run| &run.values).sum::<f64>();
     let bound = |term: usize| {
-        let all: f64 = -increments.iter().filter_map(|run| run.terms.get(term)).flatten().sum::<f64>();
-        Prior::UpTo((lost / all).max(1e-6 * most / all.max(f64::MIN_POSITIVE)))
+        let own: f64 = -increments.iter().filter_map(|run| run.terms.get(term)).flatten().sum::<f64>();
+        Prior::UpTo(all.max(1e-6 * most) / own.max(f64::MIN_POSITIVE))
     };
     let found = hypotheses(&increments, &[bound(0), bound(1), bound(2)], &|_| true);
     let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
     witness.friction = inclusion(0);
     witness.viscous = inclusion(1);
     witness.drag = inclusion(2);
-    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else { return };
-    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
-    (witness.dry_loss, witness.viscous_loss, witness.quadratic_loss) = (of(0), of(1), of(2));
+    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else { return Vec::new() };
+    if let &[dry, viscous, quadratic] = best.coefficients.as_slice() {
+        (witness.dry_loss, witness.viscous_loss, witness.quadratic_loss) = (dry, viscous, quadratic);
+    }
     witness.effective = effective(&increments, best);
+    let sum =
+        |laws: &[f64; 3]| laws.iter().zip(&best.coefficients).map(|(law, own)| law * own.value).sum::<f64>();
+    lost.iter().map(|run| run.iter().map(sum).collect()).collect()
 }
 
 /// Number of independent amplitudes by what a combination leaves of them.
@@ -324,25 +329,25 @@ fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
     count as f64 / autocorrelation_time(&pieces).max(2.0)
 }
 
-/// Centers over the amplitude's square and time.
-fn centers(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) {
+/// Centers over the amplitude's square and time. The middle of two turning points lies off the swing's center by half of
+/// what the swing loses, to either side in turn.
+fn centers(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>], witness: &mut Witness) {
     let (most, span) = (largest(swings), span(swings));
     let increments: Vec<Increments> = runs
         .iter()
-        .map(|run| {
-            of_turns(
-                run,
-                &|swing| swing.center.value,
-                &[
-                    &|one, next| (next.amplitude.value.powi(2) - one.amplitude.value.powi(2)) / (most * most),
-                    &|one, next| (next.time_s - one.time_s) / span,
-                ],
-            )
+        .zip(lost)
+        .map(|(run, lost)| {
+            let side = |at: usize| if at.is_multiple_of(2) { 1.0 } else { -1.0 };
+            let to_a_side: Vec<f64> = lost.iter().enumerate().map(|(at, lost)| side(at) * lost).collect();
+            let squares: Vec<f64> = run.swings.iter().map(|s| (s.amplitude.value / most).powi(2)).collect();
+            let times: Vec<f64> = run.swings.iter().map(|swing| swing.time_s / span).collect();
+            let terms = vec![steps(&to_a_side), steps(&squares), steps(&times)];
+            of_turns(run, &|swing| swing.center.value, terms)
         })
         .collect();
     let within = Prior::Within(LARGEST_SHIFT * most);
-    let found = hypotheses(&increments, &[within, within], &|_| true);
+    let found = hypotheses(&increments, &[Prior::Always, within, within], &|_| true);
     let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
-    witness.asymmetric = inclusion(0);
-    witness.center_drift = inclusion(1);
+    witness.asymmetric = inclusion(1);
+    witness.center_drift = inclusion(2);
 }

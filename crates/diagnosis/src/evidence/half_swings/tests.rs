@@ -47,7 +47,7 @@ fn line(name: &str, found: &HalfSwings) -> String {
     let nats = |value: Option<f64>| value.map_or("    -".to_owned(), |value| format!("{value:5.0}"));
     let (first, last) = (found.swings.first().unwrap(), found.swings.last().unwrap());
     format!(
-        "{name:12} {:4} {:5.0} {:8.3e}..{:8.3e} ±{:7.1e} | friction {} viscous {} drag {} | even {} time {} play {} | asymmetric {} time {} | dry {:.4}±{:.4} viscous {:.5}±{:.5} quadratic {:.5}±{:.5} softening {:+.5}±{:.5}",
+        "{name:12} {:4} {:5.0} {:8.3e}..{:8.3e} ±{:7.1e} | friction {} viscous {} drag {} | even {} time {} play {} presliding {} | asymmetric {} time {} | dry {:.4}±{:.4} viscous {:.5}±{:.5} quadratic {:.5}±{:.5} softening {:+.5}±{:.5}",
         w.count,
         w.effective,
         first.amplitude.value,
@@ -59,6 +59,7 @@ fn line(name: &str, found: &HalfSwings) -> String {
         nats(w.even_stiffness),
         nats(w.period_drift),
         nats(w.play),
+        nats(w.presliding),
         nats(w.asymmetric),
         nats(w.center_drift),
         w.dry_loss.value / first.amplitude.value,
@@ -116,6 +117,64 @@ fn measured() {
             Some(found) => println!("{}", line(record.split('/').next_back().unwrap(), &found)),
             None => println!("{record}: no half swings"),
         }
+    }
+}
+
+/// Evidence of each case below the folder `RIGS` (set when this is compiled), one line of JSON a case.
+#[test]
+#[ignore = "a bank to score elsewhere"]
+fn rigs() {
+    let Some(folder) = option_env!("RIGS") else {
+        println!("skipped: no RIGS when this was compiled");
+        return;
+    };
+    let mut cases: Vec<PathBuf> =
+        std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    cases.sort();
+    for case in cases.iter().filter(|case| case.join("nominal.toml").exists()) {
+        let nominal: Nominal =
+            toml::from_str(&std::fs::read_to_string(case.join("nominal.toml")).unwrap()).unwrap();
+        let mut records = Vec::new();
+        let mut files: Vec<PathBuf> =
+            std::fs::read_dir(case).unwrap().map(|entry| entry.unwrap().path()).collect();
+        files.sort();
+        for file in files.iter().filter(|file| file.extension().is_some_and(|end| end == "csv")) {
+            let text = std::fs::read_to_string(file).unwrap();
+            let mut names = text.lines().find(|line| !line.starts_with('#')).unwrap().split(',').skip(1);
+            let columns = CsvColumns {
+                value: names.next().map(str::to_owned),
+                input: names.next().map(str::to_owned),
+                ..CsvColumns::default()
+            };
+            let Ok((record, _)) = read_file(file, &ReadOptions { columns, ..ReadOptions::default() }) else {
+                continue;
+            };
+            records.push(Observations::new(&record, &Clock::new(&record, ClockChoice::Auto).unwrap()));
+        }
+        let kept: Vec<Vec<bool>> = records.iter().map(signatures::kept).collect();
+        let omega = (nominal.stiffness() / nominal.inertia()).sqrt();
+        let name = case.file_name().unwrap().to_string_lossy();
+        let driven = records.iter().all(|record| record.input.is_some());
+        let Some(found) = half_swings(&records, &kept, omega) else {
+            println!("RIG {{\"id\": \"{name}\", \"count\": 0, \"driven\": {driven}}}");
+            continue;
+        };
+        let w = found.witness;
+        let number = |value: Option<f64>| value.map_or("null".to_owned(), |value| format!("{value:.3}"));
+        println!(
+            "RIG {{\"id\": \"{name}\", \"driven\": {driven}, \"count\": {}, \"effective\": {:.2}, \"friction\": {}, \"drag\": {}, \"viscous\": {}, \"even\": {}, \"drift\": {}, \"play\": {}, \"presliding\": {}, \"asymmetric\": {}, \"center_drift\": {}}}",
+            w.count,
+            w.effective,
+            number(w.friction),
+            number(w.drag),
+            number(w.viscous),
+            number(w.even_stiffness),
+            number(w.period_drift),
+            number(w.play),
+            number(w.presliding),
+            number(w.asymmetric),
+            number(w.center_drift),
+        );
     }
 }
 
