@@ -1,6 +1,7 @@
 //! Friction with a pre-sliding spring.
 
-use super::{Along, CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use super::coulomb_friction::CoulombFriction;
+use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use crate::model::contact::bent;

@@ -1,6 +1,7 @@
 //! Friction that falls with speed.
 
-use super::{CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use super::coulomb_friction::CoulombFriction;
+use super::{CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use dynamics::{Effect, SystemEffect};
