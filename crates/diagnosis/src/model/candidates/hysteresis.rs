@@ -64,13 +64,6 @@ impl CandidateLaw for Hysteresis {
         let &[_, displacement] = shape else { return Vec::new() };
         vec![(along.respond)(&bending(displacement, along))]
     }
-
-    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        match (shape, coefficients) {
-            (&[_, displacement], &[torque]) => vec![torque, displacement],
-            _ => coefficients.to_vec(),
-        }
-    }
 }
 
 /// −z along a motion, for Dahl's law: exact between samples of a motion in one direction.

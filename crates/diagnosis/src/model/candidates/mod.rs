@@ -11,7 +11,7 @@
 //!    bounds, and whether its coefficients have a sign; [`CubicStiffness`](cubic_stiffness::CubicStiffness) has these and
 //!    nothing else. Defaults suit a torque that is smooth and linear in its one parameter: its columns are then the
 //!    responses to the law's own torque. One with a shape besides gives [`shapes`](CandidateLaw::shapes) and
-//!    [`linear_parameters`](CandidateLaw::linear_parameters), as [`EndStop`](end_stop::EndStop) does; one that is fitted in
+//!    [`linear_places`](CandidateLaw::linear_places), as [`EndStop`](end_stop::EndStop) does; one that is fitted in
 //!    other numbers than its law's gives [`values`](CandidateLaw::values), [`fitted`](CandidateLaw::fitted) and
 //!    [`slopes`](CandidateLaw::slopes), as [`StribeckFriction`](stribeck_friction::StribeckFriction) does.
 //! 2. Its module below, and its line in [`REGISTRY`].
