@@ -1,9 +1,10 @@
-//! The recipe of CONTRIBUTING.md for a new estimator, followed to the letter in a copy of the workspace.
+//! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace.
 
 use crate::support::root;
 use std::fs;
 use std::path::Path;
-use std::process::Command;
+use std::process::{Command, Output};
+use tempfile::TempDir;
 
 fn copy(from: &Path, to: &Path) {
     fs::create_dir_all(to).unwrap();
@@ -24,10 +25,8 @@ fn edit(path: &Path, from: &str, to: &str) {
     fs::write(path, text.replacen(from, to, 1)).unwrap();
 }
 
-/// An estimator of one's own: the decay from the first to the last peak. A copied baseline becomes it by
-/// changing its name, its tags and its answer.
-#[test]
-fn a_new_estimator_takes_four_files_and_passes_the_battery() {
+/// A copy of the workspace.
+fn workspace() -> TempDir {
     let scratch = tempfile::tempdir().unwrap();
     let home = scratch.path();
     for name in ["Cargo.toml", "Cargo.lock"] {
@@ -36,6 +35,26 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     // The trainer's tests lie outside the copied folder.
     copy(&root().join("crates"), &home.join("crates"));
     copy(&root().join("tests"), &home.join("tests"));
+    scratch
+}
+
+/// Runs one test target in a copy, in the workspace's own target folder and for the whole workspace: cargo joins the
+/// features of all that it is asked to build, so that only then the libraries built already serve.
+fn test_in(home: &Path, target: &str, filter: &str) -> Output {
+    Command::new(env!("CARGO"))
+        .args(["test", "--offline", "--workspace", "--test", target, "--", filter])
+        .env("CARGO_TARGET_DIR", root().join("target"))
+        .current_dir(home)
+        .output()
+        .unwrap()
+}
+
+/// An estimator of one's own: the decay from the first to the last peak. A copied baseline becomes it by
+/// changing its name, its tags and its answer.
+#[test]
+fn a_new_estimator_takes_four_files_and_passes_the_battery() {
+    let scratch = workspace();
+    let home = scratch.path();
 
     // Steps 1 and 2.
     let own = home.join("crates/estimators/endpoints");
@@ -66,16 +85,7 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
         "estimator_baseline::ENTRY, estimator_endpoints::ENTRY,",
     );
 
-    // In the workspace's own target folder, and for the whole workspace: cargo joins the features of all
-    // that it is asked to build, so that only then the libraries built already serve.
-    let battery = |filter: &str| {
-        Command::new(env!("CARGO"))
-            .args(["test", "--offline", "--workspace", "--test", "battery", "--", filter])
-            .env("CARGO_TARGET_DIR", root().join("target"))
-            .current_dir(home)
-            .output()
-            .unwrap()
-    };
+    let battery = |filter: &str| test_in(home, "battery", filter);
     let exact = battery("endpoints::it_recovers_a_pure_exponential");
     let text = String::from_utf8_lossy(&exact.stdout).into_owned();
     assert!(exact.status.success(), "{text}{}", String::from_utf8_lossy(&exact.stderr));
@@ -83,4 +93,44 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     // Two peaks are not all of them: the battery sees it.
     let rough = battery("endpoints::it_agrees_with_least_squares");
     assert!(!rough.status.success(), "{}", String::from_utf8_lossy(&rough.stdout));
+}
+
+/// A damping of one's own, from its law to the answer of a diagnosis: a file and its lines in `dynamics`, a file and its
+/// lines in `diagnosis`, and nothing else.
+#[test]
+fn a_new_effect_takes_two_files_and_is_diagnosed() {
+    let scratch = workspace();
+    let home = scratch.path();
+    let file = |name: &str| root().join("tests/recipe").join(name);
+
+    let dynamics = home.join("crates/dynamics/src");
+    fs::copy(file("law.rs"), dynamics.join("effects/sine_drag.rs")).unwrap();
+    edit(&dynamics.join("effects/mod.rs"), "mod quadratic_drag;", "mod quadratic_drag;\nmod sine_drag;");
+    edit(
+        &dynamics.join("effects/mod.rs"),
+        "pub use quadratic_drag::QuadraticDrag;",
+        "pub use quadratic_drag::QuadraticDrag;\npub use sine_drag::SineDrag;",
+    );
+    edit(&dynamics.join("registry.rs"), "    QuadraticDrag,\n", "    QuadraticDrag,\n    SineDrag,\n");
+
+    let candidates = home.join("crates/diagnosis/src/model/candidates");
+    fs::copy(file("candidate.rs"), candidates.join("sine_drag.rs")).unwrap();
+    edit(
+        &candidates.join("mod.rs"),
+        "pub(crate) mod quadratic_drag;",
+        "pub(crate) mod quadratic_drag;\npub(crate) mod sine_drag;",
+    );
+    edit(
+        &candidates.join("mod.rs"),
+        "    Candidate::new(&quadratic_drag::QuadraticDrag),",
+        "    Candidate::new(&quadratic_drag::QuadraticDrag),\n    Candidate::new(&sine_drag::SineDrag),",
+    );
+
+    let tests = home.join("crates/diagnosis/tests");
+    fs::create_dir(&tests).unwrap();
+    fs::copy(file("diagnosed.rs"), tests.join("sine_drag.rs")).unwrap();
+    let diagnosed = test_in(home, "sine_drag", "");
+    let text = String::from_utf8_lossy(&diagnosed.stdout).into_owned();
+    assert!(diagnosed.status.success(), "{text}{}", String::from_utf8_lossy(&diagnosed.stderr));
+    assert!(text.contains("1 passed"), "{text}");
 }

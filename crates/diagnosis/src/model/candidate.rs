@@ -49,13 +49,13 @@ pub fn has_fitted_hidden_start(id: &str) -> bool {
     Candidate::find(id).is_some_and(|candidate| candidate.free_hidden() > 0)
 }
 
-/// Id of the class of effects that explain alike (`friction`, `restoring`, …; see [`EvidenceClass::id`]) to which the effect
-/// with a public id belongs; none for ids outside the vocabulary.
+/// Id of the class of effects that explain alike to which the effect with a public id belongs: `friction`, `restoring`,
+/// `damping`, `play`, `drift`, `second_body`, `forcing`, `preload`, `actuator`, `sensor` or `stamps`; none for ids outside
+/// the vocabulary.
 #[must_use]
 pub fn evidence_class(id: &str) -> Option<&'static str> {
-    let effect = Effect::find(id).ok()?;
-    let unnamed = Candidate::UNNAMED.effect() == effect;
-    (!unnamed).then(|| EvidenceClass::of(effect).id())
+    let effect = Effect::find(id).ok().filter(|effect| *effect != Candidate::UNNAMED.effect())?;
+    EvidenceClass::of(effect).map(EvidenceClass::id)
 }
 
 /// Whether the effect with a public id can sit where it likes on a record and soak up what no law explains: a stop at any

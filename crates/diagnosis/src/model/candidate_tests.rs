@@ -1,7 +1,8 @@
-use super::{Candidate, MainMode};
+use super::{Candidate, MainMode, Parameter, evidence_class, is_flexible};
 use crate::data::scales::Scales;
-use crate::model::candidates::FlexibleCoupling;
-use dynamics::{Coordinate, Nominal};
+use crate::model::candidates::flexible_coupling::FlexibleCoupling;
+use crate::model::candidates::{Along, Lines, Mode};
+use dynamics::{Coordinate, Hold, Input, Nominal, REGISTRY};
 use record::Quantity;
 
 const FACTS: Scales = Scales {
@@ -82,4 +83,132 @@ fn confusion_is_mutual() {
             }
         }
     }
+}
+
+/// Parameters inside their bounds, none of them 0.
+fn inside(candidate: Candidate) -> Vec<f64> {
+    let bounded = |p: Parameter| match (p.lower.is_finite(), p.upper.is_finite()) {
+        (true, true) => p.lower + 0.3 * (p.upper - p.lower),
+        (true, false) => p.lower + 0.7,
+        _ => 0.4,
+    };
+    candidate.parameters(&FACTS).into_iter().map(bounded).collect()
+}
+
+#[test]
+fn a_fits_parameters_come_back_from_the_laws_with_their_derivatives() {
+    for candidate in Candidate::ALL.iter().chain(&[Candidate::UNNAMED]).copied() {
+        let fitted = inside(candidate);
+        let again = candidate.fitted(&candidate.values(&fitted));
+        for (own, again) in fitted.iter().zip(&again) {
+            assert!((own - again).abs() <= 1e-12 * own.abs(), "{candidate:?} {fitted:?} {again:?}");
+        }
+        let stated = candidate.slopes(&fitted);
+        for column in 0..fitted.len() {
+            let h = 1e-6 * fitted[column].abs();
+            let at = |by: f64| {
+                let mut moved = fitted.clone();
+                moved[column] += by;
+                candidate.values(&moved)
+            };
+            for (row, (above, below)) in at(h).into_iter().zip(at(-h)).enumerate() {
+                let unit = f64::from(u8::from(row == column));
+                let own = stated.iter().find(|slope| (slope.0, slope.1) == (row, column));
+                let own = own.map_or(unit, |slope| slope.2);
+                let difference = (above - below) / (2.0 * h);
+                assert!((own - difference).abs() < 1e-6 * (1.0 + own.abs()), "{candidate:?} {row} {column}");
+            }
+        }
+    }
+}
+
+/// A quarter of a swing that passes through all of its positions, seen by its torques.
+#[test]
+fn every_shape_has_columns_and_their_coefficients_are_parameters() {
+    let times: Vec<f64> = (0..200).map(|i| f64::from(i) / 260.0).collect();
+    let position: Vec<f64> = times.iter().map(|t| 0.7 * (22.0 * t).cos()).collect();
+    let velocity: Vec<f64> = times.iter().map(|t| -15.0 * (22.0 * t).sin()).collect();
+    let command = Input::new(times.clone(), velocity.iter().map(|v| v / 15.0).collect(), Hold::Zero).unwrap();
+    let nominal = Nominal::new(1.0, 0.2, 484.0, 0.0).unwrap().coefficients();
+    let along = Along {
+        times: &times,
+        position: &position,
+        velocity: &velocity,
+        observed: &position,
+        rate: &velocity,
+        input: command.values(),
+        command: Some(&command),
+        first: true,
+        facts: &FACTS,
+        nominal: &nominal,
+        respond: &|torque: &[f64]| torque.to_vec(),
+    };
+    for candidate in Candidate::ALL {
+        for shape in candidate.shapes_for(&FACTS, &OneLine) {
+            let columns = candidate.columns(&shape, &along);
+            assert!(!columns.is_empty(), "{candidate:?}");
+            let seen = |column: &Vec<f64>| column.len() == times.len() && column.iter().any(|x| *x != 0.0);
+            assert!(columns.iter().all(seen), "{candidate:?} {shape:?}");
+            let parameters = candidate.linear_parameters(&shape, &vec![1.0; columns.len()]);
+            assert_eq!(parameters.len(), candidate.parameters(&FACTS).len(), "{candidate:?}");
+        }
+        for (start, _) in candidate.starts(&FACTS, 1.0, &OneLine) {
+            assert_eq!(start.len(), candidate.parameters(&FACTS).len(), "{candidate:?}");
+        }
+    }
+}
+
+/// A residual with one line.
+struct OneLine;
+
+impl Lines for OneLine {
+    fn steady(&self, _most: usize) -> Vec<f64> {
+        vec![31.0]
+    }
+
+    fn decaying(&self, _most: usize) -> Vec<Mode> {
+        vec![Mode { frequency: 31.0, rate: 0.5, inertia: None, gain: 1.0 }]
+    }
+
+    fn driven(&self, _most: usize) -> Vec<Mode> {
+        vec![Mode { frequency: 31.0, rate: 0.5, inertia: Some(0.1), gain: 1.0 }]
+    }
+
+    fn longest_span(&self) -> f64 {
+        2.0
+    }
+}
+
+#[test]
+fn every_effect_of_the_vocabulary_has_a_class() {
+    let of = |id: &str| evidence_class(id).unwrap();
+    for effect in REGISTRY {
+        assert!(!of(effect.id()).is_empty());
+    }
+    assert_eq!(of("hysteresis"), "friction");
+    assert_eq!(of("gravity"), "restoring");
+    assert_eq!(of("damping_drift"), "damping");
+    assert_eq!(of("clock_drift"), "drift");
+    // No fit follows these.
+    assert_eq!(of("timestamp_jitter"), "stamps");
+    assert_eq!(of("dropouts"), "stamps");
+    assert_eq!(of("outliers"), "sensor");
+    assert_eq!(evidence_class("unknown"), None);
+    assert_eq!(evidence_class("friction"), None);
+}
+
+#[test]
+fn what_can_sit_anywhere_on_a_record_is_flexible() {
+    let flexible: Vec<&str> =
+        REGISTRY.iter().map(|effect| effect.id()).filter(|id| is_flexible(id)).collect();
+    let all = [
+        "end_stop",
+        "stiffness_drift",
+        "damping_drift",
+        "periodic_forcing",
+        "flexible_coupling",
+        "sensor_drift",
+        "clock_drift",
+    ];
+    assert_eq!(flexible, all);
 }

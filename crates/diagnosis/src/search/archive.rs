@@ -131,7 +131,9 @@ mod tests {
     use crate::evidence::score::calibrated_swing;
     use crate::fit::levenberg_marquardt::Fit;
     use crate::model::candidate::Candidate;
-    use crate::model::candidates::{FlexibleCoupling, Gravity, QuadraticDrag};
+    use crate::model::candidates::flexible_coupling::FlexibleCoupling;
+    use crate::model::candidates::gravity::Gravity;
+    use crate::model::candidates::quadratic_drag::QuadraticDrag;
 
     const GRAVITY: Candidate = Candidate::new(&Gravity);
     const SECOND_BODY: Candidate = Candidate::new(&FlexibleCoupling);

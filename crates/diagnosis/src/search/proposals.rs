@@ -165,7 +165,9 @@ mod tests {
     use crate::evidence::score::calibrated_swing;
     use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, squares};
     use crate::model::candidate::Candidate;
-    use crate::model::candidates::{CoulombFriction, Hysteresis, QuadraticDrag};
+    use crate::model::candidates::coulomb_friction::CoulombFriction;
+    use crate::model::candidates::hysteresis::Hysteresis;
+    use crate::model::candidates::quadratic_drag::QuadraticDrag;
     use crate::search::archive::Archive;
     const COULOMB: Candidate = Candidate::new(&CoulombFriction);
     const DRAG: Candidate = Candidate::new(&QuadraticDrag);

@@ -43,10 +43,7 @@ impl CandidateLaw for EndStop {
         upper.chain(lower).map(|angle| vec![angle, 1.0, 0.0]).collect()
     }
 
-    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        match (shape, coefficients) {
-            (&[angle, ..], &[stiffness]) => vec![angle, stiffness, 0.0],
-            _ => coefficients.to_vec(),
-        }
+    fn linear_places(&self) -> &'static [usize] {
+        &[1]
     }
 }

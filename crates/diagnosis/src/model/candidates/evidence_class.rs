@@ -48,18 +48,16 @@ impl EvidenceClass {
         }
     }
 
-    /// The class of an effect: what its candidate's file says, or, where no fit follows the effect, what its part of a
-    /// gap budget says.
-    pub(crate) fn of(effect: Effect) -> Self {
-        Candidate::that_fits(effect).map_or_else(
-            || match effect.description().class {
-                Class::Clock => Self::Stamps,
-                Class::Sensor => Self::Sensor,
-                Class::Dissipative => Self::Damping,
-                Class::Conservative => Self::Restoring,
-                Class::TimeDependent => Self::Forcing,
-            },
-            |candidate| candidate.evidence_class(),
-        )
+    /// The class of an effect: what its candidate's file says, or, for an effect of the measuring chain that no fit
+    /// follows, what its part of a gap budget says; none for an effect of the system that no fit follows.
+    pub(crate) fn of(effect: Effect) -> Option<Self> {
+        if let Some(candidate) = Candidate::that_fits(effect) {
+            return Some(candidate.evidence_class());
+        }
+        match effect.description().class {
+            Class::Clock => Some(Self::Stamps),
+            Class::Sensor => Some(Self::Sensor),
+            Class::Dissipative | Class::Conservative | Class::TimeDependent => None,
+        }
     }
 }

@@ -57,6 +57,10 @@ impl CandidateLaw for Gravity {
         vec![vec![1.0, 0.0]]
     }
 
+    fn linear_places(&self) -> &'static [usize] {
+        &[0, 1]
+    }
+
     fn unit_values(&self, _shape: &[f64], _facts: &Scales) -> Vec<Vec<f64>> {
         vec![vec![1.0, 0.0], vec![1.0, FRAC_PI_2]]
     }

@@ -1,6 +1,7 @@
 //! Friction with a pre-sliding spring.
 
-use super::{Along, CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use super::coulomb_friction::CoulombFriction;
+use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use crate::model::contact::bent;
@@ -62,13 +63,6 @@ impl CandidateLaw for Hysteresis {
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let &[_, displacement] = shape else { return Vec::new() };
         vec![(along.respond)(&bending(displacement, along))]
-    }
-
-    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        match (shape, coefficients) {
-            (&[_, displacement], &[torque]) => vec![torque, displacement],
-            _ => coefficients.to_vec(),
-        }
     }
 }
 

@@ -37,7 +37,7 @@ impl CandidateLaw for InputSaturation {
     }
 
     /// The shape is the parameter itself.
-    fn linear_parameters(&self, shape: &[f64], _coefficients: &[f64]) -> Vec<f64> {
-        shape.to_vec()
+    fn linear_places(&self) -> &'static [usize] {
+        &[]
     }
 }

@@ -182,10 +182,21 @@ pub(crate) trait CandidateLaw: Sync {
         }
     }
 
-    /// The parameters that the coefficients of its columns stand for, at a shape. Default: the coefficients are the
-    /// parameters.
-    fn linear_parameters(&self, _shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        coefficients.to_vec()
+    /// Places of its linear parameters among all, one for each of its columns. Default: the first.
+    fn linear_places(&self) -> &'static [usize] {
+        &[0]
+    }
+
+    /// The parameters that the coefficients of its columns stand for, at a shape. Default: the shape with the coefficients
+    /// at [`Self::linear_places`].
+    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
+        let mut parameters = shape.to_vec();
+        for (&place, coefficient) in self.linear_places().iter().zip(coefficients) {
+            if let Some(slot) = parameters.get_mut(place) {
+                *slot = *coefficient;
+            }
+        }
+        parameters
     }
 
     /// Adds what it does to readings to a sensor. Default: nothing; it acts in the system.
@@ -247,8 +258,5 @@ pub(crate) fn grid(scale: f64, parts: &[f64], shape: impl Fn(f64) -> Vec<f64>) -
 
 /// Parameters of an effect that is its own shape: corrected by the coefficient of its secant, within reason.
 pub(crate) fn secant(shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-    match (shape, coefficients) {
-        (&[size], &[coefficient]) => vec![size * coefficient.clamp(0.3, 3.0)],
-        _ => coefficients.to_vec(),
-    }
+    shape.iter().zip(coefficients).map(|(size, coefficient)| size * coefficient.clamp(0.3, 3.0)).collect()
 }

@@ -70,10 +70,7 @@ impl CandidateLaw for PeriodicForcing {
         vec![vec![1.0, frequency, 0.0], vec![1.0, frequency, FRAC_PI_2]]
     }
 
-    fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        match (shape, coefficients) {
-            (&[_, frequency, _], &[p, q]) => vec![p, frequency, q],
-            _ => coefficients.to_vec(),
-        }
+    fn linear_places(&self) -> &'static [usize] {
+        &[0, 2]
     }
 }

@@ -63,6 +63,10 @@ impl CandidateLaw for SensorNonlinearity {
         vec![vec![1.0, 0.0]]
     }
 
+    fn linear_places(&self) -> &'static [usize] {
+        &[0, 1]
+    }
+
     fn columns(&self, _shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let x = along.observed;
         vec![x.iter().map(|x| x.sin()).collect(), x.iter().map(|x| x.cos()).collect()]

@@ -39,8 +39,8 @@ impl CandidateLaw for SensorSaturation {
     }
 
     /// The shape is the parameter itself.
-    fn linear_parameters(&self, shape: &[f64], _coefficients: &[f64]) -> Vec<f64> {
-        shape.to_vec()
+    fn linear_places(&self) -> &'static [usize] {
+        &[]
     }
 
     fn read(&self, values: &[f64], sensor: &mut Sensor) {

@@ -1,6 +1,7 @@
 //! Friction that falls with speed.
 
-use super::{CandidateLaw, CoulombFriction, EvidenceClass, Parameter, grid};
+use super::coulomb_friction::CoulombFriction;
+use super::{CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use dynamics::{Effect, SystemEffect};
@@ -71,11 +72,10 @@ impl CandidateLaw for StribeckFriction {
         both.into_iter().skip(usize::from(facts.friction_known)).collect()
     }
 
+    /// Without a column of its own Coulomb's part is 0.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
-        match (shape, coefficients) {
-            (&[_, _, velocity], &[torque, excess]) => vec![torque, excess, velocity],
-            (&[_, _, velocity], &[excess]) => vec![0.0, excess, velocity],
-            _ => coefficients.to_vec(),
-        }
+        let mut sizes = coefficients.iter().rev().copied();
+        let (excess, torque) = (sizes.next().unwrap_or(0.0), sizes.next().unwrap_or(0.0));
+        [torque, excess].into_iter().chain(shape.iter().skip(2).copied()).collect()
     }
 }
