@@ -3,39 +3,53 @@
 use dynamics::{Coefficients, Law, Moment, Values};
 use std::f64::consts::PI;
 
-/// The restoring torque per inertia, ω²·(x + γ₃·x³ + γ₅·x⁵), as the durations of the swings have it.
+/// The restoring torque per inertia, ω²·(y + γ₃·y³ + γ₅·y⁵) of y, the position less a play b on either side, as the
+/// durations of the swings have it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Restoring {
     pub(crate) angular_frequency: f64,
     pub(crate) cubic: f64,
     pub(crate) quintic: f64,
+    /// Half the width of the play.
+    pub(crate) play: f64,
 }
 
 /// Nodes of the quadrature over half a swing.
 const NODES: usize = 24;
 
 impl Restoring {
-    /// The restoring torque whose period at amplitude A is T₀·(1 + b₁·A² + b₂·A⁴).
+    /// A spring alone.
+    pub(crate) fn harmonic(angular_frequency: f64) -> Self {
+        Self { angular_frequency, cubic: 0.0, quintic: 0.0, play: 0.0 }
+    }
+
+    /// The restoring torque whose period at amplitude A is T₀·(1 + b₁·A² + b₂·A⁴ + b₃/A).
     ///
     /// # Reference
     /// Nayfeh, Mook, Nonlinear Oscillations, Wiley 1979, section 2.3: T/T₀ = 1 − 3/8·γ₃·A² + (57/256·γ₃² − 5/16·γ₅)·A⁴.
-    pub(crate) fn of_period(angular_frequency: f64, [first, second]: [f64; 2]) -> Self {
+    /// A play is crossed at the velocity ω·(A − b), twice in a period: T/T₀ = 1 + 2/π·b/(A − b).
+    pub(crate) fn of_period(angular_frequency: f64, [first, second, inverse]: [f64; 3]) -> Self {
         let cubic = -8.0 / 3.0 * first;
         let quintic = 16.0 / 5.0 * (57.0 / 256.0 * cubic * cubic - second);
-        Self { angular_frequency, cubic, quintic }
+        Self { angular_frequency, cubic, quintic, play: 0.5 * PI * inverse.max(0.0) }
     }
 
-    /// Torque per inertia over ω².
+    /// The part of a position beyond the play.
+    fn beyond(&self, x: f64) -> f64 {
+        (x.abs() - self.play).max(0.0)
+    }
+
+    /// Torque per inertia over ω² at a positive position.
     fn torque(&self, x: f64) -> f64 {
-        x * (1.0 + x * x * (self.cubic + x * x * self.quintic))
+        let y = self.beyond(x);
+        y * (1.0 + y * y * (self.cubic + y * y * self.quintic))
     }
 
-    /// Velocity at A·sin ψ in a swing of amplitude A, from its energy.
-    fn velocity(&self, amplitude: f64, sine: f64) -> f64 {
-        let (a, s) = (amplitude * amplitude, sine * sine);
-        let bend = 0.5 * self.cubic * a * (1.0 + s) + self.quintic * a * a * (1.0 + s + s * s) / 3.0;
-        let square = (1.0 - s) * (1.0 + bend).max(0.05);
-        self.angular_frequency * amplitude * square.max(0.0).sqrt()
+    /// Velocity at a position in a swing of amplitude A, from its energy.
+    fn velocity(&self, amplitude: f64, x: f64) -> f64 {
+        let (a, s) = (self.beyond(amplitude).powi(2), self.beyond(x).powi(2));
+        let bend = 0.5 * self.cubic * (a + s) + self.quintic * (a * a + a * s + s * s) / 3.0;
+        self.angular_frequency * ((a - s) * (1.0 + bend).max(0.05)).max(0.0).sqrt()
     }
 
     /// Amplitude that an effect takes from half a swing; its values are per unit of inertia.
@@ -64,7 +78,7 @@ impl Restoring {
                 let moment = Moment {
                     time: 0.0,
                     position: amplitude * sine,
-                    velocity: self.velocity(amplitude, sine),
+                    velocity: self.velocity(amplitude, amplitude * sine),
                     input: 0.0,
                     hidden: [0.0; dynamics::MOST_HIDDEN],
                     nominal,

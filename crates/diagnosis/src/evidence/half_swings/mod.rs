@@ -19,10 +19,11 @@ use dynamics::effects::{CoulombFriction, QuadraticDrag};
 use record::Quantity;
 pub(crate) use regression::Estimate;
 use regression::{Hypothesis, Increments, Prior, by_replacement, hypotheses};
+use std::f64::consts::PI;
 use turning_points::{Turn, turning_points};
 
 /// Half a swing, from one turning point to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct HalfSwing {
     /// Number of the record it belongs to.
     pub(crate) record: usize,
@@ -151,9 +152,12 @@ fn swings(record: usize, turns: &[Turn]) -> Vec<HalfSwing> {
 
 fn witness(runs: &[Run], swings: &[HalfSwing]) -> Witness {
     let mut witness = Witness { count: swings.len(), ..Witness::default() };
-    let durations = durations(runs, swings, &mut witness);
-    let restoring = restoring(durations.as_ref(), swings);
-    let lost = losses(runs, swings, &restoring, &mut witness);
+    // What a swing loses lengthens it in second order, and the laws of loss are averaged over the swing that the durations
+    // tell: each is needed for the other once.
+    let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
+    let lost = losses(runs, swings, &|_| Restoring::harmonic(PI / typical), &mut witness);
+    let durations = durations(runs, swings, &lost, &mut witness);
+    let lost = losses(runs, swings, &|swing| restoring(durations.as_ref(), swings, swing), &mut witness);
     centers(runs, swings, &lost, &mut witness);
     witness
 }
@@ -174,13 +178,22 @@ const FOURTH: usize = 2;
 const PLAY: std::ops::Range<usize> = 3..5;
 const PRESLIDING: std::ops::Range<usize> = 5..7;
 const TIME: usize = 7;
+const LOSS: usize = 8;
 const POWERS: [i32; TIME] = [0, 2, 4, -1, -2, -1, -2];
+/// Share of a duration by which a swing that loses all its amplitude would be longer, at most: 1/(2π²) under viscous
+/// damping, and of this order under other laws.
+const LARGEST_LENGTHENING: f64 = 0.1;
 
 /// Durations over even and inverse powers of the amplitude and time; gives the best combination.
 ///
 /// Inverse powers lengthen the small swings (play) or shorten them (friction that bends before it slides), never both; a
 /// fourth power stands only beside a second.
-fn durations(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) -> Option<Hypothesis> {
+fn durations(
+    runs: &[Run],
+    swings: &[HalfSwing],
+    lost: &[Vec<f64>],
+    witness: &mut Witness,
+) -> Option<Hypothesis> {
     let (most, span) = (largest(swings), span(swings));
     let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
     let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
@@ -191,23 +204,27 @@ fn durations(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) -> Optio
     };
     let increments: Vec<Increments> = runs
         .iter()
-        .map(|run| {
+        .zip(lost)
+        .map(|(run, lost)| {
+            let shares =
+                run.swings.iter().zip(lost).map(|(swing, lost)| (lost / swing.amplitude.value).powi(2));
             let each = |term: &dyn Fn(&HalfSwing) -> f64| run.swings.iter().map(term).collect::<Vec<f64>>();
             let powers = (0..TIME).map(|term| each(&|swing| power(term, swing)));
             let variances = each(&|swing| swing.duration_s.error.powi(2));
             let shared = run.turns.iter().skip(1).map(|turn| -turn.time_variance).collect();
             Increments {
                 values: each(&|swing| swing.duration_s.value),
-                terms: powers.chain([each(&|swing| swing.time_s / span)]).collect(),
+                terms: powers.chain([each(&|swing| swing.time_s / span), shares.collect()]).collect(),
                 covariance: [variances, shared, vec![0.0; run.swings.len()]],
             }
         })
         .collect();
     let change = LARGEST_CHANGE * typical;
-    let mut priors = vec![Prior::Within(change); TIME + 1];
+    let mut priors = vec![Prior::Within(change); LOSS + 1];
     for (term, prior) in priors.iter_mut().enumerate() {
         match term {
             CONSTANT => *prior = Prior::Always,
+            LOSS => *prior = Prior::Within(LARGEST_LENGTHENING * typical),
             term if PLAY.contains(&term) || PRESLIDING.contains(&term) => *prior = Prior::UpTo(change),
             _ => {}
         }
@@ -232,16 +249,18 @@ fn durations(runs: &[Run], swings: &[HalfSwing], witness: &mut Witness) -> Optio
     Some(best)
 }
 
-/// The restoring torque that the durations tell.
-fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing]) -> Restoring {
+/// The restoring torque that the durations tell, as it has drifted by a swing.
+fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfSwing) -> Restoring {
     let of = |term: usize| {
         durations.and_then(|found| found.coefficients.get(term)).map_or(0.0, |estimate| estimate.value)
     };
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
     let most = largest(swings);
+    let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
+    let drifted = base + of(TIME) * swing.time_s / span(swings);
     Restoring::of_period(
-        std::f64::consts::PI / base,
-        [of(SQUARE) / base / most.powi(2), of(FOURTH) / base / most.powi(4)],
+        PI / drifted.max(0.5 * base),
+        [of(SQUARE) / base / most.powi(2), of(FOURTH) / base / most.powi(4), of(PLAY.start) * least / base],
     )
 }
 
@@ -260,21 +279,36 @@ fn steps(values: &[f64]) -> Vec<f64> {
     values.iter().zip(values.iter().skip(1)).map(|(one, next)| next - one).collect()
 }
 
-/// Loss of amplitude as dry, viscous and quadratic, each averaged over the swing that the durations tell; gives what the
-/// best combination takes from each swing of each run.
-fn losses(runs: &[Run], swings: &[HalfSwing], restoring: &Restoring, witness: &mut Witness) -> Vec<Vec<f64>> {
+/// Largest coefficient of a law that is thought of before, over the one that explains all that is lost.
+const ROOM: f64 = 1.5;
+
+/// Terms of the loss: dry, viscous, and with the square of the velocity. A cubic term and a viscous one that changes in
+/// time were tried beside them: each takes over true drag and friction more often than it saves from false ones.
+const DRY: usize = 0;
+const VISCOUS: usize = 1;
+const QUADRATIC: usize = 2;
+
+/// Loss of amplitude by each law, averaged over the swing that the durations tell; gives what the best combination takes
+/// from each swing of each run.
+fn losses(
+    runs: &[Run],
+    swings: &[HalfSwing],
+    restoring: &dyn Fn(&HalfSwing) -> Restoring,
+    witness: &mut Witness,
+) -> Vec<Vec<f64>> {
     let most = largest(swings);
-    let omega = restoring.angular_frequency;
+    let omega = restoring(&HalfSwing { time_s: 0.0, ..HalfSwing::default() }).angular_frequency;
     // Units: the amplitude, and shares of the amplitude, lost in a harmonic half swing.
-    let laws = |a: f64| {
+    let laws = |swing: &HalfSwing| {
+        let (restoring, a) = (restoring(swing), swing.amplitude.value);
         [
             restoring.loss::<CoulombFriction>(&[0.5 * omega * omega, 0.0, 0.0, 0.0], a),
-            restoring.viscous(2.0 * omega / std::f64::consts::PI, a),
+            restoring.viscous(2.0 * omega / PI, a),
             restoring.loss::<QuadraticDrag>(&[0.75, 0.0, 0.0, 0.0], a),
         ]
     };
-    let of_laws = |run: &Run| run.swings.iter().map(|swing| laws(swing.amplitude.value)).collect::<Vec<_>>();
-    let lost: Vec<Vec<[f64; 3]>> = runs.iter().map(of_laws).collect();
+    let of_laws = |run: &Run| run.swings.iter().map(laws).collect::<Vec<_>>();
+    let lost: Vec<Vec<[f64; QUADRATIC + 1]>> = runs.iter().map(of_laws).collect();
     let increments: Vec<Increments> = runs
         .iter()
         .zip(&lost)
@@ -283,27 +317,31 @@ fn losses(runs: &[Run], swings: &[HalfSwing], restoring: &Restoring, witness: &m
                 let own: Vec<f64> = lost.iter().filter_map(|laws| laws.get(law)).copied().collect();
                 own.iter().zip(own.iter().skip(1)).map(|(one, next)| -0.5 * (one + next)).collect()
             };
-            of_turns(run, &|swing| swing.amplitude.value, (0..3).map(term).collect())
+            of_turns(run, &|swing| swing.amplitude.value, (0..=QUADRATIC).map(term).collect())
         })
         .collect();
     // A coefficient is at most what explains all that is lost.
     let all: f64 = -increments.iter().flat_map(|run| &run.values).sum::<f64>();
     let bound = |term: usize| {
         let own: f64 = -increments.iter().filter_map(|run| run.terms.get(term)).flatten().sum::<f64>();
-        Prior::UpTo(all.max(1e-6 * most) / own.max(f64::MIN_POSITIVE))
+        ROOM * all.max(1e-6 * most) / own.max(f64::MIN_POSITIVE)
     };
-    let found = hypotheses(&increments, &[bound(0), bound(1), bound(2)], &|_| true);
-    let inclusion = |term: usize| by_replacement(&found, &|acts| acts.get(term).is_some_and(|acts| *acts));
-    witness.friction = inclusion(0);
-    witness.viscous = inclusion(1);
-    witness.drag = inclusion(2);
-    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else { return Vec::new() };
+    let priors: Vec<Prior> = (0..=QUADRATIC).map(|term| Prior::UpTo(bound(term))).collect();
+    let one = |acts: &[bool], term: usize| acts.get(term).is_some_and(|acts| *acts);
+    let found = hypotheses(&increments, &priors, &|_| true);
+    witness.friction = by_replacement(&found, &|acts| one(acts, DRY));
+    witness.viscous = by_replacement(&found, &|acts| one(acts, VISCOUS));
+    witness.drag = by_replacement(&found, &|acts| one(acts, QUADRATIC));
+    let Some(best) = found.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence)) else {
+        return lost.iter().map(|run| vec![0.0; run.len()]).collect();
+    };
     if let &[dry, viscous, quadratic] = best.coefficients.as_slice() {
         (witness.dry_loss, witness.viscous_loss, witness.quadratic_loss) = (dry, viscous, quadratic);
     }
     witness.effective = effective(&increments, best);
-    let sum =
-        |laws: &[f64; 3]| laws.iter().zip(&best.coefficients).map(|(law, own)| law * own.value).sum::<f64>();
+    let sum = |laws: &[f64; QUADRATIC + 1]| {
+        laws.iter().zip(&best.coefficients).map(|(law, own)| law * own.value).sum::<f64>()
+    };
     lost.iter().map(|run| run.iter().map(sum).collect()).collect()
 }
 

@@ -146,7 +146,7 @@ impl Banded {
             };
             // A part in 10⁹ keeps a chain of increments that cancel from being singular.
             let own = variance * (1.0 + 1e-9) + added - near * near - far * far;
-            if !(own > 0.0) {
+            if own.is_nan() || own <= 0.0 {
                 return None;
             }
             factor.diagonal.push(own.sqrt());
@@ -237,8 +237,10 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
         let value = solved.get(at).copied().unwrap_or_default() / length;
         let error = (variance * inverse.get((at, at)).copied().unwrap_or_default()).sqrt() / length;
         log += match priors.get(*place) {
-            Some(Prior::UpTo(most)) => log_above(value / error) - most.ln(),
-            Some(Prior::Within(most)) => -(2.0 * most).ln(),
+            Some(Prior::UpTo(most)) => log_between(-value / error, (most - value) / error) - most.ln(),
+            Some(Prior::Within(most)) => {
+                log_between((-most - value) / error, (most - value) / error) - (2.0 * most).ln()
+            }
             _ => 0.0,
         };
         estimates.push(Estimate { value, error });
@@ -246,10 +248,20 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
     log.is_finite().then_some((log, estimates))
 }
 
-/// Logarithm of the probability that a standard normal variable is below z.
-fn log_above(z: f64) -> f64 {
-    if z < -8.0 {
-        return -0.5 * z * z - (-z * (2.0 * PI).sqrt()).ln();
+/// Logarithm of the probability that a standard normal variable is between two limits.
+fn log_between(low: f64, high: f64) -> f64 {
+    // Of the two tails the one on the side of the interval keeps its digits.
+    let (near, far) = if low > 0.0 {
+        (low, high)
+    } else if high < 0.0 {
+        (-high, -low)
+    } else {
+        (0.0, 0.0)
+    };
+    if near > 6.0 {
+        return -0.5 * near * near - (near * (2.0 * PI).sqrt()).ln();
     }
-    Normal::new(0.0, 1.0).map_or(0.0, |normal| normal.cdf(z).ln())
+    let below = |z: f64| Normal::new(0.0, 1.0).map_or(0.5, |normal| normal.cdf(z));
+    let between = if near > 0.0 { below(-near) - below(-far) } else { below(high) - below(low) };
+    between.max(f64::MIN_POSITIVE).ln()
 }

@@ -9,6 +9,9 @@ use dynamics::{Active, Nominal, System};
 use record::{Clock, ClockChoice, CsvColumns, Format, ReadOptions, read_file};
 use std::path::{Path, PathBuf};
 
+/// Effects by their ids, with their parameters.
+type Effects = &'static [(&'static str, &'static [f64])];
+
 const OMEGA: f64 = 7.0 * std::f64::consts::PI;
 
 /// Half swings of a system released at 0.7 rad, 25 s at 260 Hz, through white noise and effects of the measuring chain.
@@ -182,7 +185,7 @@ fn rigs() {
 #[test]
 #[ignore = "a table to read"]
 fn simulated() {
-    let laws: [(&str, f64, &[(&str, &[f64])]); 12] = [
+    let laws: [(&str, f64, Effects); 12] = [
         ("viscous", 0.006, &[]),
         ("dry", 0.0, &[("coulomb_friction", &[1.0])]),
         ("quadratic", 0.0, &[("quadratic_drag", &[0.05])]),
@@ -196,11 +199,9 @@ fn simulated() {
         ("drift", 0.006, &[("stiffness_drift", &[0.001])]),
         ("backlash", 0.006, &[("backlash", &[0.004])]),
     ];
-    let chains: [(&str, &[(&str, &[f64])]); 5] = [
+    let chains: [(&str, Effects); 3] = [
         ("plain", &[]),
-        ("outliers", &[("outliers", &[0.01, 0.35])]),
         ("steps", &[("sensor_quantization", &[0.05])]),
-        ("jitter", &[("timestamp_jitter", &[0.001])]),
         ("drift", &[("sensor_drift", &[0.0004])]),
     ];
     for (kind, chain) in chains {
@@ -209,4 +210,92 @@ fn simulated() {
             println!("{}", line(name, &witnessed(ratio, effects, 1e-3, chain, 3)));
         }
     }
+}
+
+/// Nats from which on a law counts as found, and below which none is invented.
+const FOUND: f64 = 10.0;
+
+/// Laws of loss that a record's half swings find: dry, viscous, quadratic.
+fn laws_found(found: &HalfSwings) -> [bool; 3] {
+    let w = &found.witness;
+    [w.friction, w.viscous, w.drag].map(|nats| nats.unwrap() > 0.0)
+}
+
+#[test]
+fn each_law_of_loss_is_found_alone_and_in_pairs_and_none_is_invented() {
+    let dry: (&str, &[f64]) = ("coulomb_friction", &[0.4]);
+    let quadratic: (&str, &[f64]) = ("quadratic_drag", &[0.02]);
+    for (ratio, effects, expected) in [
+        (0.006, vec![], [false, true, false]),
+        (0.0, vec![dry], [true, false, false]),
+        (0.0, vec![quadratic], [false, false, true]),
+        (0.003, vec![dry], [true, true, false]),
+        (0.003, vec![quadratic], [false, true, true]),
+        (0.0, vec![dry, quadratic], [true, false, true]),
+    ] {
+        let found = witnessed(ratio, &effects, 1e-3, &[], 3);
+        assert_eq!(laws_found(&found), expected, "{}", line("", &found));
+    }
+}
+
+/// 2·τ/k a half swing, and π·ζ of the amplitude.
+#[test]
+fn losses_have_their_sizes() {
+    let found = witnessed(0.003, &[("coulomb_friction", &[0.4])], 1e-3, &[], 3).witness;
+    let (dry, viscous) = (2.0 * 0.4 / (OMEGA * OMEGA), 0.003 * std::f64::consts::PI);
+    assert!((found.dry_loss.value / dry - 1.0).abs() < 0.02, "{:?} {dry}", found.dry_loss);
+    assert!((found.viscous_loss.value / viscous - 1.0).abs() < 0.02, "{:?} {viscous}", found.viscous_loss);
+}
+
+#[test]
+fn wrong_readings_and_steps_take_no_law_away() {
+    let effects: &[(&str, &[f64])] = &[("coulomb_friction", &[1.0])];
+    for chain in
+        [("outliers", &[0.01, 0.35][..]), ("sensor_quantization", &[0.05]), ("timestamp_jitter", &[0.001])]
+    {
+        let found = witnessed(0.0, effects, 1e-3, &[chain], 3);
+        assert!(found.witness.friction.unwrap() > FOUND, "{chain:?} {}", line("", &found));
+        assert!(found.witness.drag.unwrap() < 0.0, "{chain:?} {}", line("", &found));
+    }
+}
+
+#[test]
+fn a_bend_a_lean_and_a_drift_are_told_apart() {
+    let told = |effects: &[(&str, &[f64])], chain: &[(&str, &[f64])]| {
+        let w = witnessed(0.006, effects, 1e-3, chain, 3).witness;
+        [w.even_stiffness, w.period_drift, w.asymmetric, w.center_drift].map(|nats| nats.unwrap() > 0.0)
+    };
+    assert_eq!(told(&[("cubic_stiffness", &[-20.0])], &[]), [true, false, false, false]);
+    assert_eq!(told(&[("stiffness_drift", &[0.001])], &[]), [false, true, false, false]);
+    assert_eq!(told(&[("asymmetric_stiffness", &[10.0])], &[]), [false, false, true, false]);
+    assert_eq!(told(&[], &[("sensor_drift", &[0.0004])]), [false, false, false, true]);
+    assert_eq!(told(&[], &[]), [false; 4]);
+}
+
+#[test]
+fn the_period_of_a_pendulum_grows_as_theory_has_it() {
+    let found = released(1.2, 0.002, &[("gravity", &[OMEGA * OMEGA, 0.0])], 1e-3, &[], 3);
+    let swing = found.swings.first().unwrap();
+    // Half of the restoring torque is the spring's: T/T₀ = 1 + A²/32 in first order.
+    let expected = swing.amplitude.value.powi(2) / 32.0;
+    let softening = found.witness.softening.value;
+    assert!((softening / expected - 1.0).abs() < 0.1, "{softening} {expected}");
+    assert!(found.witness.even_stiffness.unwrap() > FOUND);
+}
+
+#[test]
+fn a_few_swings_say_nothing_of_laws_and_a_driven_record_has_none() {
+    let found = released(0.7, 0.4, &[], 1e-3, &[], 3);
+    assert!(found.witness.count < super::FEWEST && found.witness.friction.is_none());
+    let still: Vec<f64> = vec![0.0; 500];
+    let times: Vec<f64> = (0..500).map(|i| f64::from(i) / 100.0).collect();
+    let of = |values: Vec<f64>, input: Option<Vec<f64>>| {
+        let record =
+            record::Record::new(times.clone(), values, input, record::Quantity::Position, "rad").unwrap();
+        let observations = Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap());
+        half_swings(&[observations], &[vec![true; 500]], 6.0)
+    };
+    assert_eq!(of(times.iter().map(|t| (6.0 * t).cos()).collect(), Some(still.clone())), None);
+    assert_eq!(of(still, None), None);
+    assert!(of(times.iter().map(|t| (6.0 * t).cos()).collect(), None).is_some());
 }
