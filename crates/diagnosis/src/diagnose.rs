@@ -167,7 +167,7 @@ pub fn diagnose(
     let mut predictions = work.predictions(&asked(&fitted))?;
     let bare = pool.find(&[]).unwrap_or(&base.calibrated);
     let inclusion = Inclusion::of(segments.data, &predictions, bare, vocabulary);
-    let swings = half_swings(records, &kept, simulator.angular_frequency());
+    let swings = half_swings(records, &free, simulator.angular_frequency());
     let classes = inclusion.classes(swings.as_ref().map(|own| &own.witness), &settings.seed);
     let names = likely(&classes);
     let within = inclusion.within(&names);
