@@ -175,7 +175,7 @@ pub fn diagnose(
     if let Some(fit) = inclusion.completed(data, &names) {
         let least = within.map_or(0.0, |w| w.evidence) - WORSE;
         let set = work.predicted(completed.get_or_init(|| fit));
-        if let Some(set) = set.filter(|set| inclusion.evidence(set) > least) {
+        if let Some(set) = set.filter(|set| inclusion.evidence(segments.data, set) > least) {
             chosen.clone_from(&set.followed.hypothesis.candidates);
             predictions.sets.push(set);
         }

@@ -63,13 +63,13 @@ pub(crate) struct Inclusion<'a> {
     bare: f64,
     /// Standard deviation of the sensor's noise.
     noise: f64,
-    /// What each effect of a set costs.
-    price: f64,
+    vocabulary: usize,
 }
 
 struct Left {
     error: f64,
     powers: Vec<[f64; BANDS]>,
+    price: f64,
 }
 
 /// Draws of segments for a class's stability.
@@ -94,16 +94,16 @@ impl<'a> Inclusion<'a> {
         let closest = closest.map(|own| own.1.as_slice()).unwrap_or_default();
         let noise = floor::floor(segments, closest).value;
         let likelihood = Likelihood::of(segments, closest, noise);
-        let price = (vocabulary.max(2) as f64).ln();
         let samples: usize = closest.iter().map(DVector::len).sum();
         let whole: Vec<usize> = (0..closest.len()).collect();
         let mut all: Vec<(Weighed<'a>, Left)> = sets
             .into_iter()
             .map(|(fit, residuals)| {
                 let powers = likelihood.powers(&residuals);
-                let evidence = likelihood.log_of(&powers, &whole) - places(fit) * price;
+                let price = price(segments, fit, vocabulary);
+                let evidence = likelihood.log_of(&powers, &whole) - price;
                 let error = (square(&residuals) / samples.max(1) as f64).sqrt();
-                (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers })
+                (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers, price })
             })
             .collect();
         let base = all.last().map_or(0.0, |bare| bare.0.evidence);
@@ -116,7 +116,7 @@ impl<'a> Inclusion<'a> {
             w.probability = odds(w.evidence) / total;
             w.evidence -= base;
         }
-        Self { weighed, left, likelihood, bare: base, noise, price }
+        Self { weighed, left, likelihood, bare: base, noise, vocabulary }
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
@@ -188,10 +188,10 @@ impl<'a> Inclusion<'a> {
     }
 
     /// Log evidence of a set by what it predicts, on the scale of the others.
-    pub(crate) fn evidence(&self, set: &Predicted<'_>) -> f64 {
+    pub(crate) fn evidence(&self, segments: &Data, set: &Predicted<'_>) -> f64 {
         let whole: Vec<usize> = (0..set.after.residuals.len()).collect();
         let powers = self.likelihood.powers(&scaled(&set.after));
-        self.likelihood.log_of(&powers, &whole) - places(set.followed) * self.price - self.bare
+        self.likelihood.log_of(&powers, &whole) - price(segments, set.followed, self.vocabulary) - self.bare
     }
 
     /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
@@ -243,10 +243,7 @@ impl<'a> Inclusion<'a> {
             let drawn: Vec<usize> =
                 (0..segments).map(|_| rand::RngExt::random_range(&mut generator, 0..segments)).collect();
             let of = |(w, left): (&Weighed<'_>, &Left)| {
-                (
-                    self.likelihood.log_of(&left.powers, &drawn) - places(w.fit) * self.price,
-                    holds(w.fit, class),
-                )
+                (self.likelihood.log_of(&left.powers, &drawn) - left.price, holds(w.fit, class))
             };
             let best = self.weighed.iter().zip(&self.left).map(of).max_by(|a, b| a.0.total_cmp(&b.0));
             best.is_some_and(|best| best.1)
@@ -258,9 +255,15 @@ impl<'a> Inclusion<'a> {
 /// Share of a class below which a member is not listed.
 const LEAST_SHARE: f64 = 0.005;
 
-/// How many places of a set its effects take.
-fn places(fit: &Fit) -> f64 {
-    fit.hypothesis.candidates.iter().filter(|own| own.counts()).count() as f64
+/// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, and a factor e for every
+/// number that says how it looks. Held-out parts charge for what is fitted to noise; this is for what could have been
+/// fitted instead.
+fn price(data: &Data, fit: &Fit, vocabulary: usize) -> f64 {
+    let of = |own: &Candidate| {
+        let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
+        (vocabulary.max(2) as f64).ln() + shapes as f64
+    };
+    fit.hypothesis.candidates.iter().filter(|own| own.counts()).map(of).sum()
 }
 
 /// What half swings say of a class, of which a kind leads.
