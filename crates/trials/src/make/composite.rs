@@ -221,7 +221,7 @@ fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
             let law = move |size: f64| Weight { torque: size * stiffness, angle };
             // The vocabulary's angle counts from position 0.
             let from_zero = angle - nominal.rest_angle();
-            drawn(1e-2, 1.5, law, move |size| vec![size * stiffness, from_zero], format!("at {angle:.3} rad"))
+            drawn(1e-2, 0.6, law, move |size| vec![size * stiffness, from_zero], format!("at {angle:.3} rad"))
         }
         "flexible_coupling" => {
             let frequency = draws.uniform(1.8, 5.0) * situation.omega();
