@@ -425,10 +425,15 @@ def write(out, name, case, run, seed, number, engine):
     folder = out / "cases" / name
     folder.mkdir(parents=True, exist_ok=True)
     nuisances = ["sensor_quantization"] if case.resolution else []
+    # Hum in the readings is a line that does not decay: calling it a forcing is not wrong.
+    if case.color == "mains" and not any(law.id == "periodic_forcing" for law in case.laws):
+        nuisances.append("periodic_forcing")
     sensed = [(law, x) for law, x in zip(case.laws, case.strengths) if law.id in CHAIN]
     unit = "displacement_m" if rig.displacement else "angle_rad"
     decimals = max(6, int(math.ceil(-math.log10(0.02 * case.floor))))
-    stamp_decimals = max(6, int(math.ceil(-math.log10(rig.step))) + 2)
+    # The rounding of stamps moves the body by less than the noise.
+    fine = min(0.01 * rig.step, 0.05 * case.floor / (rig.amplitude * rig.omega))
+    stamp_decimals = max(6, int(math.ceil(-math.log10(fine))))
     for record in range(rig.records):
         times = run.times[:: rig.sub]
         positions, velocities = run.positions[record][:: rig.sub], run.velocities[record][:: rig.sub]
