@@ -51,6 +51,8 @@ pub(crate) const FEW_TRIALS: &[&str] = &[
     "trials.stressed=0",
     "trials.measured_cases=0",
     "trials.engine_cases=0",
+    "trials.composite=0",
+    "trials.rigs_cases=0",
     "record.seconds=8",
     "record.rate_hz=130",
 ];

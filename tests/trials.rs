@@ -21,6 +21,8 @@ const TINY: &[&str] = &[
     "trials.stressed=0",
     "trials.measured_cases=0",
     "trials.engine_cases=0",
+    "trials.composite=0",
+    "trials.rigs_cases=0",
     "record.seconds=8",
     "record.rate_hz=130",
 ];
@@ -182,4 +184,36 @@ fn what_is_no_trials_folder_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     let (code, message) = said(&["trials", "--score", folder.path().to_str().unwrap()]);
     assert!(code == 2 && message.contains("manifest.json is missing"), "{message}");
+}
+
+/// A law too small to be seen: `unknown` would be right, and nothing is said.
+#[test]
+fn a_gate_that_is_missed_fails_the_run_and_its_scoring() {
+    let scratch = tempfile::tempdir().unwrap();
+    let gate = |out: &Path, unknown: &str| {
+        let shown = out.display().to_string();
+        let least = format!("gate.unknown={unknown}");
+        let own = [
+            "configs/trials-gate.toml",
+            "trials.composite=0",
+            "trials.none=1",
+            "trials.foreign=1",
+            "trials.detectabilities=[0.2]",
+            "record.seconds=8",
+            &least,
+            "--out",
+            &shown,
+            "--quiet",
+        ];
+        said(&[&["trials"], &own[..]].concat()).0
+    };
+    let (missed, met) = (scratch.path().join("missed"), scratch.path().join("met"));
+    assert_eq!((gate(&missed, "1.0"), gate(&met, "0.0")), (1, 0));
+    for (folder, code, state) in [(&missed, 1, "not met"), (&met, 0, "met")] {
+        assert_eq!(said(&["trials", "--score", folder.to_str().unwrap(), "--quiet"]).0, code);
+        let rows = &json(&folder.join("result.json"))["gate"];
+        let row =
+            rows.as_array().unwrap().iter().find(|row| row["metric"].as_str().unwrap().contains("unknown"));
+        assert_eq!(row.unwrap()["state"], state);
+    }
 }

@@ -36,6 +36,7 @@ mod sample;
 pub use error::ReportError;
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
+pub use trials::class_rows;
 pub use verdict::in_a_sentence;
 
 /// The texts of the files in a run folder.

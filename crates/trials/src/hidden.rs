@@ -31,6 +31,35 @@ pub enum Bank {
     Measured,
     /// One effect in records of a physics engine.
     Engine,
+    /// Two to six effects of very different size, beside smooth laws outside the vocabulary.
+    Composite,
+    /// Rigs of a folder that another program made: composite ones and simpler ones.
+    Rigs,
+}
+
+/// What an answer is held to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Asked {
+    /// Nothing is missing.
+    Nothing,
+    /// Effects of the vocabulary are hidden.
+    Effects,
+    /// What acts is not to be named: `unknown`, or a class that the truth allows.
+    Unknown,
+    /// A law outside the vocabulary acts that is small: no name, whatever the status.
+    NoName,
+}
+
+impl Hidden {
+    /// What the case asks of an answer.
+    pub(crate) fn asked(&self) -> Asked {
+        match self {
+            Self { bank: Bank::LeftOut, .. } | Self { foreign: Some(_), .. } => Asked::Unknown,
+            Self { effects, .. } if !effects.is_empty() => Asked::Effects,
+            Self { unlisted, .. } if !unlisted.is_empty() => Asked::NoName,
+            _ => Asked::Nothing,
+        }
+    }
 }
 
 impl Bank {
@@ -49,6 +78,8 @@ impl Bank {
             Self::Stressed => "stressed",
             Self::Measured => "measured",
             Self::Engine => "engine",
+            Self::Composite => "composite",
+            Self::Rigs => "rigs",
         }
     }
 }
@@ -66,6 +97,13 @@ pub struct Hidden {
     /// What acts from outside the vocabulary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foreign: Option<Foreign>,
+    /// Smooth laws outside the vocabulary that act beside the hidden effects, or alone where they are too small to ask
+    /// for an answer.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub unlisted: Vec<Unlisted>,
+    /// Ids of classes that an answer may name for what acts from outside the vocabulary.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub allowed: Vec<String>,
     /// Ids of effects of the measuring chain that come with records of every bank alike. They count neither for nor
     /// against an answer.
     pub nuisances: Vec<String>,
@@ -93,6 +131,18 @@ pub struct Foreign {
     pub detectability: f64,
 }
 
+/// A smooth law outside the vocabulary.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Unlisted {
+    /// What it is, in words.
+    pub law: String,
+    /// Root mean square of what no recalibration can absorb of it, over the noise's standard deviation.
+    pub floors: f64,
+    /// Id of the class of effects that it belongs to by its mechanism, if it does to one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub class: Option<String>,
+}
+
 /// A hidden effect.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -106,4 +156,7 @@ pub struct HiddenEffect {
     /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration
     /// can absorb of it, over the noise's standard deviation.
     pub detectability: f64,
+    /// The same as a root mean square in place of the root of the sum: × noise. Only where several effects act.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub floors: Option<f64>,
 }

@@ -1,10 +1,13 @@
 //! The page on trials whose effect was withheld.
 
+mod classes;
 mod figures;
 mod grids;
 mod probabilities;
 #[cfg(test)]
 mod tests;
+
+pub use classes::class_rows;
 
 use askama::Template;
 use runs::result::{BarRow, FailureRow, TrialsResult};
@@ -106,16 +109,20 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
         },
         cases: count(result.cases),
         right_means: &result.right_means,
-        bars: result.bars.iter().map(bar).collect(),
+        bars: result.gate.iter().chain(&result.bars).map(bar).collect(),
         left_out: result.left_out.iter().map(|left| format!("{}: {}", left.bank, left.reason)).collect(),
-        sections: vec![
-            grids::accuracy(result),
-            grids::confusion(result),
-            probabilities::section(result),
-            probabilities::unknown(result),
-            grids::closure(result),
-            grids::baselines(result),
-        ],
+        sections: [
+            Some(grids::accuracy(result)),
+            classes::section(result),
+            Some(grids::confusion(result)),
+            Some(probabilities::section(result)),
+            Some(probabilities::unknown(result)),
+            Some(grids::closure(result)),
+            Some(grids::baselines(result)),
+        ]
+        .into_iter()
+        .flatten()
+        .collect(),
         failure_note: if shown < result.failures.len() {
             format!("The first {shown} of {}; cases.csv has all.", result.failures.len())
         } else {

@@ -104,3 +104,32 @@ fn trials_are_no_diagnosis() {
     let error = render_diagnosis(&texts(&result)).unwrap_err().to_string();
     assert!(error.contains("\"diagnose\", the file says \"trials\""), "{error}");
 }
+
+#[test]
+fn several_effects_at_once_have_a_section_of_their_own() {
+    let quantiles = json!({ "count": 1, "median": { "value": 0.7512, "interval_95": [null, null] },
+                            "quantile_95": 0.8, "worst": 0.8 });
+    let row = json!({ "id": "friction", "recall": share(3, 4), "precision": share(3, 5),
+                      "stated_where_it_acts": 0.62, "stated_where_it_does_not": null });
+    let mut result = small();
+    let without = render(&texts(&result.to_string())).unwrap();
+    assert!(!without.contains("id=\"classes\""));
+    result["inclusion"] = json!([{
+        "banks": "rigs, composite", "cases": 8, "leading_named": share(7, 8), "leading_sure": share(1, 8),
+        "set": share(2, 8), "recall": [{ "floors": [10.0, null], "named": share(5, 7) }],
+        "precision": share(9, 12), "attributed": quantiles, "unknown": share(0, 0), "false_alarms": share(0, 0),
+        "classes": [row], "effects": []
+    }]);
+    result["gate"] = json!([bar("gate: leading class named", "not met", true, json!(0.4))]);
+    let page = render(&texts(&result.to_string())).unwrap();
+    for words in [
+        "rigs, composite",
+        "class named, effects of 10 and more",
+        "0.75",
+        "friction",
+        "0.62",
+        "gate: leading class named",
+    ] {
+        assert!(page.contains(words), "{words}");
+    }
+}

@@ -31,9 +31,10 @@ pub use sweep::{
     SweepRecord, SweepState,
 };
 pub use trials::{
-    AreaRow, BankRow, BarRow, BaselineRow, ClosureStudy, Confusion, FailureRow, LeftOutBank, NuisanceRow,
-    ProbabilityMap, Proportion, Quantiles, Reliability, ReliabilityBin, SizeRow, TRIALS_MANIFEST_SCHEMA,
-    TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine, TrialsResult, UnknownStudy,
+    AreaRow, BankRow, BarRow, BaselineRow, ClassScores, ClosureStudy, Confusion, FailureRow, InclusionRow,
+    LeftOutBank, NuisanceRow, ProbabilityMap, Proportion, Quantiles, RecallRow, Reliability, ReliabilityBin,
+    SizeRow, TRIALS_MANIFEST_SCHEMA, TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine,
+    TrialsResult, UnknownStudy,
 };
 
 use serde::{Deserialize, Deserializer, Serialize};

@@ -79,6 +79,12 @@ pub struct TrialsResult {
     pub right_means: String,
     /// The bars, in the order of their document.
     pub bars: Vec<BarRow>,
+    /// What the configuration's gate asks for; empty where it asks for nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub gate: Vec<BarRow>,
+    /// Scores by effect and by class where several effects act; empty without such banks.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inclusion: Vec<ClassScores>,
     /// Accuracy by bank.
     pub banks: Vec<BankRow>,
     /// Accuracy by bank, effect and size.
@@ -145,6 +151,63 @@ pub struct BarRow {
     pub missed_beyond_chance: bool,
 }
 
+/// Scores by effect and by class of a group of cases. Effects that explain alike are one class. Where a law outside the
+/// vocabulary, or what a logger does to every record, is of a class, that class counts neither for nor against.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ClassScores {
+    /// The cases: a bank, or a part of one.
+    pub banks: String,
+    /// How many there are.
+    pub cases: u64,
+    /// The class of the largest hidden effect is named.
+    pub leading_named: Proportion,
+    /// Its stated probability is 0.9 or more.
+    pub leading_sure: Proportion,
+    /// The classes named are those that act; of cases with hidden effects.
+    pub set: Proportion,
+    /// Hidden effects whose class is named, by size.
+    pub recall: Vec<RecallRow>,
+    /// Names whose class acts.
+    pub precision: Proportion,
+    /// Part of the gap attributed to classes that act, of what is attributed to any; over answers that attribute some.
+    pub attributed: Quantiles,
+    /// `unknown`, or a class that the truth allows, where a law outside the vocabulary acts alone.
+    pub unknown: Proportion,
+    /// Something named, or `unknown`, where nothing is missing.
+    pub false_alarms: Proportion,
+    /// By class.
+    pub classes: Vec<InclusionRow>,
+    /// By effect.
+    pub effects: Vec<InclusionRow>,
+}
+
+/// Hidden effects of a range of sizes.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct RecallRow {
+    /// From and to, as multiples of the noise; the upper end of the last is `null`.
+    #[serde(deserialize_with = "nulls_are_not_numbers")]
+    pub floors: [f64; 2],
+    /// Those whose class is named.
+    pub named: Proportion,
+}
+
+/// How an effect or a class fares.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct InclusionRow {
+    /// Its id.
+    pub id: String,
+    /// Named, of the cases in which it acts.
+    pub recall: Proportion,
+    /// It acts, of the cases in which it is named.
+    pub precision: Proportion,
+    /// Mean of its stated probability over cases in which it acts; `null` without any.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub stated_where_it_acts: f64,
+    /// The same over cases in which it does not.
+    #[serde(deserialize_with = "null_is_not_a_number")]
+    pub stated_where_it_does_not: f64,
+}
+
 /// Accuracy on a bank.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BankRow {
@@ -198,9 +261,9 @@ pub struct Confusion {
 /// Whether probabilities hold what they say.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reliability {
-    /// `confidence`, `confidence, mapped` or `effects`.
+    /// `confidence`, `confidence, mapped`, `effects` or `classes`.
     pub subject: String,
-    /// `own` or `stressed`.
+    /// `own`, `stressed`, or a group of [`ClassScores::banks`].
     pub banks: String,
     /// Probabilities looked at.
     pub count: u64,

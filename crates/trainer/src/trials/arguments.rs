@@ -14,6 +14,7 @@ Examples:
                                    after an interruption: only the missing answers are computed
   trainer trials --score DIR       opens the seals and scores again, from the files alone
   trainer trials configs/trials.toml --check        exit code 1 where a bar is missed beyond chance
+  trainer trials configs/trials-gate.toml           exit code 1 where a value of [gate] is missed
   trainer report DIR               the report again
 
 DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
@@ -22,8 +23,8 @@ last), failed.json (why cases have no answer), result.json, cases.csv and report
 is told not to consider one. Each group is diagnosed by a process of its own, which gets that
 group's folder of cases and nothing else.
 
-Exit codes: 0 scored, whatever the scores; 1 with --check, where the whole 95 % interval of some bar's
-measure lies on the wrong side; 2 wrong input or usage, a broken seal among it; 130 interrupted:
+Exit codes: 0 scored, whatever the scores; 1 where a score misses a value that the configuration's [gate]
+asks for, and with --check where the whole 95 % interval of some bar's measure lies on the wrong side; 2 wrong input or usage, a broken seal among it; 130 interrupted:
 everything so far is kept.")]
 pub(crate) struct TrialsArguments {
     /// The trials: a TOML file

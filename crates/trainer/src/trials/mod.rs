@@ -28,7 +28,7 @@ use serde_json::json;
 use settings::Document;
 use std::collections::BTreeMap;
 use std::time::Instant;
-use trials::{TrialPlan, Trials, case_rows, misses_a_bar, most_common};
+use trials::{Gate, TrialPlan, Trials, case_rows, misses_a_bar, misses_the_gate, most_common};
 
 pub(crate) use error::TrialsError;
 
@@ -147,6 +147,7 @@ fn finish(
         name: manifest.name.clone(),
         seed: manifest.seed,
         left_out: manifest.left_out.clone(),
+        gate: Gate::of(&Document::parse("config.toml", &open::text(folder, "config.toml")?)?)?,
         seconds: start.elapsed().as_secs_f64(),
     };
     let result = trials::score(&trials, &cases, &baselines);
@@ -155,7 +156,11 @@ fn finish(
     write_report(folder)?;
     folder.record_event("end", &json!({ "cases": result.cases, "unanswered": result.unanswered }))?;
     arguments.output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(if arguments.check && misses_a_bar(&result) { Outcome::CheckFailed } else { Outcome::Done })
+    Ok(if misses_the_gate(&result) || arguments.check && misses_a_bar(&result) {
+        Outcome::CheckFailed
+    } else {
+        Outcome::Done
+    })
 }
 
 /// Banks that were asked for and not made, as the manifest has them.

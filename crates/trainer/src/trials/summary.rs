@@ -28,6 +28,10 @@ pub(super) fn summary(result: &TrialsResult, folder: &Path) -> String {
         table(&["bar", "", "measured, 95 % interval", "cases", ""], result.bars.iter().map(bar).collect()),
         banks(result),
     ];
+    parts.extend((!result.inclusion.is_empty()).then(|| classes(result)));
+    parts.extend((!result.gate.is_empty()).then(|| {
+        table(&["gate", "", "measured, 95 % interval", "cases", ""], result.gate.iter().map(bar).collect())
+    }));
     parts.extend(worst(result));
     parts.extend(result.left_out.iter().map(|left| format!("not made: {}: {}", left.bank, left.reason)));
     if let Some(first) = result.failures.first() {
@@ -79,6 +83,24 @@ fn banks(result: &TrialsResult) -> String {
         .map(|bank| vec![bank.bank.clone(), share(&bank.right), share(&bank.top_1), share(&bank.class)])
         .collect();
     table(&["bank", "status and set right", "first name right", "its class right"], rows)
+}
+
+/// What is named of what acts, where several effects do: columns are groups of cases.
+fn classes(result: &TrialsResult) -> String {
+    let groups = &result.inclusion;
+    let heads: Vec<&str> =
+        std::iter::once("by class").chain(groups.iter().map(|own| own.banks.as_str())).collect();
+    let rows = report::class_rows(groups).into_iter().map(|(name, shares)| {
+        let cell = |of: &Proportion| {
+            if of.of == 0 {
+                "–".to_owned()
+            } else {
+                format!("{} ({}/{})", percent(of.share), of.count, of.of)
+            }
+        };
+        std::iter::once(name).chain(shares.iter().map(cell)).collect()
+    });
+    table(&heads, rows.collect())
 }
 
 /// The effects least often named first where they are large enough to be.

@@ -4,8 +4,8 @@ mod weak_form;
 
 pub use weak_form::{WEAK_FORM, WEAK_FORM_METHOD, weak_form};
 
-use crate::hidden::Bank;
-use crate::score::{AnsweredCase, Judgment, accuracy, is_without_effect, proportion};
+use crate::hidden::{Asked, Bank};
+use crate::score::{AnsweredCase, Judgment, accuracy, proportion};
 use runs::result::{BaselineRow, SizeRow};
 use std::collections::BTreeMap;
 
@@ -59,7 +59,7 @@ pub(crate) fn row(baseline: &Baseline, judged: &[Judgment<'_>]) -> BaselineRow {
         answer.is_some_and(|id| judgment.case.hidden.effects.iter().any(|effect| &effect.id == id))
     };
     let single = || named().filter(|(judgment, _)| judgment.bank() == Bank::Single);
-    let without = named().filter(|(judgment, _)| is_without_effect(judgment.bank()));
+    let without = named().filter(|(judgment, _)| judgment.asked() == Asked::Nothing);
     let sizes = (0..accuracy::SIZES.len()).filter_map(|index| {
         let range = accuracy::range(index);
         let top_1 = proportion(

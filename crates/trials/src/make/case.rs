@@ -8,7 +8,7 @@ use super::recalibration::{Absorbed, left_over};
 use super::shape::{RANDOM, Shape, random_effect};
 use super::situation::{Motion, Motions, Nuisances, Situation, believed};
 use super::size::solve;
-use super::{foreign, outside, stressed};
+use super::{composite, foreign, outside, rigs, stressed};
 use crate::{Bank, HIDDEN_SCHEMA, Hidden, HiddenEffect};
 use dynamics::chain::{Chain, Observed};
 use dynamics::{Active, Coordinate, Effect, Nominal, System};
@@ -81,7 +81,18 @@ impl Setup {
     ) -> Result<Self, TrialError> {
         let (seed, branch) = job.seed(plan.seed);
         let own = seed.child(&format!("attempt {attempt}"));
-        let situation = Situation::draw(plan, &own, motions)?;
+        let situation = Situation::draw(&plan.ranges, plan.sampling, &own, motions)?;
+        Self::with(situation, seed, own, branch, hidden)
+    }
+
+    /// A setup about a situation; `seed` is the case's and `own` the attempt's.
+    pub(crate) fn with(
+        situation: Situation,
+        seed: Seed,
+        own: Seed,
+        branch: Vec<String>,
+        hidden: &[&str],
+    ) -> Result<Self, TrialError> {
         let nuisances = Nuisances::draw(&seed).beside(hidden);
         let clean = situation.motions(&[])?;
         let square_velocities: f64 =
@@ -117,6 +128,8 @@ impl Job {
             Bank::Stressed => stressed::make(plan, *self, id),
             Bank::Measured => outside::measured_case(plan, *self, id),
             Bank::Engine => outside::engine_case(plan, *self, id),
+            Bank::Composite => composite::make(plan, *self, id),
+            Bank::Rigs => rigs::make(plan, *self, id),
             _ => self.vocabulary_case(plan, id),
         }
     }
@@ -130,7 +143,7 @@ impl Job {
         let (seed, _) = self.seed(plan.seed);
         let off = match self.bank {
             Bank::None => None,
-            Bank::Calibration => Some(OFF_AS_SUBJECT),
+            Bank::Calibration | Bank::Composite => Some(OFF_AS_SUBJECT),
             // A preload moves the rest angle: beside other coefficients that are off it is one more of these.
             _ if self.subject(plan).ids.contains(&"constant_torque") => None,
             _ => Draws::new(&seed.child("miscalibration")).chance(0.5).then_some(OFF_BESIDES),
@@ -250,6 +263,8 @@ impl Job {
                 bank: self.bank,
                 effects: described(&hidden, "vocabulary"),
                 foreign: None,
+                unlisted: Vec::new(),
+                allowed: Vec::new(),
                 nuisances: nuisances.iter().map(|active| active.id().to_owned()).collect(),
                 miscalibrated,
                 without,
@@ -284,6 +299,7 @@ pub(crate) fn described(hidden: &[(Active, f64)], law: &str) -> Vec<HiddenEffect
             parameters: active.values().to_vec(),
             law: law.to_owned(),
             detectability: *detectability,
+            floors: None,
         })
         .collect();
     effects.sort_by(|one, other| other.detectability.total_cmp(&one.detectability));

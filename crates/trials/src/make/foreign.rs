@@ -47,19 +47,19 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
         let setup = Setup::draw(plan, job, attempt, kind_of_motion, &[])?;
         let (law, words) = draw(kind, &setup.situation, &mut Draws::new(&setup.seed.child(kind)));
         let Some(sized) = law.sized(&setup, wanted, absorbed)? else { continue };
-        let motions = motions(&setup.situation, sized.law.as_ref(), &|_| Vec::new())?;
+        let motions = motions(&setup.situation, &[sized.law.as_ref()], &|_| Vec::new())?;
         let foreign = Foreign {
             law: format!("{kind}: {words}, size {:.3e} (detectability beyond its stand-ins)", sized.size),
             detectability: sized.detectability,
         };
-        let told = Told { effects: Vec::new(), foreign: Some(foreign), made: format!("{kind} by splitting") };
+        let told = Told { foreign: Some(foreign), made: format!("{kind} by splitting"), ..Told::default() };
         return written(plan, job, id, &setup, &motions, told);
     }
     Err(TrialError::OutOfReach { effect: kind.to_owned(), wanted, attempts: ATTEMPTS })
 }
 
 /// A law with its shape drawn, and the shape in words.
-fn draw(kind: &str, situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
+pub(crate) fn draw(kind: &str, situation: &Situation, draws: &mut Draws) -> (OpenLaw, String) {
     let nominal = situation.nominal;
     let (stiffness, damping) = (nominal.stiffness(), nominal.damping());
     let (omega, swing, duration) = (situation.omega(), situation.amplitude, situation.duration());

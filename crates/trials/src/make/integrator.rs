@@ -59,11 +59,11 @@ const LARGEST_PHASE: f64 = 0.004;
 /// Fewest steps between two samples.
 const FEWEST_STEPS: usize = 16;
 
-/// The motion of each record of a situation with a law; `disturbance` gives, for a record, a torque held
+/// The motion of each record of a situation with laws that add up; `disturbance` gives, for a record, a torque held
 /// from sample to sample.
 pub(crate) fn motions(
     situation: &Situation,
-    law: &dyn TorqueLaw,
+    laws: &[&dyn TorqueLaw],
     disturbance: &dyn Fn(usize) -> Vec<f64>,
 ) -> Result<Vec<Motion>, TrialError> {
     let times = situation.times();
@@ -81,13 +81,28 @@ pub(crate) fn motions(
                     *held += gain * value;
                 }
             }
-            motion(&situation.nominal, start, law, &times, &held)
+            motion(&situation.nominal, start, laws, &times, &held)
         })
         .collect())
 }
 
+/// Laws that add up, each with its hidden states.
+struct Acting<'a>(Vec<(&'a dyn TorqueLaw, Hidden)>);
+
+impl Acting<'_> {
+    fn torque(&self, now: &Moment) -> f64 {
+        self.0.iter().map(|(law, hidden)| law.torque(&Moment { hidden: *hidden, ..*now })).sum()
+    }
+
+    fn relax(&mut self, now: &Moment, duration: f64) {
+        for (law, hidden) in &mut self.0 {
+            *hidden = law.relax(&Moment { hidden: *hidden, ..*now }, duration);
+        }
+    }
+}
+
 /// The motion at evenly spaced times with a torque `held` from each of them to the next.
-fn motion(nominal: &Nominal, start: Start, law: &dyn TorqueLaw, times: &[f64], held: &[f64]) -> Motion {
+fn motion(nominal: &Nominal, start: Start, laws: &[&dyn TorqueLaw], times: &[f64], held: &[f64]) -> Motion {
     let [first, second, ..] = *times else { return Motion::default() };
     let period = second - first;
     let steps = ((period * nominal.angular_frequency() / LARGEST_PHASE).ceil() as usize).max(FEWEST_STEPS);
@@ -95,26 +110,22 @@ fn motion(nominal: &Nominal, start: Start, law: &dyn TorqueLaw, times: &[f64], h
     let drift = Drift::new(nominal, step);
     let rest = nominal.rest_angle();
     let deflection = start.position - rest;
-    let mut now = Moment {
-        time: first,
-        deflection,
-        velocity: start.velocity,
-        hidden: law.start(deflection, start.velocity),
-    };
+    let mut now = Moment { time: first, deflection, velocity: start.velocity, hidden: [0.0; 2] };
+    let mut acting = Acting(laws.iter().map(|law| (*law, law.start(deflection, start.velocity))).collect());
     let kick = 0.5 * step / nominal.inertia();
     let mut motion = Motion { times: times.to_vec(), ..Motion::default() };
     for (&time, &held) in times.iter().zip(held) {
         motion.position.push(rest + now.deflection);
         motion.velocity.push(now.velocity);
         let spring = nominal.stiffness() * now.deflection + nominal.damping() * now.velocity;
-        motion.acceleration.push((held + law.torque(&now) - spring) / nominal.inertia());
+        motion.acceleration.push((held + acting.torque(&now) - spring) / nominal.inertia());
         for number in 0..steps {
-            now.hidden = law.relax(&now, 0.5 * step);
-            now.velocity += kick * law.torque(&now);
+            acting.relax(&now, 0.5 * step);
+            now.velocity += kick * acting.torque(&now);
             (now.deflection, now.velocity) = drift.step(now.deflection, now.velocity, held);
             now.time = time + (number + 1) as f64 * step;
-            now.velocity += kick * law.torque(&now);
-            now.hidden = law.relax(&now, 0.5 * step);
+            now.velocity += kick * acting.torque(&now);
+            acting.relax(&now, 0.5 * step);
         }
     }
     motion

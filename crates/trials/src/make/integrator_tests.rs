@@ -29,7 +29,7 @@ pub(super) fn situation(driven: bool) -> Situation {
 }
 
 fn split(situation: &Situation, law: &dyn TorqueLaw) -> Motion {
-    motions(situation, law, &|_| Vec::new()).unwrap().remove(0)
+    motions(situation, &[law], &|_| Vec::new()).unwrap().remove(0)
 }
 
 /// Largest difference to the reference integrator's motion with an effect of the vocabulary.

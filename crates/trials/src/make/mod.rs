@@ -15,6 +15,7 @@
 //! detectability of 0, bursts of a logger are as detectable as they are.
 
 mod case;
+mod composite;
 mod draws;
 mod error;
 mod foreign;
@@ -26,12 +27,15 @@ mod outside;
 mod own_record;
 mod plan;
 mod recalibration;
+mod rigs;
 mod schema;
 mod shape;
 mod situation;
 mod size;
 mod stressed;
 
+#[cfg(test)]
+mod composite_tests;
 #[cfg(test)]
 mod integrator_tests;
 #[cfg(test)]
@@ -45,3 +49,4 @@ pub use case::Case;
 pub use error::TrialError;
 pub use json_schema::trials_schema;
 pub use plan::{LeftOutBank, TrialPlan};
+pub(crate) use schema::SECTIONS;

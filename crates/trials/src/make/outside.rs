@@ -26,14 +26,14 @@ pub(crate) struct EngineCase {
 }
 
 /// Entries of a folder in the order of their names.
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
+pub(crate) fn entries(folder: &Path) -> Result<Vec<PathBuf>, String> {
     let listing = std::fs::read_dir(folder).map_err(|error| format!("cannot be read: {error}"))?;
     let mut paths: Vec<PathBuf> = listing.filter_map(|entry| Some(entry.ok()?.path())).collect();
     paths.sort();
     Ok(paths)
 }
 
-fn file_name(path: &Path) -> String {
+pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
@@ -186,6 +186,8 @@ fn with_residual(
             bank: job.bank,
             effects: described(&[hidden], "vocabulary"),
             foreign: None,
+            unlisted: Vec::new(),
+            allowed: Vec::new(),
             nuisances: bursts.into_iter().collect(),
             miscalibrated,
             without: None,

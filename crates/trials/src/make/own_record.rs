@@ -7,7 +7,7 @@ use super::plan::TrialPlan;
 use super::recalibration::Absorbed;
 use super::situation::Motion;
 use super::size::solve;
-use crate::{Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
+use crate::{Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect, Unlisted};
 use dynamics::Coordinate;
 use dynamics::chain::{Chain, Observed};
 use record::{Quantity, Record};
@@ -41,7 +41,7 @@ impl OpenLaw {
         absorbed: Absorbed,
     ) -> Result<Option<SizedLaw>, TrialError> {
         let detectability = |size: f64| {
-            let motions = motions(&setup.situation, (self.law)(size).as_ref(), &|_| Vec::new())?;
+            let motions = motions(&setup.situation, &[(self.law)(size).as_ref()], &|_| Vec::new())?;
             setup.detectability(motions, absorbed)
         };
         let found = solve(wanted, self.guess, self.most, detectability)?;
@@ -54,9 +54,11 @@ impl OpenLaw {
 }
 
 /// What a case of such a motion says it hides.
+#[derive(Default)]
 pub(crate) struct Told {
     pub(crate) effects: Vec<HiddenEffect>,
     pub(crate) foreign: Option<Foreign>,
+    pub(crate) unlisted: Vec<Unlisted>,
     pub(crate) made: String,
 }
 
@@ -99,6 +101,8 @@ pub(crate) fn written(
             bank: job.bank,
             effects: told.effects,
             foreign: told.foreign,
+            unlisted: told.unlisted,
+            allowed: Vec::new(),
             nuisances: nuisances.iter().map(|active| active.id().to_owned()).collect(),
             miscalibrated,
             without: None,

@@ -5,6 +5,7 @@ use super::draws::Draws;
 use super::error::TrialError;
 use super::hiding::{DRIVEN, LEFT_OUT, MEASURED, PAIRS, RELEASES, SINGLE};
 use super::outside::{self, EngineCase, ResidualFile};
+use super::rigs::{self, RigCase};
 use super::schema::SECTIONS;
 use super::{foreign, stressed};
 use crate::Bank;
@@ -28,6 +29,7 @@ pub struct TrialPlan {
     pub(crate) detectabilities: Vec<f64>,
     pub(crate) residuals: Vec<ResidualFile>,
     pub(crate) engine: Vec<EngineCase>,
+    pub(crate) rigs: Vec<RigCase>,
     /// Every case, in an order that tells nothing.
     jobs: Vec<Job>,
     left_out_banks: Vec<LeftOutBank>,
@@ -72,6 +74,9 @@ struct TrialKeys {
     stressed: usize,
     measured_cases: usize,
     engine_cases: usize,
+    composite: usize,
+    rigs_cases: usize,
+    rigs: Option<String>,
     measured: Option<String>,
     engine: Option<String>,
     detectabilities: Vec<f64>,
@@ -174,6 +179,14 @@ impl TrialPlan {
             outside::engine_cases,
             &mut left_out_banks,
         );
+        let rigs = available(
+            Bank::Rigs,
+            trials.rigs_cases,
+            trials.rigs.as_deref(),
+            "trials.rigs",
+            rigs::rig_cases,
+            &mut left_out_banks,
+        );
         let measured = if residuals.is_empty() { 0 } else { trials.measured_cases };
         let counts = [
             (Bank::None, trials.none),
@@ -187,6 +200,8 @@ impl TrialPlan {
             (Bank::Stressed, trials.stressed),
             (Bank::Measured, measured),
             (Bank::Engine, trials.engine_cases.min(engine.len())),
+            (Bank::Composite, trials.composite),
+            (Bank::Rigs, trials.rigs_cases.min(rigs.len())),
         ];
         let jobs =
             counts.iter().flat_map(|&(bank, count)| (0..count).map(move |number| Job { bank, number }));
@@ -199,6 +214,7 @@ impl TrialPlan {
             detectabilities: trials.detectabilities,
             residuals,
             engine,
+            rigs,
             left_out_banks,
             resolved,
         })
@@ -250,7 +266,7 @@ impl TrialPlan {
     #[must_use]
     pub fn variety(bank: Bank) -> usize {
         match bank {
-            Bank::None | Bank::Calibration | Bank::Engine => 1,
+            Bank::None | Bank::Calibration | Bank::Engine | Bank::Composite | Bank::Rigs => 1,
             Bank::Single => SINGLE.len(),
             Bank::Pair => PAIRS.len(),
             Bank::LeftOut => LEFT_OUT.len(),

@@ -43,7 +43,7 @@ fn another_oscillator_from_another_start_is_absorbed_even_after_turns_of_phase()
 fn stand_ins_absorb_their_own_law_and_no_other() {
     let situation = situation(false);
     let drag = DragPower { coefficient: 0.02, exponent: 2.0, velocity: 3.0 };
-    let drag = || seen(motions(&situation, &drag, &|_| Vec::new()).unwrap());
+    let drag = || seen(motions(&situation, &[&drag], &|_| Vec::new()).unwrap());
     let with = |stand_ins: &'static [&'static str]| Absorbed { stand_ins, ..Absorbed::BY_RECALIBRATION };
     let alone = left(&situation, drag(), Absorbed::BY_RECALIBRATION);
     let near = left(&situation, drag(), with(&["damping_drift"]));
@@ -56,7 +56,7 @@ fn a_drift_of_the_sensor_is_absorbed_where_it_is_to_be() {
     let situation = situation(false);
     let nothing = Maxwell { stiffness: 0.0, time: 1.0 };
     let drifted = || {
-        let mut seen = seen(motions(&situation, &nothing, &|_| Vec::new()).unwrap());
+        let mut seen = seen(motions(&situation, &[&nothing], &|_| Vec::new()).unwrap());
         for (value, time) in seen[0].values.iter_mut().zip(situation.times()) {
             *value += 1e-3 * time;
         }

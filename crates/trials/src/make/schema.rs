@@ -13,6 +13,7 @@ pub(crate) const SECTIONS: &[Section<'static>] = &[
     Section { name: "record", fields: RECORD },
     Section { name: "system", fields: SYSTEM },
     Section { name: "sensor", fields: SENSOR },
+    Section { name: "gate", fields: GATE },
 ];
 
 const TOP: &[Field] = &[
@@ -64,6 +65,14 @@ const TRIALS: &[Field] = &[
         "Cases with one effect added to what a diagnosis left over of a measured record.",
     ),
     count("engine_cases", "Cases of a physics engine, at most; those of the folder, in order."),
+    count("composite", "Cases with two to six effects of very different size beside unlisted smooth laws."),
+    count("rigs_cases", "Rigs of another program, at most; those of the folder, in order."),
+    Field {
+        key: "rigs",
+        kind: Kind::Path,
+        meaning: "Folder with rigs and their truths, as experiments/rigs makes it.",
+        ..PLAIN
+    },
     Field {
         key: "measured",
         kind: Kind::Path,
@@ -171,4 +180,34 @@ const SENSOR: &[Field] = &[
         meaning: "Largest standard deviation of the sensor's white noise.",
         ..PLAIN
     },
+];
+
+const fn share(key: &'static str, meaning: &'static str) -> Field {
+    Field {
+        key,
+        kind: Kind::Float { min: 0.0, max: 1.0 },
+        default: Default::Absent,
+        unit: "",
+        meaning,
+        source: "",
+    }
+}
+
+const GATE: &[Field] = &[
+    share("leading_named", "Least share of composite cases in which the leading effect's class is named."),
+    share(
+        "leading_sure",
+        "Least share of composite cases in which the leading effect's class gets 0.9 or more.",
+    ),
+    share("recall", "Least share of effects of 10 x noise or more whose class is named, where several act."),
+    share("precision", "Least share of names whose class acts, where several effects act."),
+    share(
+        "unknown",
+        "Least share of `unknown`, or allowed classes, where a law outside the vocabulary acts alone.",
+    ),
+    share("false_alarms", "Largest share of alarms where nothing is missing."),
+    share(
+        "calibration_error",
+        "Largest calibration error of the probabilities of classes, where several effects act.",
+    ),
 ];

@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::error::TrialError;
-use super::plan::TrialPlan;
+use super::plan::Ranges;
 use dynamics::chain::{SampledMotion, Samples};
 use dynamics::sensitivity::{FullState, Model, Settings};
 use dynamics::{Active, Coefficients, Hold, Input, Nominal, Start, System};
@@ -73,9 +73,13 @@ impl Motion {
 
 impl Situation {
     /// Draws everything anew; what is hidden has no say in it.
-    pub(crate) fn draw(plan: &TrialPlan, seed: &Seed, motions: Motions) -> Result<Self, TrialError> {
+    pub(crate) fn draw(
+        ranges: &Ranges,
+        sampling: Sampling,
+        seed: &Seed,
+        motions: Motions,
+    ) -> Result<Self, TrialError> {
         let mut draws = Draws::new(&seed.child("system"));
-        let ranges = &plan.ranges;
         let omega = std::f64::consts::TAU * draws.log_uniform(ranges.frequency_hz[0], ranges.frequency_hz[1]);
         let ratio = draws.log_uniform(ranges.damping_ratio[0], ranges.damping_ratio[1]);
         // Half of the systems per unit of inertia, half in SI units, as small as the paper's pendulum.
@@ -88,14 +92,8 @@ impl Situation {
         let amplitude = draws.uniform(ranges.release_deg[0], ranges.release_deg[1]).to_radians();
         let side = draws.sign();
         let release = |amplitude: f64| Start::release(rest + side * amplitude);
-        let mut situation = Self {
-            nominal,
-            starts: vec![release(amplitude)],
-            amplitude,
-            excitation: None,
-            sampling: plan.sampling,
-            noise,
-        };
+        let mut situation =
+            Self { nominal, starts: vec![release(amplitude)], amplitude, excitation: None, sampling, noise };
         match motions {
             Motions::Release => {}
             Motions::Releases => {

@@ -3,7 +3,7 @@
 use super::case::{ATTEMPTS, Case, Job, Setup};
 use super::draws::Draws;
 use super::error::TrialError;
-use super::integrator::{Moment, TorqueLaw, motions};
+use super::integrator::{TorqueLaw, motions};
 use super::laws::{
     BoucWen, DragPower, Drifting, ExponentialDrift, ExponentialSpring, HertzStop, LuGre, RoundedBacklash,
     SineSpring, WanderingForcing,
@@ -50,7 +50,7 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
         let Some(sized) = drawn.open.sized(&setup, wanted, Absorbed::BY_RECALIBRATION)? else { continue };
         let mut draws = Draws::new(&setup.seed.child("disturbance"));
         let disturbance = disturbance(&setup.situation, &setup.seed, &mut draws)?;
-        let mut motions = motions(&setup.situation, sized.law.as_ref(), &disturbance)?;
+        let mut motions = motions(&setup.situation, &[sized.law.as_ref()], &disturbance)?;
         add_correlated_noise(&setup.situation, &mut motions, &mut draws);
         let told = Told {
             effects: vec![HiddenEffect {
@@ -58,9 +58,10 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
                 parameters: (drawn.parameters)(sized.size),
                 law: law.to_owned(),
                 detectability: sized.detectability,
+                floors: None,
             }],
-            foreign: None,
             made: format!("{effect} by splitting: {}", drawn.words),
+            ..Told::default()
         };
         return written(plan, job, id, &setup, &motions, told);
     }
@@ -68,14 +69,14 @@ pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, Trial
 }
 
 /// A law with its shape drawn.
-struct Drawn {
-    open: OpenLaw,
+pub(crate) struct Drawn {
+    pub(crate) open: OpenLaw,
     /// Parameters by the vocabulary's law, or the nearest to them, at a size.
-    parameters: Box<dyn Fn(f64) -> Vec<f64>>,
-    words: String,
+    pub(crate) parameters: Box<dyn Fn(f64) -> Vec<f64>>,
+    pub(crate) words: String,
 }
 
-fn drawn<L: TorqueLaw + 'static>(
+pub(crate) fn drawn<L: TorqueLaw + 'static>(
     guess: f64,
     most: f64,
     law: impl Fn(f64) -> L + 'static,
@@ -86,7 +87,7 @@ fn drawn<L: TorqueLaw + 'static>(
     Drawn { open: OpenLaw { guess, most, law: Box::new(law) }, parameters: Box::new(parameters), words }
 }
 
-fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
+pub(crate) fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
     let nominal = situation.nominal;
     let (inertia, stiffness, rest) = (nominal.inertia(), nominal.stiffness(), nominal.rest_angle());
     let (omega, swing, duration) = (situation.omega(), situation.amplitude, situation.duration());
@@ -195,15 +196,6 @@ fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
     }
 }
 
-/// No torque.
-struct Nothing;
-
-impl TorqueLaw for Nothing {
-    fn torque(&self, _: &Moment) -> f64 {
-        0.0
-    }
-}
-
 /// A first-order autoregressive sequence of unit variance at the samples, with a correlation time in seconds.
 fn autoregressive(situation: &Situation, correlation: f64, draws: &mut Draws) -> Vec<f64> {
     let keep = (-1.0 / (situation.sampling.rate_hz * correlation)).exp();
@@ -240,7 +232,7 @@ fn disturbance(
         ..situation.clone()
     };
     let held = |record: usize| unit.get(record).cloned().unwrap_or_default();
-    let shaken = motions(&still, &Nothing, &held)?;
+    let shaken = motions(&still, &[], &held)?;
     let squares: Vec<f64> =
         shaken.iter().flat_map(|motion| &motion.position).map(|position| (position - rest).powi(2)).collect();
     let spread = (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt();

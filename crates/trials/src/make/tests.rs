@@ -13,8 +13,18 @@ use settings::Document;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-const BANKS: &[&str] =
-    &["none", "calibration", "single", "pair", "left_out", "foreign", "releases", "driven", "stressed"];
+const BANKS: &[&str] = &[
+    "none",
+    "calibration",
+    "single",
+    "pair",
+    "left_out",
+    "foreign",
+    "releases",
+    "driven",
+    "stressed",
+    "composite",
+];
 
 /// Short records, so that a test makes many.
 fn plan(counts: &[(&str, usize)], overrides: &[&str]) -> TrialPlan {

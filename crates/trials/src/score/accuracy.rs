@@ -1,8 +1,8 @@
 //! Accuracy by bank, by effect and by size; what was mistaken for what.
 
-use super::judgment::{BANKS, Judgment, KINDS, Said, asks_for_unknown, is_without_effect};
+use super::judgment::{BANKS, Judgment, KINDS, Said};
 use super::statistics::proportion;
-use crate::hidden::Bank;
+use crate::hidden::{Asked, Bank};
 use runs::result::{BankRow, Confusion, NuisanceRow, Proportion, SizeRow};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -33,7 +33,7 @@ pub(crate) fn banks(judged: &[Judgment<'_>]) -> Vec<BankRow> {
             own().next()?;
             let share = |of: fn(&Judgment<'_>) -> bool| proportion(own().map(of));
             let pairs = || own().filter(|judgment| judgment.case.hidden.effects.len() > 1);
-            let plain = || own().filter(|judgment| is_without_effect(judgment.bank()));
+            let plain = || own().filter(|judgment| judgment.asked() == Asked::Nothing);
             Some(BankRow {
                 bank: bank.name().to_owned(),
                 right: share(|judgment| judgment.right),
@@ -100,8 +100,8 @@ pub(crate) fn confusion(judged: &[Judgment<'_>]) -> Confusion {
     };
     let hidden = |judgment: &Judgment<'_>| match judgment.bank() {
         Bank::LeftOut => "not considered".to_owned(),
-        Bank::Foreign => "foreign".to_owned(),
-        bank if is_without_effect(bank) => bank.name().to_owned(),
+        _ if judgment.asked() == Asked::Unknown => "foreign".to_owned(),
+        bank if judgment.asked() == Asked::Nothing => bank.name().to_owned(),
         _ => judgment.case.hidden.effects.first().map_or_else(String::new, |effect| effect.id.clone()),
     };
     let pairs: Vec<(String, String)> = judged
@@ -135,8 +135,8 @@ pub(crate) fn kinds(judged: &[Judgment<'_>]) -> Confusion {
 /// Kind of verdict right: among cases whose effects have about a size, and those without an effect.
 pub(crate) fn kind_right(judged: &[Judgment<'_>], sizes: [f64; 2]) -> Proportion {
     let counted = judged.iter().filter(|judgment| {
-        !asks_for_unknown(judgment.bank())
-            && (is_without_effect(judgment.bank()) || within(judgment.size(), sizes))
+        judgment.asked() != Asked::Unknown
+            && (judgment.asked() == Asked::Nothing || within(judgment.size(), sizes))
     });
     proportion(counted.map(Judgment::kind_is_right))
 }

@@ -1,9 +1,9 @@
 //! The bars, and what was measured against them.
 
 use super::accuracy::{kind_right, range, within};
-use super::judgment::{Judgment, is_without_effect};
+use super::judgment::Judgment;
 use super::statistics::{NO_NUMBER, proportion};
-use crate::hidden::Bank;
+use crate::hidden::{Asked, Bank};
 use runs::result::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
 /// Size in noise units at which an effect is told from its closest rival in 19 of 20 records, with one, two and three
@@ -42,13 +42,14 @@ pub(crate) struct Measured<'a> {
     pub(crate) seconds: &'a Quantiles,
 }
 
-enum Side {
+/// On which side of a value a measure should lie.
+pub(crate) enum Side {
     AtLeast(f64),
     AtMost(f64),
     Within(f64, f64),
 }
 
-fn row(metric: &str, unit: &str, side: Side, found: WithInterval, cases: u64) -> BarRow {
+pub(crate) fn row(metric: &str, unit: &str, side: Side, found: WithInterval, cases: u64) -> BarRow {
     let (at_least, at_most) = match side {
         Side::AtLeast(bar) => (Some(bar), None),
         Side::AtMost(bar) => (None, Some(bar)),
@@ -76,7 +77,7 @@ fn row(metric: &str, unit: &str, side: Side, found: WithInterval, cases: u64) ->
     }
 }
 
-fn share(metric: &str, side: Side, found: &Proportion) -> BarRow {
+pub(crate) fn share(metric: &str, side: Side, found: &Proportion) -> BarRow {
     let found_with = WithInterval { value: found.share, interval_95: found.interval_95 };
     row(metric, "%", side, found_with, found.of)
 }
@@ -91,7 +92,7 @@ pub(crate) fn bars(measured: &Measured<'_>) -> Vec<BarRow> {
     };
     // Places in SIZES.
     let [twelve, twenty_five, hundred] = [2, 3, 5].map(about);
-    let alarms = judged.iter().filter(|judgment| is_without_effect(judgment.bank())).map(Judgment::alarms);
+    let alarms = judged.iter().filter(|judgment| judgment.asked() == Asked::Nothing).map(Judgment::alarms);
     let far = judged
         .iter()
         .filter(|judgment| matches!(judgment.bank(), Bank::Single | Bank::Releases | Bank::Driven))

@@ -1,6 +1,7 @@
 //! One answer beside one truth.
 
-use crate::hidden::{Bank, Hidden};
+use super::classes::class_of;
+use crate::hidden::{Asked, Bank, Hidden};
 use dynamics::{Class, Effect};
 use runs::result::DiagnosisResult;
 
@@ -63,18 +64,8 @@ pub(crate) struct Judgment<'a> {
     pub(crate) either: bool,
 }
 
-/// What a bank asks for.
-pub(crate) fn asks_for_unknown(bank: Bank) -> bool {
-    matches!(bank, Bank::LeftOut | Bank::Foreign)
-}
-
-/// Whether nothing is missing in a bank's cases.
-pub(crate) fn is_without_effect(bank: Bank) -> bool {
-    matches!(bank, Bank::None | Bank::Calibration)
-}
-
 /// Every bank, in the order of tables.
-pub(crate) const BANKS: [Bank; 11] = [
+pub(crate) const BANKS: [Bank; 13] = [
     Bank::None,
     Bank::Calibration,
     Bank::Single,
@@ -86,14 +77,16 @@ pub(crate) const BANKS: [Bank; 11] = [
     Bank::Stressed,
     Bank::Measured,
     Bank::Engine,
+    Bank::Composite,
+    Bank::Rigs,
 ];
 
 /// The words for what `right` means, for the result.
 pub(crate) const RIGHT_MEANS: &str = "Effects of the measuring chain that come with records of every bank alike are struck \
     from an answer first. Where nothing is missing, an answer is right that names nothing, be its status none or \
     calibration. Where effects are hidden, its status has to be `effect` and its set exactly the hidden one. Where the hidden \
-    effect was not to be considered or lies outside the vocabulary, `unknown` is right. A case without an answer is \
-    wrong. Stated confidence is the probability of being right in this sense.";
+    effect was not to be considered or lies outside the vocabulary, `unknown` is right, and so are names of classes only \
+    that the truth allows; where such a law is small, whatever names no other class. A case without an answer is wrong. Stated confidence is the probability of being right in this sense.";
 
 impl<'a> Judgment<'a> {
     pub(crate) fn of(case: &'a AnsweredCase) -> Self {
@@ -113,21 +106,27 @@ impl<'a> Judgment<'a> {
                 classes.filter(|class| class.iter().any(|own| Some(own.as_str()) == said_first));
             of_first.any(|class| class.iter().any(|own| own == id))
         };
-        let (right, top_1, class) = if asks_for_unknown(hidden.bank) {
-            let right = said == Said::Unknown;
-            (right, right, right)
-        } else if is_without_effect(hidden.bank) {
-            let right = matches!(said, Said::None | Said::Calibration);
-            (right, right, right || named_here.len() == 1 && alike("calibration"))
-        } else {
-            let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
-            let right = said == Said::Effect && every && named_here.len() == hidden.effects.len();
-            let top_1 = first.is_some_and(is_hidden);
-            (
-                right,
-                top_1,
-                top_1 || said_first.is_some() && hidden.effects.iter().any(|effect| alike(&effect.id)),
-            )
+        let allowed = named_here.iter().all(|id| hidden.allowed.iter().any(|class| class == class_of(id)));
+        let (right, top_1, class) = match hidden.asked() {
+            Asked::Unknown => {
+                let right = said == Said::Unknown || said == Said::Effect && allowed;
+                (right, right, right)
+            }
+            Asked::NoName => {
+                let right = said != Said::Nothing && allowed;
+                (right, right, right)
+            }
+            Asked::Nothing => {
+                let right = matches!(said, Said::None | Said::Calibration);
+                (right, right, right || named_here.len() == 1 && alike("calibration"))
+            }
+            Asked::Effects => {
+                let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
+                let right = said == Said::Effect && every && named_here.len() == hidden.effects.len();
+                let top_1 = first.is_some_and(is_hidden);
+                let like_hidden = || hidden.effects.iter().any(|effect| alike(&effect.id));
+                (right, top_1, top_1 || said_first.is_some() && like_hidden())
+            }
         };
         let mut found = hidden.effects.iter().map(|effect| named_here.contains(&effect.id.as_str()));
         let either = found.clone().any(|found| found);
@@ -137,6 +136,11 @@ impl<'a> Judgment<'a> {
 
     pub(crate) fn bank(&self) -> Bank {
         self.case.hidden.bank
+    }
+
+    /// What the case asks of an answer.
+    pub(crate) fn asked(&self) -> Asked {
+        self.case.hidden.asked()
     }
 
     pub(crate) fn answer(&self) -> Option<&'a DiagnosisResult> {
@@ -171,8 +175,7 @@ impl<'a> Judgment<'a> {
         let ids: Vec<&str> = self.case.hidden.effects.iter().map(|effect| effect.id.as_str()).collect();
         match (self.bank(), ids.is_empty()) {
             (Bank::LeftOut, _) => format!("{}, not considered", ids.join("+")),
-            (Bank::Foreign, _) => self.foreign_law().unwrap_or_else(|| "foreign".to_owned()),
-            (bank, true) => bank.name().to_owned(),
+            (bank, true) => self.foreign_law().unwrap_or_else(|| bank.name().to_owned()),
             (_, false) => ids.join("+"),
         }
     }
@@ -190,7 +193,7 @@ impl<'a> Judgment<'a> {
         match self.bank() {
             Bank::None => "none",
             Bank::Calibration => "calibration",
-            bank if asks_for_unknown(bank) => "unknown",
+            _ if self.asked() == Asked::Unknown => "unknown",
             _ => self.case.hidden.effects.first().map_or("none", |effect| kind(&effect.id)),
         }
     }
@@ -207,7 +210,7 @@ impl<'a> Judgment<'a> {
     pub(crate) fn kind_is_right(&self) -> bool {
         let said = self.said_kind();
         said == self.hidden_kind()
-            || !asks_for_unknown(self.bank())
+            || self.asked() != Asked::Unknown
                 && self.case.hidden.effects.iter().any(|effect| kind(&effect.id) == said)
     }
 }

@@ -2,7 +2,11 @@
 
 pub(crate) mod accuracy;
 mod bars;
+mod classes;
+#[cfg(test)]
+mod classes_tests;
 mod closure;
+mod gate;
 mod isotonic;
 mod judgment;
 mod reliability;
@@ -14,9 +18,10 @@ mod tests;
 mod unknown;
 
 pub use closure::true_closure;
+pub use gate::{Gate, misses_the_gate};
 pub use judgment::AnsweredCase;
 
-pub(crate) use judgment::{Judgment, is_without_effect};
+pub(crate) use judgment::Judgment;
 pub(crate) use statistics::proportion;
 
 use crate::baseline::{Baseline, row};
@@ -37,6 +42,8 @@ pub struct Trials {
     pub seed: u64,
     /// Banks that were not made, and why.
     pub left_out: Vec<LeftOutBank>,
+    /// What the scores have to reach.
+    pub gate: Gate,
     /// Wall time so far in seconds.
     pub seconds: f64,
 }
@@ -73,6 +80,8 @@ pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) ->
         left_out: trials.left_out.clone(),
         right_means: RIGHT_MEANS.to_owned(),
         bars: bars::bars(&measured),
+        gate: trials.gate.rows(&judged, &reliability),
+        inclusion: classes::study(&judged),
         banks: accuracy::banks(&judged),
         effects: accuracy::sizes(&judged, true),
         sizes: accuracy::sizes(&judged, false),
@@ -128,6 +137,11 @@ fn probabilities(judged: &[Judgment<'_>], seed: &Seed) -> (Vec<Reliability>, Pro
         studies.push(("confidence, mapped", "own, not fitted", mapped(&held_out, &map)));
         studies.push(("confidence, not mapped", "own, not fitted", held_out));
         studies.push(("confidence, mapped", "stressed", mapped(&of_confidence(stressed()), &map)));
+    }
+    for (banks, own) in classes::groups(judged) {
+        studies.push(("confidence", banks, of_confidence(own.iter().copied())));
+        studies.push(("effects", banks, of_effects(own.iter().copied())));
+        studies.push(("classes", banks, classes::statements(own.iter().copied())));
     }
     let found = studies.iter().filter_map(|(subject, banks, statements)| {
         reliability(subject, banks, statements, &seed.child(subject).child(banks))

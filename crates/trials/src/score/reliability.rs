@@ -1,9 +1,9 @@
 //! Whether probabilities hold what they say.
 
 use super::isotonic::at;
-use super::judgment::{Judgment, asks_for_unknown};
+use super::judgment::Judgment;
 use super::statistics::{proportion, quantile};
-use crate::hidden::Bank;
+use crate::hidden::{Asked, Bank};
 use rand::RngExt;
 use runs::result::{ProbabilityMap, Reliability, ReliabilityBin, WithInterval};
 use seed::Seed;
@@ -29,7 +29,7 @@ pub(crate) fn of_effects<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
         .filter_map(|judgment| {
             let hidden = &judgment.case.hidden;
             let is_so = |id: &str| match id {
-                "unknown" => asks_for_unknown(judgment.bank()),
+                "unknown" => judgment.asked() == Asked::Unknown,
                 id => hidden.effects.iter().any(|effect| effect.id == id),
             };
             let rows = judgment.answer()?.effects.iter();
@@ -43,7 +43,7 @@ pub(crate) fn of_effects<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
 
 /// Whether a bank's records come from the generator that most do.
 pub(crate) fn is_own(bank: Bank) -> bool {
-    !matches!(bank, Bank::Stressed | Bank::Measured | Bank::Engine)
+    !matches!(bank, Bank::Stressed | Bank::Measured | Bank::Engine | Bank::Composite | Bank::Rigs)
 }
 
 fn sorted(statements: &Statements) -> Vec<(f64, bool)> {

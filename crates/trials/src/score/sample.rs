@@ -55,6 +55,7 @@ pub(crate) fn case(bank: Bank, hidden: &[&str], answer: Result<DiagnosisResult, 
             parameters: Vec::new(),
             law: "vocabulary".to_owned(),
             detectability: 25.0,
+            floors: None,
         })
         .collect();
     AnsweredCase {
@@ -65,6 +66,8 @@ pub(crate) fn case(bank: Bank, hidden: &[&str], answer: Result<DiagnosisResult, 
             effects,
             foreign: (bank == Bank::Foreign)
                 .then(|| Foreign { law: "a law of its own".to_owned(), detectability: 25.0 }),
+            unlisted: Vec::new(),
+            allowed: Vec::new(),
             nuisances: Vec::new(),
             miscalibrated: true,
             without: None,

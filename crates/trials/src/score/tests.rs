@@ -1,7 +1,7 @@
 //! Of whole scores.
 
 use super::sample::{answered, case};
-use super::{AnsweredCase, Trials, case_rows, misses_a_bar, score};
+use super::{AnsweredCase, Gate, Trials, case_rows, misses_a_bar, misses_the_gate, score};
 use crate::baseline::most_common;
 use crate::hidden::Bank;
 use runs::result::LeftOutBank;
@@ -11,6 +11,7 @@ fn trials() -> Trials {
         name: "trials".to_owned(),
         seed: 1,
         left_out: vec![LeftOutBank { bank: "engine".to_owned(), reason: "no engine here".to_owned() }],
+        gate: Gate::default(),
         seconds: 1.0,
     }
 }
@@ -82,4 +83,42 @@ fn a_bar_missed_beyond_chance_is_noticed() {
     let bad: Vec<AnsweredCase> =
         (0..40).map(|_| case(Bank::None, &[], answered("effect", &["gravity"], 0.97))).collect();
     assert!(misses_a_bar(&score(&trials(), &bad, &[])));
+}
+
+fn gated(text: &str) -> Trials {
+    let document = settings::Document::parse("gate.toml", text).unwrap();
+    Trials { gate: Gate::of(&document).unwrap(), ..trials() }
+}
+
+#[test]
+fn a_gate_is_missed_by_a_score_on_the_wrong_side_alone() {
+    let quiet: Vec<AnsweredCase> =
+        (0..8).map(|_| case(Bank::None, &[], answered("none", &[], 0.9))).collect();
+    let loud = [vec![case(Bank::None, &[], answered("effect", &["gravity"], 0.9))], quiet.clone()].concat();
+    let gate = gated("[gate]\nfalse_alarms = 0.1");
+    assert!(!misses_the_gate(&score(&gate, &quiet, &[])));
+    let missed = score(&gate, &loud, &[]);
+    assert!(misses_the_gate(&missed) && missed.gate.len() == 1, "{:?}", missed.gate);
+    // What is not asked for is no part of it.
+    assert!(!misses_the_gate(&score(&trials(), &loud, &[])));
+}
+
+#[test]
+fn a_gate_looks_at_the_leading_class() {
+    let of = |named: &[&str], sure: f64| {
+        let mut case = case(Bank::Composite, &["gravity", "backlash"], answered("effect", named, sure));
+        case.hidden.effects[0].floors = Some(60.0);
+        case.hidden.effects[1].floors = Some(3.0);
+        case.hidden.unlisted = vec![crate::Unlisted { law: "field".to_owned(), floors: 1.0, class: None }];
+        case
+    };
+    let gate = gated("[gate]\nleading_named = 0.9\nleading_sure = 0.9\nrecall = 0.9\nprecision = 0.9");
+    let states = |case: AnsweredCase| -> Vec<String> {
+        score(&gate, &[case], &[]).gate.into_iter().map(|row| row.state).collect()
+    };
+    // A cubic spring is of gravity's class; the play is too small to count.
+    assert_eq!(states(of(&["cubic_stiffness"], 0.95)), ["met", "met", "met", "met"]);
+    assert_eq!(states(of(&["cubic_stiffness"], 0.5)), ["met", "not met", "met", "met"]);
+    assert_eq!(states(of(&["backlash", "end_stop"], 0.95)), ["not met", "not met", "not met", "met"]);
+    assert_eq!(states(of(&["hysteresis", "gravity"], 0.95)), ["met", "met", "met", "not met"]);
 }

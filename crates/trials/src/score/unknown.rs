@@ -1,9 +1,9 @@
 //! Telling what has no name from what has.
 
 use super::accuracy::{SIZES, range, within};
-use super::judgment::{Judgment, asks_for_unknown};
+use super::judgment::Judgment;
 use super::statistics::area;
-use crate::hidden::Bank;
+use crate::hidden::{Asked, Bank};
 use runs::result::{AreaRow, UnknownStudy};
 
 /// Points of the curve that are kept.
@@ -19,7 +19,7 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
     let of = |size: Option<f64>, wanted: &dyn Fn(&Judgment<'_>) -> bool| {
         let positives: Vec<f64> = judged
             .iter()
-            .filter(|judgment| asks_for_unknown(judgment.bank()) && wanted(judgment))
+            .filter(|judgment| judgment.asked() == Asked::Unknown && wanted(judgment))
             .filter_map(score)
             .collect();
         let row = AreaRow {

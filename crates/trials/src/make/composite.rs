@@ -1,0 +1,260 @@
+//! Systems that lack several things of very different size: effects of the vocabulary by other laws than its own, beside smooth
+//! laws that it does not have.
+//!
+//! Swings a record and samples a swing are drawn over decades, as many as the configured number of samples permits.
+//! A size is stated as a multiple of the noise: root mean square over all samples of what no recalibration
+//! absorbs of the effect alone, over the standard deviation of all that is white.
+
+use super::case::{ATTEMPTS, Case, Job, Setup};
+use super::draws::Draws;
+use super::error::TrialError;
+use super::foreign;
+use super::integrator::{TorqueLaw, motions};
+use super::laws::{Field, SecondBody, Weight};
+use super::own_record::{OpenLaw, SizedLaw, Told, written};
+use super::plan::{Ranges, TrialPlan};
+use super::recalibration::Absorbed;
+use super::situation::{Motion, Motions, Situation};
+use super::stressed::{self, Drawn, EFFECTS, drawn};
+use crate::{HiddenEffect, Unlisted};
+use dynamics::DynamicsError;
+use seed::Seed;
+use std::f64::consts::PI;
+use truth::Sampling;
+
+/// Effects with a law of their own here, beside those of the stressed bank.
+const MORE: [(&str, &str); 2] = [("gravity", "weight"), ("flexible_coupling", "second body")];
+
+/// Effects of which a case has one at most: their sum has hardly two sides.
+const ALIKE: [&str; 2] = ["coulomb_friction", "stribeck_friction"];
+
+/// Laws outside the vocabulary, each with the class of effects that it belongs to by its mechanism, if to one.
+const UNLISTED: [(&str, Option<&str>); 5] = [
+    ("field", None),
+    ("cogging", None),
+    ("maxwell", None),
+    ("parametric", Some("drift")),
+    ("position_damping", Some("damping")),
+];
+
+/// Sizes × noise: of the leading effect, of the others, of some small ones, of what has no name.
+const LEADING: [f64; 2] = [30.0, 150.0];
+const OTHERS: [f64; 2] = [4.0, 30.0];
+const SMALL: [f64; 2] = [1.0, 4.0];
+const NAMELESS: [f64; 2] = [0.3, 3.0];
+
+/// How many of the others are small.
+const SMALL_SHARE: f64 = 0.3;
+
+/// Size of the leading effect as a part of the swing: from, to. The noise follows from it.
+const LEADING_PART: [f64; 2] = [0.01, 0.06];
+
+/// Swings a record and samples a swing: from, to.
+const SWINGS: [f64; 2] = [8.0, 300.0];
+const SAMPLES: [f64; 2] = [12.0, 200.0];
+
+/// Fewest samples of a record, where the configured number permits.
+const FEWEST: usize = 800;
+
+/// Logarithms by which the amplitude falls over a free decay, at most: beyond there is nothing to see.
+const LARGEST_DECAY: f64 = 6.0;
+
+/// Largest distance from the rest angle in units of the amplitude drawn.
+const LARGEST_SWING: f64 = 2.0;
+
+/// A case of the bank.
+pub(crate) fn make(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
+    let (seed, branch) = job.seed(plan.seed);
+    for attempt in 0..ATTEMPTS {
+        let own = seed.child(&format!("attempt {attempt}"));
+        let mut draws = Draws::new(&own.child("composite"));
+        let sizes = Sizes::draw(&mut draws);
+        let situation = situation(plan, &own, &sizes, &mut draws)?;
+        let setup = Setup::with(situation, seed.clone(), own.clone(), branch.clone(), &[])?;
+        let Some(parts) = Parts::draw(&setup, &own, &sizes, &mut draws)? else { continue };
+        let laws: Vec<&dyn TorqueLaw> = parts.laws.iter().map(Box::as_ref).collect();
+        let motions = motions(&setup.situation, &laws, &|_| Vec::new())?;
+        if !motions.iter().all(|motion| is_sensible(&setup.situation, motion)) {
+            continue;
+        }
+        let mut effects = parts.effects;
+        effects.sort_by(|one, other| other.detectability.total_cmp(&one.detectability));
+        let told = Told {
+            effects,
+            unlisted: parts.unlisted,
+            made: "composite, by splitting".to_owned(),
+            ..Told::default()
+        };
+        return written(plan, job, id, &setup, &motions, told);
+    }
+    Err(TrialError::OutOfReach { effect: "composite".to_owned(), wanted: LEADING[0], attempts: ATTEMPTS })
+}
+
+/// Sizes × noise: of effects, the leading one first, and of laws outside the vocabulary.
+struct Sizes {
+    effects: Vec<f64>,
+    unlisted: Vec<f64>,
+}
+
+impl Sizes {
+    fn draw(draws: &mut Draws) -> Self {
+        let mut effects = vec![draws.log_uniform(LEADING[0], LEADING[1])];
+        for _ in 0..1 + draws.below(5) {
+            let [low, high] = if draws.chance(SMALL_SHARE) { SMALL } else { OTHERS };
+            effects.push(draws.log_uniform(low, high));
+        }
+        let unlisted = (0..1 + draws.below(2)).map(|_| draws.log_uniform(NAMELESS[0], NAMELESS[1])).collect();
+        Self { effects, unlisted }
+    }
+}
+
+/// A system, its motion and its sensor, over wider ranges than the other banks'.
+fn situation(
+    plan: &TrialPlan,
+    own: &Seed,
+    sizes: &Sizes,
+    draws: &mut Draws,
+) -> Result<Situation, TrialError> {
+    let [low, high] = plan.ranges.frequency_hz;
+    let frequency = draws.log_uniform(low, high);
+    let [low, high] = plan.ranges.damping_ratio;
+    let ratio = draws.log_uniform(0.25 * low, (4.0 * high).min(0.2));
+    let kind = match draws.uniform(0.0, 1.0) {
+        share if share < 0.6 => Motions::Release,
+        share if share < 0.85 => Motions::Releases,
+        _ => Motions::Driven,
+    };
+    let mut swings = draws.log_uniform(SWINGS[0], SWINGS[1]);
+    if kind != Motions::Driven {
+        swings = swings.min(LARGEST_DECAY / (2.0 * PI * ratio)).max(SWINGS[0]);
+    }
+    let most = plan.sampling.samples;
+    let each = draws.log_uniform(SAMPLES[0], SAMPLES[1]).max(FEWEST.min(most) as f64 / swings);
+    let samples = ((swings * each) as usize).min(most);
+    let leading = draws.log_uniform(LEADING_PART[0], LEADING_PART[1]);
+    let swing = plan.ranges.release_deg.map(f64::to_radians).iter().sum::<f64>() / 2.0;
+    let noise = leading * swing / sizes.effects.first().copied().unwrap_or(LEADING[1]);
+    let ranges = Ranges {
+        frequency_hz: [frequency; 2],
+        damping_ratio: [ratio; 2],
+        noise: [noise; 2],
+        release_deg: plan.ranges.release_deg,
+    };
+    let sampling = Sampling { rate_hz: frequency * each, samples, ..plan.sampling };
+    Situation::draw(&ranges, sampling, own, kind)
+}
+
+/// The laws of a case and what they are called.
+#[derive(Default)]
+struct Parts {
+    laws: Vec<Box<dyn TorqueLaw>>,
+    effects: Vec<HiddenEffect>,
+    unlisted: Vec<Unlisted>,
+}
+
+impl Parts {
+    /// Effects of the sizes wanted, taken from the vocabulary in a drawn order; those that cannot be so large are passed
+    /// over. `None` where fewer than two are found.
+    fn draw(setup: &Setup, own: &Seed, sizes: &Sizes, draws: &mut Draws) -> Result<Option<Self>, TrialError> {
+        let situation = &setup.situation;
+        let count = (situation.sampling.samples * situation.starts.len()) as f64;
+        let mut parts = Self::default();
+        let mut wanted = sizes.effects.iter();
+        let mut size = wanted.next();
+        for (effect, law) in shuffled(EFFECTS.iter().chain(&MORE).copied().collect(), draws) {
+            let Some(floors) = size else { break };
+            let beside = |id: &str| parts.effects.iter().any(|effect| effect.id == id);
+            if ALIKE.contains(&effect) && ALIKE.into_iter().any(beside) {
+                continue;
+            }
+            let drawn = draw(effect, situation, &mut Draws::new(&own.child(effect)));
+            let detectability = floors * count.sqrt();
+            let Some(sized) = within_reach(&drawn.open, setup, detectability)? else { continue };
+            parts.effects.push(HiddenEffect {
+                id: effect.to_owned(),
+                parameters: (drawn.parameters)(sized.size),
+                law: law.to_owned(),
+                detectability: sized.detectability,
+                floors: Some(sized.detectability / count.sqrt()),
+            });
+            parts.laws.push(sized.law);
+            size = wanted.next();
+        }
+        let laws = shuffled(UNLISTED.to_vec(), draws);
+        for ((name, class), floors) in laws.into_iter().zip(&sizes.unlisted) {
+            let open = unlisted(name, situation, &mut Draws::new(&own.child(name)));
+            let Some(sized) = within_reach(&open, setup, floors * count.sqrt())? else { continue };
+            parts.unlisted.push(Unlisted {
+                law: name.to_owned(),
+                floors: sized.detectability / count.sqrt(),
+                class: class.map(str::to_owned),
+            });
+            parts.laws.push(sized.law);
+        }
+        Ok((parts.effects.len() > 1 && !parts.unlisted.is_empty()).then_some(parts))
+    }
+}
+
+/// A law of the size wanted; `None` where no size is, or the motion runs away on the way there.
+fn within_reach(open: &OpenLaw, setup: &Setup, detectability: f64) -> Result<Option<SizedLaw>, TrialError> {
+    match open.sized(setup, detectability, Absorbed::BY_RECALIBRATION) {
+        Err(TrialError::Dynamics(DynamicsError::Diverged { .. })) => Ok(None),
+        sized => sized,
+    }
+}
+
+/// A drawn order.
+fn shuffled<T>(mut items: Vec<T>, draws: &mut Draws) -> Vec<T> {
+    for last in (1..items.len()).rev() {
+        items.swap(last, draws.below(last + 1));
+    }
+    items
+}
+
+/// An effect of the vocabulary with its shape drawn.
+fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
+    let nominal = situation.nominal;
+    let (inertia, stiffness) = (nominal.inertia(), nominal.stiffness());
+    match effect {
+        "gravity" => {
+            let angle = draws.uniform(-PI, PI);
+            let law = move |size: f64| Weight { torque: size * stiffness, angle };
+            // The vocabulary's angle counts from position 0.
+            let from_zero = angle - nominal.rest_angle();
+            drawn(1e-2, 0.6, law, move |size| vec![size * stiffness, from_zero], format!("at {angle:.3} rad"))
+        }
+        "flexible_coupling" => {
+            let frequency = draws.uniform(1.8, 5.0) * situation.omega();
+            let damping_ratio = draws.log_uniform(0.003, 0.04);
+            let law = move |size: f64| SecondBody { inertia: size * inertia, frequency, damping_ratio };
+            let values = move |size: f64| {
+                let own = size * inertia;
+                vec![own, own * frequency * frequency, 2.0 * own * damping_ratio * frequency]
+            };
+            drawn(1e-2, 0.5, law, values, format!("second body at {frequency:.3} rad/s"))
+        }
+        other => stressed::draw(other, situation, draws),
+    }
+}
+
+/// A law outside the vocabulary with its shape drawn.
+fn unlisted(name: &str, situation: &Situation, draws: &mut Draws) -> OpenLaw {
+    if name != "field" {
+        return foreign::draw(name, situation, draws).0;
+    }
+    let (swing, speed) = (situation.amplitude, situation.amplitude * situation.omega());
+    let unit = situation.nominal.stiffness() * swing;
+    let mut term = || [draws.normal(), 2.5 * draws.normal(), 2.5 * draws.normal(), draws.uniform(-PI, PI)];
+    let terms: Vec<[f64; 4]> = (0..3).map(|_| term()).collect();
+    let law = move |size: f64| -> Box<dyn TorqueLaw> {
+        Box::new(Field { torque: size * unit, swing, speed, terms: terms.clone() })
+    };
+    OpenLaw { guess: 1e-3, most: 0.3, law: Box::new(law) }
+}
+
+/// Whether a motion is one about the rest angle.
+fn is_sensible(situation: &Situation, motion: &Motion) -> bool {
+    let rest = situation.nominal.rest_angle();
+    let near = |position: &f64| (position - rest).abs() <= LARGEST_SWING * situation.amplitude;
+    motion.position.iter().all(near)
+}
