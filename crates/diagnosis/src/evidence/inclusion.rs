@@ -151,7 +151,7 @@ impl<'a> Inclusion<'a> {
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
         };
-        class_row.probability = probability(&class_row, error(with) / self.noise);
+        class_row.probability = probability(&class_row);
         Some(class_row)
     }
 
