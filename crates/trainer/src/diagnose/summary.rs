@@ -14,6 +14,7 @@ const MOST_EFFECTS: usize = 6;
 pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
     let parts = [
         verdict(result),
+        classes(result),
         gap(result),
         effects(result),
         apart(result),
@@ -32,13 +33,39 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
 fn verdict(result: &DiagnosisResult) -> String {
     let label = match result.verdict.status.as_str() {
         "none" => "NOTHING IS MISSING",
+        "calibration" if report::is_calibrated_already(result) => "NOTHING IS MISSING",
         "calibration" => "CALIBRATION",
         "effect" if report::is_of_the_chain_only(result) => "NOTHING IS MISSING IN THE MOTION",
         "effect" => "MISSING EFFECT",
         _ => "UNKNOWN",
     };
-    let confidence = format::share(result.verdict.confidence);
-    format!("{label} (confidence in exactly this: {confidence})\n{}", result.verdict.summary)
+    format!("{label}\n{}", result.verdict.summary)
+}
+
+/// What is certain, what is likely, what is open, and what has no name.
+fn classes(result: &DiagnosisResult) -> String {
+    let statements = report::class_statements(result);
+    let mut rows: Vec<Vec<String>> = statements
+        .iter()
+        .map(|one| {
+            vec![
+                one.standing.word().to_owned(),
+                one.title.clone(),
+                format::probability(one.class.probability),
+                one.sentence.clone(),
+            ]
+        })
+        .collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    if let Some((share, left)) = report::nameless_share(result).zip(result.left_over) {
+        let left = significant(left.over_noise, 3);
+        let text =
+            format!("{} of the gap; the repaired simulator's error is {left} × noise", format::share(share));
+        rows.push(vec!["no name".to_owned(), String::new(), String::new(), text]);
+    }
+    table(&["", "class of effects", "probability", ""], rows)
 }
 
 fn gap(result: &DiagnosisResult) -> String {
