@@ -1,6 +1,6 @@
 //! Classes of effects in words: how sure, which kind, how large. Page, terminal and `diagnosis.json` share these sentences.
 
-use runs::result::{ClassRow, DiagnosisResult, EffectRow};
+use runs::result::{ClassRow, DiagnosisResult, EffectRow, KindRow};
 
 use crate::format::{
     self, UNDETERMINED, estimate, plain_spaces, quantity, share_with_interval, significant, unit,
@@ -63,7 +63,9 @@ pub struct ClassStatement<'a> {
     pub standing: Standing,
     /// Its name in words, as inside a sentence: `dry friction`.
     pub title: String,
-    /// Kind, size, share of the gap, and the error without and with it, in one sentence.
+    /// Whether fits speak for it, and not the record alone.
+    pub is_fitted: bool,
+    /// Kind, size, share of what the effects close, and the error without and with it, in one sentence.
     pub sentence: String,
 }
 
@@ -87,18 +89,35 @@ pub fn class_title(id: &str) -> String {
     .to_owned()
 }
 
-/// Classes with a probability of 0.1 or more, the surest first; none for a file of an older version.
+/// Classes with a probability of 0.1 or more: by standing, and within that by their share of the gap. None for a file of an
+/// older version.
 #[must_use]
 pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
-    result
+    let mut statements: Vec<ClassStatement<'_>> = result
         .classes
         .iter()
         .filter_map(|class| {
             let standing = Standing::of(class.probability)?;
-            let sentence = sentence(result, class, standing);
-            Some(ClassStatement { class, standing, title: class_title(&class.id), sentence })
+            let told = Told::new(result, class);
+            let (is_fitted, sentence) = (told.is_fitted(), told.sentence());
+            Some(ClassStatement { class, standing, title: class_title(&class.id), is_fitted, sentence })
         })
-        .collect()
+        .collect();
+    let share = |one: &ClassStatement<'_>| one.class.gap_share.map_or(-1.0, |share| share.value);
+    statements.sort_by(|one, other| {
+        one.standing.cmp(&other.standing).then_with(|| share(other).total_cmp(&share(one)))
+    });
+    statements
+}
+
+/// Classes with a probability below 0.1, in one sentence; `None` where there are none.
+#[must_use]
+pub fn unlikely_classes(result: &DiagnosisResult) -> Option<String> {
+    let all = result.classes.iter().filter(|class| Standing::of(class.probability).is_none());
+    let named: Vec<String> = all
+        .map(|class| format!("{} {}", class_title(&class.id), format::probability(class.probability)))
+        .collect();
+    (!named.is_empty()).then(|| format!("Unlikely, with their probabilities: {}.", named.join(", ")))
 }
 
 /// Name of an effect inside a sentence, by the result's own table where it has a row.
@@ -125,124 +144,160 @@ pub fn listed(words: &[String], last: &str) -> String {
 }
 
 /// Name of a kind beside that of its class: `Coulomb` beside `dry friction`.
-pub(crate) fn kind_title(result: &DiagnosisResult, class: &ClassRow, id: &str) -> String {
+pub(crate) fn kind_title(result: &DiagnosisResult, class: &str, id: &str) -> String {
     let title = effect_title(result, id);
-    match title.strip_suffix(" friction") {
-        Some(kind) if class.id == "friction" => kind.to_owned(),
-        _ => title,
-    }
-}
-
-/// Ids of the kinds that a class is told to be of; empty where the data do not tell.
-fn told(result: &DiagnosisResult, class: &ClassRow) -> Vec<String> {
-    let ids = || class.kinds.iter().map(|kind| kind.id.clone());
-    let named: Vec<String> = ids().filter(|id| result.verdict.effects.contains(id)).collect();
-    match (class.kind_is_told || class.kinds.len() == 1, named.is_empty()) {
-        // A kind that stamps or values show is told, whatever the fits can tell.
-        (false, _) => named.into_iter().filter(|id| !effect(result, id).is_some_and(is_fitted)).collect(),
-        (true, false) => named,
-        (true, true) => ids().take(1).collect(),
-    }
-}
-
-/// Kinds between which the data do not tell.
-fn possible(result: &DiagnosisResult, class: &ClassRow) -> Vec<String> {
-    let shown = class.kinds.iter().enumerate();
-    let shown = shown.filter(|(at, kind)| *at < 2 || kind.share >= LEAST_KIND).take(MOST_KINDS);
-    shown.map(|(_, kind)| kind_title(result, class, &kind.id)).collect()
-}
-
-/// The class with its kind in parentheses: `dry friction (Coulomb)`.
-fn with_kind(result: &DiagnosisResult, class: &ClassRow) -> String {
-    let title = class_title(&class.id);
-    let told: Vec<String> = told(result, class)
-        .iter()
-        .map(|id| kind_title(result, class, id))
-        .filter(|kind| *kind != title)
-        .collect();
-    if !told.is_empty() {
-        return format!("{title} ({})", listed(&told, "and"));
-    }
-    let possible = possible(result, class);
-    if possible.len() < 2 {
-        return title;
-    }
-    format!("{title} ({}: these data don’t tell which)", listed(&possible, "or"))
+    let short = match class {
+        "friction" => title.strip_suffix(" friction"),
+        "sensor" => title.strip_prefix("sensor "),
+        _ => None,
+    };
+    short.unwrap_or(&title).to_owned()
 }
 
 fn effect<'a>(result: &'a DiagnosisResult, id: &str) -> Option<&'a EffectRow> {
     result.effects.iter().find(|row| row.id == id)
 }
 
-fn is_fitted(row: &EffectRow) -> bool {
-    row.gap_share.is_some() || !row.parameters.is_empty()
+/// What is told of a class: kinds that stamps or values show without a fit, and kinds that were fitted.
+struct Told<'a> {
+    result: &'a DiagnosisResult,
+    class: &'a ClassRow,
+    /// Ids of kinds that the record shows.
+    shown: Vec<&'a str>,
+    /// Ids of kinds that the fits tell; empty where they do not tell which, or name none.
+    fitted: Vec<&'a str>,
+    /// Ids of kinds between which the fits do not tell.
+    possible: Vec<&'a str>,
 }
 
-/// Whether stamps or values show a class without a fit.
-fn is_shown(result: &DiagnosisResult, class: &ClassRow) -> bool {
-    class.gap_share.is_none()
-        && !class.error_with.is_finite()
-        && !class.kinds.iter().any(|kind| effect(result, &kind.id).is_some_and(is_fitted))
-}
-
-/// Coefficients of the kinds that a class is, or most probably is.
-fn sizes(result: &DiagnosisResult, class: &ClassRow) -> Vec<String> {
-    let told = told(result, class);
-    let likeliest = class.kinds.first().map(|kind| kind.id.clone());
-    let ids = if told.is_empty() { likeliest.into_iter().collect() } else { told.clone() };
-    let mut sizes = Vec::new();
-    for id in &ids {
-        let Some(row) = effect(result, id) else { continue };
-        let of = match ids.len() > 1 || told.is_empty() {
-            true => format!("{}, ", kind_title(result, class, id)),
-            false => String::new(),
+impl<'a> Told<'a> {
+    fn new(result: &'a DiagnosisResult, class: &'a ClassRow) -> Self {
+        let is_shown = |id: &str| {
+            result.measuring_chain.findings.iter().any(|found| found.effect.as_deref() == Some(id))
         };
-        sizes.extend(row.parameters.iter().map(|(name, own)| {
-            let name = name.replace('_', " ");
-            if own.determined {
-                format!("{of}{name} {}", estimate(own.value, own.interval_95, unit(&own.unit)))
-            } else {
-                format!("{of}{name}: {UNDETERMINED}")
+        let is_named = |id: &str| result.verdict.effects.iter().any(|named| named == id);
+        let (shown, others): (Vec<&KindRow>, Vec<&KindRow>) =
+            class.kinds.iter().partition(|kind| is_shown(&kind.id) && is_named(&kind.id));
+        let shown: Vec<&str> = shown.iter().map(|kind| kind.id.as_str()).collect();
+        let named: Vec<&str> = others.iter().map(|kind| kind.id.as_str()).filter(|id| is_named(id)).collect();
+        // Beside a kind that the record shows, a fitted one counts for itself.
+        let is_told = class.kind_is_told || others.len() == 1 || !shown.is_empty();
+        let likely = others.iter().enumerate().filter(|(at, kind)| *at < 2 || kind.share >= LEAST_KIND);
+        let (fitted, possible) = match (is_told, named.is_empty()) {
+            (true, false) => (named, Vec::new()),
+            (true, true) if shown.is_empty() => {
+                (others.first().map(|kind| kind.id.as_str()).into_iter().collect(), Vec::new())
             }
-        }));
+            (true, true) => (Vec::new(), Vec::new()),
+            (false, _) => (Vec::new(), likely.take(MOST_KINDS).map(|(_, kind)| kind.id.as_str()).collect()),
+        };
+        Self { result, class, shown, fitted, possible }
     }
-    sizes
-}
 
-fn sentence(result: &DiagnosisResult, class: &ClassRow, standing: Standing) -> String {
-    let title = class_title(&class.id);
-    let told: Vec<String> = told(result, class)
-        .iter()
-        .map(|id| kind_title(result, class, id))
-        .filter(|kind| *kind != title)
-        .collect();
-    let mut parts: Vec<String> = Vec::new();
-    let possible = possible(result, class);
-    if !told.is_empty() {
-        parts.push(listed(&told, "and"));
-    } else if !class.kind_is_told && possible.len() > 1 {
-        parts.push(format!("the kind can’t be told on these data ({})", listed(&possible, "or")));
+    fn titles(&self, ids: &[&str]) -> Vec<String> {
+        let own = class_title(&self.class.id);
+        let titles = ids.iter().map(|id| kind_title(self.result, &self.class.id, id));
+        titles.filter(|title| *title != own).collect()
     }
-    if is_shown(result, class) {
-        parts.push("the record shows it without a fit".to_owned());
-    } else {
-        if standing != Standing::Open {
-            parts.extend(sizes(result, class));
+
+    /// Whether fits speak for the class, and not the record alone.
+    fn is_fitted(&self) -> bool {
+        !self.fitted.is_empty() || !self.possible.is_empty()
+    }
+
+    /// Standing of what was fitted: that of the class, or of the surest fitted kind beside one that the record shows.
+    fn standing(&self) -> Option<Standing> {
+        if self.shown.is_empty() {
+            return Standing::of(self.class.probability);
+        }
+        let of = |id: &&str| effect(self.result, id).map_or(0.0, |row| row.probability);
+        Standing::of(self.fitted.iter().map(of).fold(0.0, f64::max))
+    }
+
+    /// The class with the fitted kinds in parentheses: `dry friction (Coulomb)`.
+    fn with_kind(&self) -> String {
+        let title = class_title(&self.class.id);
+        let (fitted, possible) = (self.titles(&self.fitted), self.titles(&self.possible));
+        if !fitted.is_empty() {
+            format!("{title} ({})", listed(&fitted, "and"))
+        } else if possible.len() > 1 {
+            format!("{title} ({}: these data don’t tell which)", listed(&possible, "or"))
+        } else {
+            title
+        }
+    }
+
+    /// A kind with its coefficients: `Coulomb: torque 2.0 N m [1.9, 2.1]`.
+    fn sized(&self, id: &str) -> String {
+        let title = self.titles(&[id]).into_iter().next();
+        let rows = effect(self.result, id).into_iter().flat_map(|row| &row.parameters);
+        let sizes: Vec<String> = rows
+            .map(|(name, own)| {
+                let name = name.replace('_', " ");
+                if own.determined {
+                    format!("{name} {}", estimate(own.value, own.interval_95, unit(&own.unit)))
+                } else {
+                    format!("{name} {UNDETERMINED}")
+                }
+            })
+            .collect();
+        match (title, sizes.is_empty()) {
+            (None, _) => sizes.join(", "),
+            (Some(title), true) => title,
+            (Some(title), false) => format!("{title}: {}", sizes.join(", ")),
+        }
+    }
+
+    /// Kind, size, share of the gap, and the error without and with the class.
+    fn sentence(&self) -> String {
+        let mut parts: Vec<String> = self
+            .shown
+            .iter()
+            .map(|id| format!("{}, which the record shows without a fit", self.sized(id)))
+            .collect();
+        let is_open = self.standing().is_none_or(|standing| standing == Standing::Open);
+        if is_open {
+            parts.extend(self.titles(&self.fitted));
+        } else {
+            parts.extend(self.fitted.iter().map(|id| self.sized(id)));
+        }
+        let possible = self.titles(&self.possible);
+        if possible.len() > 1 {
+            parts.push(format!("the kind can’t be told on these data ({})", listed(&possible, "or")));
+        }
+        if !is_open {
+            parts.extend(self.repaired_kind().map(|id| self.sized(id)));
+        }
+        if self.is_fitted() {
+            let share = self.class.gap_share.as_ref().filter(|_| !is_open);
             parts.extend(
-                class.gap_share.as_ref().map(|share| format!("{} of the gap", share_with_interval(share))),
+                share.map(|share| format!("{} of what the effects close", share_with_interval(share))),
             );
+            parts.extend(self.errors());
         }
-        let rms = |value: f64| quantity(&significant(value, 3), &result.gap.unit);
-        if class.error_without.is_finite() && class.error_with.is_finite() {
-            parts.push(format!(
-                "error {} without it, {} with it",
-                rms(class.error_without),
-                rms(class.error_with)
-            ));
-        }
+        let text =
+            capitalized(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; "));
+        if text.is_empty() { text } else { format!("{text}.") }
     }
-    let text = capitalized(&parts.join("; "));
-    if text.is_empty() { text } else { format!("{text}.") }
+
+    /// The kind that the repaired simulator has where the data do not tell which, or the likeliest one.
+    fn repaired_kind(&self) -> Option<&'a str> {
+        let has_share = |id: &&&str| effect(self.result, id).is_some_and(|row| row.gap_share.is_some());
+        self.possible.iter().find(has_share).or(self.possible.first()).copied()
+    }
+
+    fn errors(&self) -> Option<String> {
+        let ClassRow { error_without: without, error_with: with, .. } = *self.class;
+        if !without.is_finite() || !with.is_finite() {
+            return None;
+        }
+        let [without, with] =
+            [without, with].map(|rms| quantity(&significant(rms, 3), &self.result.gap.unit));
+        Some(match without == with {
+            true => format!("error {with} with it and without"),
+            false => format!("error {without} without it, {with} with it"),
+        })
+    }
 }
 
 /// Share of the gap that has no name, 0 to 1: what the repaired simulator leaves, and a torque that was found and has no
@@ -305,14 +360,14 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
 
 /// The sentence where effects are named.
 fn effects(result: &DiagnosisResult, left: &str) -> String {
-    let all = class_statements(result);
-    let (shown, fitted): (Vec<_>, Vec<_>) =
-        all.iter().filter(|one| one.standing != Standing::Open).partition(|one| is_shown(result, one.class));
+    let all: Vec<Told<'_>> =
+        class_statements(result).iter().map(|one| Told::new(result, one.class)).collect();
     let of = |standing: Standing| -> Vec<String> {
-        let own = fitted.iter().filter(|one| one.standing == standing);
-        own.map(|one| with_kind(result, one.class)).collect()
+        let own = all.iter().filter(|one| one.is_fitted() && one.standing() == Some(standing));
+        own.map(Told::with_kind).collect()
     };
-    let shown: Vec<String> = shown.iter().map(|one| with_kind(result, one.class)).collect();
+    let shown: Vec<String> =
+        all.iter().flat_map(|one| &one.shown).map(|id| effect_title(result, id)).collect();
     let (certain, likely) = (listed(&of(Standing::Certain), "and"), listed(&of(Standing::Likely), "and"));
     let lacks = match (certain.is_empty(), likely.is_empty()) {
         (true, true) => String::new(),
@@ -324,6 +379,7 @@ fn effects(result: &DiagnosisResult, left: &str) -> String {
         true => String::new(),
         false => format!("the record shows {}, which the simulator lacks", listed(&shown, "and")),
     };
+    let is_in_the_motion = !lacks.is_empty();
     let missing: Vec<String> = [lacks, shows].into_iter().filter(|text| !text.is_empty()).collect();
     let mut text = capitalized(&missing.join("; "));
     if text.is_empty() {
@@ -333,13 +389,13 @@ fn effects(result: &DiagnosisResult, left: &str) -> String {
     }
     text.push_str(&remaining(result));
     text.push_str(&repeating(result).map_or_else(String::new, |torque| format!("; {torque}")));
-    let share = nameless(result).map_or_else(String::new, |share| format!("; {share}"));
-    if fitted.is_empty() {
+    if !is_in_the_motion {
         let which = if is_off(result) { "recalibrated, the simulator" } else { "the simulator as given" };
         return format!(
             "{text}. Beside that nothing is missing: {which} explains what was recorded down to {left}."
         );
     }
+    let share = nameless(result).map_or_else(String::new, |share| format!("; {share}"));
     format!("{text}. Recalibrated and repaired, the simulator leaves {left}{share}.")
 }
 
@@ -369,7 +425,7 @@ fn rest(result: &DiagnosisResult) -> &'static str {
 /// Half a sentence on the classes that are open.
 fn remaining(result: &DiagnosisResult) -> String {
     let all = class_statements(result);
-    let open = all.iter().filter(|one| one.standing == Standing::Open);
+    let open = all.iter().filter(|one| Told::new(result, one.class).standing() == Some(Standing::Open));
     let open: Vec<String> = open.map(|one| one.title.clone()).collect();
     match open.len() {
         0 => String::new(),

@@ -37,7 +37,7 @@ mod sample;
 
 pub use classes::{
     ClassStatement, Standing, class_statements, class_title, is_calibrated_already, listed, nameless_share,
-    verdict_sentence,
+    unlikely_classes, verdict_sentence,
 };
 pub use error::ReportError;
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};

@@ -1,8 +1,10 @@
 //! The first screen: classes of effects as bars, the surest first, and what has no name.
 
-use runs::result::{ClassRow, DiagnosisResult};
+use runs::result::DiagnosisResult;
 
-use crate::classes::{Standing, capitalized, class_statements, class_title, kind_title, nameless_share};
+use crate::classes::{
+    ClassStatement, Standing, capitalized, class_statements, class_title, kind_title, nameless_share,
+};
 use crate::format::{self, significant};
 
 /// Shares of kinds add up to 1, but where stamps or values show a kind beside those that were fitted.
@@ -58,7 +60,7 @@ pub(super) fn groups(result: &DiagnosisResult) -> Vec<Group> {
         .into_iter()
         .filter_map(|standing| {
             let own = all.iter().filter(|one| one.standing == standing);
-            let rows: Vec<ClassView> = own.map(|one| view(result, one.class, one.sentence.clone())).collect();
+            let rows: Vec<ClassView> = own.map(|one| view(result, one)).collect();
             (!rows.is_empty()).then(|| Group {
                 title: capitalized(standing.word()),
                 word: standing.word(),
@@ -74,7 +76,8 @@ pub(super) fn groups(result: &DiagnosisResult) -> Vec<Group> {
         .collect()
 }
 
-fn view(result: &DiagnosisResult, class: &ClassRow, sentence: String) -> ClassView {
+fn view(result: &DiagnosisResult, one: &ClassStatement<'_>) -> ClassView {
+    let class = one.class;
     let is_split =
         class.kinds.len() > 1 && class.kinds.iter().map(|kind| kind.share).sum::<f64>() < MOST_SHARED;
     let kinds = class.kinds.iter().filter(|kind| is_split && kind.share >= 0.01);
@@ -82,11 +85,11 @@ fn view(result: &DiagnosisResult, class: &ClassRow, sentence: String) -> ClassVi
         title: capitalized(&class_title(&class.id)),
         probability: Bar::new(format::probability(class.probability), class.probability),
         share: class.gap_share.map(|share| Bar::new(format::share(share.value), share.value)),
-        stability: class.error_with.is_finite().then(|| format::share(class.stability)),
-        sentence,
+        stability: one.is_fitted.then(|| format::share(class.stability)),
+        sentence: one.sentence.clone(),
         kinds: kinds
             .map(|kind| {
-                let title = capitalized(&kind_title(result, class, &kind.id));
+                let title = capitalized(&kind_title(result, &class.id, &kind.id));
                 (title, Bar::new(format::share(kind.share), kind.share))
             })
             .collect(),
@@ -103,13 +106,4 @@ pub(super) fn nameless(result: &DiagnosisResult) -> Option<Nameless> {
         String::new()
     };
     Some(Nameless { bar: Bar::new(format::share(share), share), note })
-}
-
-/// Classes with a probability below 0.1, in one sentence.
-pub(super) fn unlikely(result: &DiagnosisResult) -> Option<String> {
-    let all = result.classes.iter().filter(|class| Standing::of(class.probability).is_none());
-    let named: Vec<String> = all
-        .map(|class| format!("{} {}", class_title(&class.id), format::probability(class.probability)))
-        .collect();
-    (!named.is_empty()).then(|| format!("Unlikely, with their probabilities: {}.", named.join(", ")))
 }

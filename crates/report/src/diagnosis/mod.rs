@@ -13,7 +13,7 @@ mod tests;
 use askama::Template;
 use runs::result::DiagnosisResult;
 
-use crate::classes::{effect_title, is_calibrated_already};
+use crate::classes::{effect_title, is_calibrated_already, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
@@ -77,7 +77,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
         },
         groups: classes::groups(result),
         nameless: classes::nameless(result),
-        unlikely: classes::unlikely(result),
+        unlikely: unlikely_classes(result),
         exact_set: tables::exact_set(result),
         has_bars: gap.iter().any(|row| row.bar.is_some()),
         gap,
