@@ -35,6 +35,7 @@ mod prediction;
 mod reading;
 mod recipe;
 mod resuming;
+mod rigs;
 mod run_folders;
 mod schema;
 mod simulation;

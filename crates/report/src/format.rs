@@ -173,6 +173,12 @@ pub fn duration(seconds: f64) -> String {
     quantity(&significant(seconds * scale, 3), unit)
 }
 
+/// A text for files and for whoever searches them: with ordinary spaces, as typed.
+#[must_use]
+pub fn plain_spaces(text: &str) -> String {
+    text.replace([NO_BREAK, GROUP], " ")
+}
+
 /// A number and its unit, kept on one line. An empty unit leaves the number alone.
 #[must_use]
 pub fn quantity(number: &str, unit: &str) -> String {

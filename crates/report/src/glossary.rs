@@ -137,6 +137,12 @@ pub const TERMS: &[Term] = &[
                      be added.",
     },
     Term {
+        name: "Stability",
+        spellings: &["stability"],
+        definition: "Part of the random draws of a record’s segments, with replacement, in which a class of effects is better \
+                     supported than whatever takes its place.",
+    },
+    Term {
         name: "Standard error",
         spellings: &["standard errors", "standard error"],
         definition: "Standard deviation that an estimate would have in repetitions of the measurement.",

@@ -12,6 +12,7 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod classes;
 mod comparison;
 mod diagnosis;
 mod error;
@@ -24,6 +25,7 @@ mod parse;
 pub mod plot;
 mod prediction;
 mod remarks;
+mod rigs;
 mod run_table;
 mod scripts;
 mod tables;
@@ -33,6 +35,10 @@ mod verdict;
 #[cfg(test)]
 mod sample;
 
+pub use classes::{
+    ClassStatement, Standing, class_statements, class_title, is_calibrated_already, listed, nameless_share,
+    unlikely_classes, verdict_sentence,
+};
 pub use error::ReportError;
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
@@ -75,6 +81,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Compare => render_comparison(texts),
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
+        parse::Task::Rigs => rigs::render(texts, &parse::rigs_result(texts.result)?),
         parse::Task::Trials => render_trials(texts),
         parse::Task::Table => render_run_table(texts),
     }

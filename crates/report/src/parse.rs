@@ -2,7 +2,8 @@
 
 use runs::result::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, PredictionCsvRow,
-    PredictionResult, RESULT_SCHEMA, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
+    PredictionResult, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow,
+    TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -42,6 +43,8 @@ pub(crate) enum Task {
     Compare,
     Predict,
     Diagnose,
+    /// Several rigs of one build.
+    Rigs,
     Trials,
     /// A table of runs: `"sweep"` or `"runs"`.
     Table,
@@ -55,6 +58,7 @@ impl Task {
             Self::Compare => "compare",
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
+            Self::Rigs => "rigs",
             Self::Trials => "trials",
             Self::Table => "sweep",
         }
@@ -111,6 +115,10 @@ pub(crate) fn run_table(text: &str) -> Result<RunTable, ReportError> {
     result(text, Task::Table)
 }
 
+pub(crate) fn rigs_result(text: &str) -> Result<RigsResult, ReportError> {
+    result(text, Task::Rigs)
+}
+
 pub(crate) fn trials_result(text: &str) -> Result<TrialsResult, ReportError> {
     result(text, Task::Trials)
 }
@@ -141,6 +149,9 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     let tag: Tag = serde_json::from_str(text).map_err(json_error)?;
     if tag.schema == DIAGNOSIS_SCHEMA {
         return Ok(Task::Diagnose);
+    }
+    if tag.schema == RIGS_SCHEMA {
+        return Ok(Task::Rigs);
     }
     if tag.schema == TRIALS_SCHEMA {
         return Ok(Task::Trials);

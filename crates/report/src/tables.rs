@@ -124,8 +124,7 @@ pub(crate) fn data(data: &DataSummary) -> Vec<Fact> {
         fact("File", data.path.clone()),
         fact("Digest", data.digest.clone()),
         fact("Samples", whole(data.samples)),
-        fact("Clock in force", format!("{}: {}", data.clock, data.clock_reason)),
-        fact("Clock to believe", data.believed_clock.clone()),
+        fact("Clock in force", data.clock.as_str()),
         fact("Sample rate", quantity(&rate, "Hz")),
         fact("Sample period", quantity(&significant(data.sample_period_s * 1e3, 6), "ms")),
         fact(

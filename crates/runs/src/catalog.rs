@@ -4,8 +4,8 @@ use crate::error::RunError;
 use crate::events::{EVENTS, Event, readable};
 use crate::lock::LOCK;
 use crate::result::{
-    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA, RunState,
-    RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
+    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA,
+    RIGS_SCHEMA, RigsResult, RunState, RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
 };
 use crate::sweep::SweepFolder;
 use jiff::Timestamp;
@@ -16,7 +16,8 @@ use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 /// Files of which every run has at least one.
-const FILES: [&str; 5] = ["config.toml", "events.jsonl", "result.json", "diagnosis.json", "environment.json"];
+const FILES: [&str; 6] =
+    ["config.toml", "events.jsonl", "result.json", "diagnosis.json", "rigs.json", "environment.json"];
 
 /// A run folder as it was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -157,11 +158,13 @@ fn fill(run: &mut KeptRun, last: Option<Event>) -> Result<(), String> {
         (run.task, run.estimator) = (word("task"), word("estimator.name"));
         run.config = Some(document);
     }
-    let diagnosis = text(&run.path, "diagnosis.json")?;
-    let (file, result) = match diagnosis {
-        Some(text) => ("diagnosis.json", Some(text)),
-        None => ("result.json", text(&run.path, "result.json")?),
-    };
+    let mut file = "result.json";
+    let mut result = None;
+    for name in ["rigs.json", "diagnosis.json", "result.json"] {
+        if result.is_none() {
+            (file, result) = (name, text(&run.path, name)?);
+        }
+    }
     let Some(result) = result else {
         (run.state, run.reason) = without_result(last);
         return Ok(());
@@ -197,6 +200,15 @@ fn content(text: &str) -> Result<Content, String> {
             let effects =
                 if effects.is_empty() { String::new() } else { format!(": {}", effects.join(", ")) };
             Ok(Content::in_words("diagnose", format!("{status}{effects}")))
+        }
+        (RIGS_SCHEMA, _) => {
+            let found: RigsResult = parse(text)?;
+            let shared = found.classes.iter().filter(|class| class.probability >= 0.5);
+            let shared: Vec<&str> = shared.map(|class| class.id.as_str()).collect();
+            let mut content =
+                Content::in_words("rigs", format!("{} rigs: {}", found.rigs.len(), shared.join(", ")));
+            content.is_interrupted = !found.complete;
+            Ok(content)
         }
         (TRIALS_SCHEMA, _) => Ok(Content::in_words("trials", String::new())),
         (RESULT_SCHEMA, "estimate") => Ok(estimation(&parse(text)?)),

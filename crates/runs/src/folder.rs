@@ -315,7 +315,9 @@ impl RunFolder {
         let resolved = self.path.canonicalize().map_err(RunError::io(&self.path, "find"))?;
         let name = resolved.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let has = |name: &str| self.path.join(name).exists();
-        let (config, result) = if has("diagnosis.json") {
+        let (config, result) = if has("rigs.json") {
+            (String::new(), read("rigs.json")?)
+        } else if has("diagnosis.json") {
             (table("repaired.toml")?, read("diagnosis.json")?)
         } else if has("table.csv") {
             (table("config.toml")?, read("result.json")?)

@@ -17,7 +17,7 @@ use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
 use runs::result::{
-    ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, RESULT_SCHEMA, SeedRow,
+    ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN, RESULT_SCHEMA, SeedRow,
 };
 use runs::to_csv;
 use serde_json::json;
@@ -25,9 +25,6 @@ use std::time::Instant;
 
 /// A method's place, and its fit or why there is none.
 type Fitted = (usize, Result<SeedFit, String>);
-
-/// What stands in place of a fit that was not begun.
-const NOT_BEGUN: &str = "interrupted before it began";
 
 /// Fits every method on every seed, keeps going where one fails, and puts the table together.
 pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {

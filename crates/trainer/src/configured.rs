@@ -9,7 +9,7 @@ use experiment::sweep::apply_override;
 use experiment::{Experiment, PredictionStudy, is_prediction, resolve, resolve_prediction};
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
-use settings::{Document, Resolved};
+use settings::{Document, Resolved, nearest};
 use simulator::Plan;
 use std::path::{Path, PathBuf};
 use trials::TrialPlan;
@@ -126,6 +126,30 @@ pub(crate) fn read_with_text(path: &Path) -> Result<(String, Document), TrainerE
 }
 
 fn text_of(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path)
-        .map_err(|error| if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() })
+    std::fs::read_to_string(path).map_err(|error| match nearest_file(path) {
+        _ if path.is_dir() => "it is a folder".to_owned(),
+        Some(other) => format!("{error} (did you mean {other}?)"),
+        None => error.to_string(),
+    })
+}
+
+/// The TOML file that a missing one is probably a misspelling of: in its folder, or in `configs`.
+fn nearest_file(path: &Path) -> Option<String> {
+    if path.exists() {
+        return None;
+    }
+    let name = path.file_name()?.to_string_lossy().into_owned();
+    let name = if name.ends_with(".toml") { name } else { format!("{name}.toml") };
+    let own = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    [own, Path::new("configs")].into_iter().find_map(|folder| {
+        let entries = std::fs::read_dir(folder).ok()?;
+        let mut known: Vec<String> = entries
+            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+            .filter(|name| name.ends_with(".toml"))
+            .collect();
+        known.sort();
+        let found = nearest(&name, &known)?;
+        let shown = folder.join(found);
+        Some(shown.strip_prefix(".").unwrap_or(&shown).display().to_string())
+    })
 }

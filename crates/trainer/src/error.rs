@@ -88,6 +88,18 @@ pub(crate) enum TrainerError {
     )]
     Nominal { file: String, problem: String },
     #[error(
+        "{record}: nothing to compare it with: name the simulator as it is with --nominal FILE; where there is none, \
+         `trainer init {record}` makes a first guess of one and prints the call that goes on from there"
+    )]
+    NoNominal { record: String },
+    #[error(
+        "{file}: is the configuration of an experiment, which `{command}` runs, not a nominal simulator; --nominal takes a TOML \
+         file with inertia, damping, stiffness and rest_angle: `trainer init LOG` writes one"
+    )]
+    NominalIsConfiguration { file: String, command: String },
+    #[error("{folder} is not empty; nothing that exists is overwritten: name another folder with --out")]
+    InitOccupied { folder: String },
+    #[error(
         "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"
     )]
     SameRecord { first: String, second: String, digest: String },
@@ -99,6 +111,13 @@ pub(crate) enum TrainerError {
         "{folder}: there is no case in it; expected a folder for each, holding record-*.csv and nominal.toml"
     )]
     NoCases { folder: String },
+    #[error("{folder}: {problem}; expected the folder of a rig, holding record-*.csv and nominal.toml")]
+    NoRig { folder: String, problem: String },
+    #[error(
+        "--rigs {rig}: a rig alone has nothing to agree with; name several, or diagnose it with \
+         `trainer diagnose RECORD --nominal FILE`"
+    )]
+    OneRig { rig: String },
     #[error("{file}: {source}")]
     Identify { file: String, source: IdentifyError },
     #[error(
@@ -152,10 +171,15 @@ impl TrainerError {
             | Self::MissingInput { .. }
             | Self::OtherUnit { .. }
             | Self::Nominal { .. }
+            | Self::NoNominal { .. }
+            | Self::NominalIsConfiguration { .. }
+            | Self::InitOccupied { .. }
             | Self::SameRecord { .. }
             | Self::Kept(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
+            | Self::NoRig { .. }
+            | Self::OneRig { .. }
             | Self::Identify { .. }
             | Self::NoFolder { .. }
             | Self::TooManySeeds { .. }

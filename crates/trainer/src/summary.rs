@@ -3,7 +3,7 @@
 use comfy_table::{ContentArrangement, Table, presets};
 use report::format;
 use runs::result::{
-    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, OracleSummary,
+    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
@@ -120,7 +120,13 @@ pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
 fn comparison_headline(result: &ComparisonResult) -> String {
     let passed = result.results.iter().filter(|row| passes(row)).count();
     let count = result.results.len();
-    let verdict = if result.pass { "" } else { ", THE OTHERS DO NOT" };
+    let waiting = waiting(result).len();
+    let verdict = match (result.pass, waiting, passed + waiting < count) {
+        (true, ..) => String::new(),
+        (false, 0, _) => ", THE OTHERS DO NOT".to_owned(),
+        (false, _, true) => format!(", {waiting} WERE NOT BEGUN, THE OTHERS DO NOT"),
+        (false, _, false) => format!(", {waiting} WERE NOT BEGUN"),
+    };
     format!(
         "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
          form, seeds {} to {}, {:.1} s",
@@ -132,6 +138,15 @@ fn comparison_headline(result: &ComparisonResult) -> String {
         result.seed + result.seeds.saturating_sub(1),
         result.seconds,
     )
+}
+
+/// Methods whose turn had not come when the run was interrupted.
+fn waiting(result: &ComparisonResult) -> Vec<&MethodRow> {
+    result.results.iter().filter(|row| !is_begun(row)).collect()
+}
+
+fn is_begun(row: &MethodRow) -> bool {
+    !matches!(&row.outcome, MethodOutcome::Failed { reason } if reason == NOT_BEGUN)
 }
 
 fn passes(row: &MethodRow) -> bool {
@@ -181,6 +196,7 @@ fn methods(result: &ComparisonResult) -> String {
     let rows = result
         .results
         .iter()
+        .filter(|row| is_begun(row))
         .map(|row| {
             let number = row.number.map_or_else(|| "-".to_owned(), |number| number.to_string());
             let mut cells = vec![number, row.id.clone()];
@@ -207,7 +223,11 @@ fn methods(result: &ComparisonResult) -> String {
         .collect();
     let header =
         ["#", "method", "ζ", "±", "error %", "worst %", "digits", "seeds", "steps", "par.", "s", "state"];
-    table(&header, rows)
+    let waiting: Vec<&str> = waiting(result).iter().map(|row| row.id.as_str()).collect();
+    match waiting.as_slice() {
+        [] => table(&header, rows),
+        ids => format!("{}\ninterrupted before these were fitted: {}", table(&header, rows), ids.join(", ")),
+    }
 }
 
 fn comparison_remarks(result: &ComparisonResult) -> String {
@@ -268,7 +288,7 @@ fn ending(folder: &Path) -> String {
 fn clock(data: &DataSummary) -> Vec<String> {
     let mut remarks = vec![
         data.reading.sentence.clone(),
-        format!("clock in force: {} ({})", data.clock, data.clock_reason),
+        format!("clock in force: {}", data.clock),
         format!(
             "sensor: one sample every {:.6} ms, {:.2} ± {:.2} Hz",
             1e3 * data.sample_period_s,

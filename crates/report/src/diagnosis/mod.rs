@@ -1,6 +1,7 @@
 //! The page on a diagnosis.
 
 mod budget;
+mod classes;
 mod figures;
 mod maps;
 mod portrait;
@@ -12,22 +13,29 @@ mod tests;
 use askama::Template;
 use runs::result::DiagnosisResult;
 
+use crate::classes::{effect_title, is_calibrated_already, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
 use crate::plot::Hue;
 use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
-use crate::verdict::{self, Origin, Tone, Verdict, in_a_sentence};
+use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts, format};
 use budget::Share;
+use classes::{Group, Nameless};
 use tables::{CoefficientView, EffectView, GapView, RecordView};
 
 #[derive(Template)]
 #[template(path = "diagnosis.html")]
 struct DiagnosisPage<'a> {
     frame: Frame<'a>,
+    groups: Vec<Group>,
+    nameless: Option<Nameless>,
+    unlikely: Option<String>,
+    exact_set: Option<String>,
     gap: Vec<GapView>,
+    has_bars: bool,
     gap_notes: Vec<String>,
     shares: Vec<Share>,
     effects: Vec<EffectView>,
@@ -48,6 +56,7 @@ struct DiagnosisPage<'a> {
 
 pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<String, ReportError> {
     let result = &diagnosis.result;
+    let gap = tables::gap(result);
     let page = DiagnosisPage {
         frame: Frame {
             hues: &Hue::ALL,
@@ -66,7 +75,12 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
                 ("Every number, unrounded (diagnosis.json)", texts.result),
             ],
         },
-        gap: tables::gap(result),
+        groups: classes::groups(result),
+        nameless: classes::nameless(result),
+        unlikely: unlikely_classes(result),
+        exact_set: tables::exact_set(result),
+        has_bars: gap.iter().any(|row| row.bar.is_some()),
+        gap,
         gap_notes: tables::gap_notes(result),
         shares: budget::shares(&result.place.budget),
         effects: tables::effects(result),
@@ -93,15 +107,14 @@ fn headline(result: &DiagnosisResult) -> Verdict {
     let explained = if ratio.powi(2) > 2.0 { Tone::Caution } else { Tone::Good };
     let (tone, label) = match result.verdict.status.as_str() {
         "none" => (explained, "Nothing is missing"),
+        "calibration" if is_calibrated_already(result) => (explained, "Nothing is missing"),
         "calibration" => (explained, "Only calibration"),
         "effect" if is_of_the_chain_only(result) => (explained, "Nothing is missing in the motion"),
         "effect" => (explained, "Missing effect"),
         "unknown" => (Tone::Caution, "Unknown: a gap without a name"),
         _ => (Tone::Caution, "Verdict not known to this report"),
     };
-    let probability = format::quantity(&format::fixed(100.0 * result.verdict.confidence, 1), "%");
-    let sentence = format!("{} Probability of this verdict: {probability}.", result.verdict.summary);
-    Verdict { tone, label, sentence }
+    Verdict { tone, label, sentence: result.verdict.summary.clone() }
 }
 
 fn origin(result: &DiagnosisResult) -> Origin {
@@ -117,7 +130,7 @@ fn origin(result: &DiagnosisResult) -> Origin {
 fn warnings(result: &DiagnosisResult) -> Vec<String> {
     let mut warnings = Vec::new();
     for class in &result.verdict.equivalent {
-        let titles: Vec<String> = class.iter().map(|id| title(result, id)).collect();
+        let titles: Vec<String> = class.iter().map(|id| effect_title(result, id)).collect();
         warnings.push(format!(
             "These data cannot tell {} apart: whichever is named, the others would do as well.",
             titles.join(" and ")
@@ -147,16 +160,4 @@ fn next(result: &DiagnosisResult) -> Vec<String> {
         );
     }
     steps
-}
-
-/// The name of an id in words, inside a sentence.
-fn title(result: &DiagnosisResult, id: &str) -> String {
-    let known = result.effects.iter().find(|row| row.id == id);
-    let title = known.map_or_else(|| capitalized(&id.replace('_', " ")), |row| row.title.clone());
-    in_a_sentence(&title)
-}
-
-fn capitalized(words: &str) -> String {
-    let mut letters = words.chars();
-    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
 }

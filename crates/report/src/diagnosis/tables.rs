@@ -2,7 +2,7 @@
 
 use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, WithInterval};
 
-use super::title;
+use crate::classes::effect_title;
 use crate::format::{
     self, UNDETERMINED, estimate, fixed, interval, quantity, share_with_interval, significant, unit,
 };
@@ -15,9 +15,13 @@ pub(super) struct GapView {
     pub(super) meaning: &'static str,
     pub(super) rms: String,
     pub(super) floors: String,
-    /// Length of its bar in percent of the longest, on a logarithmic scale from the floor on.
-    pub(super) bar: String,
+    /// Length of its bar in percent of the longest, on a logarithmic scale from the floor on; absent where all are about
+    /// as far off.
+    pub(super) bar: Option<String>,
 }
+
+/// Logarithm of the ratio of the largest error to the smallest from which on bars say anything.
+const LEAST_SPAN: f64 = 0.1;
 
 pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
     let gap = &result.gap;
@@ -33,10 +37,13 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
     ];
     let least = rows.iter().map(|row| row.2).filter(|rms| *rms > 0.0).fold(f64::INFINITY, f64::min);
     let most = rows.iter().map(|row| row.2).fold(0.0, f64::max);
+    // Simulators that are equally far off have no bars: on a logarithmic scale a span of nothing makes a hair as long as
+    // the whole.
     let span = (most / least).ln();
+    let is_drawn = span > LEAST_SPAN;
     rows.into_iter()
         .map(|(name, meaning, rms)| {
-            let share = if span > 0.0 && rms > 0.0 { (rms / least).ln() / span } else { 0.0 };
+            let share = if is_drawn && rms > 0.0 { (rms / least).ln() / span } else { 0.0 };
             GapView {
                 name,
                 meaning,
@@ -46,7 +53,7 @@ pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
                 } else {
                     "–".to_owned()
                 },
-                bar: format!("{:.1}", 4.0 + 96.0 * share.clamp(0.0, 1.0)),
+                bar: is_drawn.then(|| format!("{:.1}", 4.0 + 96.0 * share.clamp(0.0, 1.0))),
             }
         })
         .collect()
@@ -123,6 +130,17 @@ pub(super) fn effects(result: &DiagnosisResult) -> Vec<EffectView> {
         .collect()
 }
 
+/// Probability of the exact set: a number for trials, which score it. None where nothing is named.
+pub(super) fn exact_set(result: &DiagnosisResult) -> Option<String> {
+    (!result.verdict.effects.is_empty()).then(|| {
+        format!(
+            "Probability of exactly this set of effects, of every kind in it and of no other: {}. It is low wherever kinds \
+             cannot be told apart, however sure the classes are.",
+            format::share(result.verdict.confidence)
+        )
+    })
+}
+
 /// What can and what cannot be told apart, in sentences.
 pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
     let mut sentences: Vec<String> = result
@@ -138,8 +156,8 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
             };
             format!(
                 "{} and {}: best fits {} × noise apart, {verdict}.",
-                title(result, &rival.effect),
-                title(result, &rival.rival),
+                effect_title(result, &rival.effect),
+                effect_title(result, &rival.rival),
                 significant(rival.distance, 2)
             )
         })
@@ -147,7 +165,7 @@ pub(super) fn apart(result: &DiagnosisResult) -> Vec<String> {
     sentences.extend(result.detectability.iter().filter(|row| row.d.is_finite()).map(|row| {
         format!(
             "Leaving out {} worsens the fit by {} × noise.",
-            title(result, &row.effect),
+            effect_title(result, &row.effect),
             significant(row.d, 2)
         )
     }));

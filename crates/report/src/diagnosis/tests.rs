@@ -36,6 +36,49 @@ fn small() -> Value {
     })
 }
 
+/// The same with classes: friction of a kind that is not told, a restoring force that may be, and a sensor's steps.
+fn classed() -> Value {
+    let class = |id: &str, probability: f64, kinds: Value, is_told: bool| {
+        json!({ "id": id, "probability": probability, "gap_share": null, "kinds": kinds, "kind_is_told": is_told,
+                "error_without": 0.0021, "error_with": 0.0011, "stability": 0.96,
+                "evidence": { "replacement": 12.0, "half_swings": null } })
+    };
+    let torque = json!({ "torque": { "value": 2.0, "unit": "N m", "interval_95": [1.9, 2.1] } });
+    let effect = |id: &str, title: &str, probability: f64, parameters: Value| json!({ "id": id, "title": title, "probability": probability, "gap_share": null, "parameters": parameters });
+    let mut result = small();
+    let mut friction = class(
+        "friction",
+        0.95,
+        json!([{ "id": "coulomb_friction", "share": 0.7 }, { "id": "hysteresis", "share": 0.3 }]),
+        false,
+    );
+    friction["gap_share"] = json!({ "value": 0.62, "interval_95": [0.58, 0.66] });
+    let mut sensor = class("sensor", 0.99, json!([{ "id": "sensor_quantization", "share": 1.0 }]), true);
+    sensor["error_with"] = Value::Null;
+    result["classes"] = json!([
+        sensor,
+        friction,
+        class("restoring", 0.6, json!([{ "id": "gravity", "share": 1.0 }]), true),
+        class("forcing", 0.2, json!([{ "id": "periodic_forcing", "share": 1.0 }]), true),
+        class("play", 0.03, json!([{ "id": "end_stop", "share": 1.0 }]), true)
+    ]);
+    result["effects"] = json!([
+        effect("sensor_quantization", "Sensor quantization", 0.99, json!({})),
+        effect("coulomb_friction", "Coulomb friction", 0.7, torque.clone()),
+        effect("gravity", "Gravity", 0.6, torque)
+    ]);
+    result["verdict"]["effects"] = json!(["coulomb_friction", "gravity", "sensor_quantization"]);
+    result["measuring_chain"]["findings"] =
+        json!([{ "effect": "sensor_quantization", "text": "the values lie on steps" }]);
+    result["gap"]["closure"] = json!({ "value": 0.9, "interval_95": [0.88, 0.92] });
+    result["left_over"] = json!({ "share_of_gap": 0.1, "over_noise": 1.5 });
+    result
+}
+
+fn read(result: &Value) -> DiagnosisResult {
+    serde_json::from_value(result.clone()).unwrap()
+}
+
 const EMPTY: RunTexts<'static> = RunTexts {
     name: "a case",
     config: "",
@@ -210,8 +253,8 @@ fn a_diagnosis_is_not_taken_for_an_estimation() {
     let text = small().to_string();
     let message = render_run(&RunTexts { result: &text, envelope: "x", ..EMPTY }).unwrap_err().to_string();
     assert!(!message.is_empty());
-    let result: DiagnosisResult = serde_json::from_str(&text).unwrap();
-    assert_eq!(serde_json::from_str::<Value>(&serde_json::to_string(&result).unwrap()).unwrap(), small());
+    // What is written again is what was read.
+    assert_eq!(serde_json::to_value(read(&classed())).unwrap(), classed());
 }
 
 #[test]
@@ -227,4 +270,93 @@ fn shares_that_round_to_zero_are_left_out() {
     let names: Vec<&str> = shares.iter().map(|share| share.name).collect();
     assert_eq!(names, ["dissipative", "conservative"]);
     assert!(shares.iter().all(|share| share.labeled));
+}
+
+#[test]
+fn the_verdict_tells_what_is_certain_likely_and_open_and_how_much_has_no_name() {
+    let text = crate::verdict_sentence(&read(&classed()));
+    for part in [
+        "The simulator certainly lacks dry friction (Coulomb or hysteresis: these data don’t tell which), and likely nonlinear \
+         restoring force (gravity); the record shows sensor quantization, which the simulator lacks; periodic forcing \
+         remains open.",
+        "; 10.0 % of the gap has no name.",
+    ] {
+        assert!(text.contains(part), "no `{part}` in {text}");
+    }
+    assert!(!text.contains('\u{a0}') && !text.contains("end stop"), "{text}");
+}
+
+#[test]
+fn each_class_tells_its_kind_its_size_and_the_error_without_it() {
+    let result = read(&classed());
+    let statements = crate::class_statements(&result);
+    let told: Vec<String> = statements
+        .iter()
+        .map(|one| {
+            format!("{} {}: {}", one.standing.word(), one.title, crate::format::plain_spaces(&one.sentence))
+        })
+        .collect();
+    assert_eq!(
+        told,
+        [
+            "certain dry friction: The kind can’t be told on these data (Coulomb or hysteresis); Coulomb: torque 2.000 N m \
+             [1.900, 2.100]; 62.0 % [58.0 %, 66.0 %] of what the effects close; error 0.00210 rad without it, 0.00110 rad with it.",
+            "certain distortion by the sensor: Quantization, which the record shows without a fit.",
+            "likely nonlinear restoring force: Gravity: torque 2.000 N m [1.900, 2.100]; error 0.00210 rad without it, 0.00110 \
+             rad with it.",
+            "open periodic forcing: Error 0.00210 rad without it, 0.00110 rad with it.",
+        ]
+    );
+}
+
+#[test]
+fn the_first_screen_shows_classes_as_bars_and_no_confidence_of_the_exact_set() {
+    let html = page(&classed(), "");
+    let (first, rest) = html.split_once("<main>").unwrap();
+    for part in [
+        "<strong>Certain</strong>",
+        "<strong>Likely</strong>",
+        "<strong>Open</strong>",
+        "<strong>Without a name</strong>",
+        "Dry friction",
+        "width: 95.0%",
+        "width: 62.0%",
+        "width: 10.0%",
+        "Stability 96.0",
+        "play or stops 0.030",
+    ] {
+        assert!(first.contains(part), "no `{part}` in {first}");
+    }
+    assert!(!first.contains("Probability of"), "{first}");
+    assert!(rest.contains("Probability of exactly this set of effects"));
+}
+
+#[test]
+fn a_file_of_an_older_version_has_no_classes_and_is_shown() {
+    let html = page(&small(), "");
+    assert!(html.contains("The simulator lacks gravity.") && !html.contains("class=\"classes\""));
+}
+
+#[test]
+fn a_calibration_of_no_size_is_none() {
+    let mut result = small();
+    result["verdict"]["status"] = json!("calibration");
+    result["verdict"]["effects"] = json!([]);
+    result["gap"]["nominal"] = json!(0.0201);
+    result["gap"]["recalibrated"] = json!(0.02);
+    assert!(crate::is_calibrated_already(&read(&result)));
+    assert!(page(&result, "").contains("<p class=\"label\">Nothing is missing</p>"));
+    result["gap"]["nominal"] = json!(0.03);
+    assert!(!crate::is_calibrated_already(&read(&result)));
+    assert!(page(&result, "").contains("<p class=\"label\">Only calibration</p>"));
+}
+
+#[test]
+fn errors_that_are_about_the_same_have_no_bars_on_a_logarithmic_scale() {
+    let mut result = small();
+    assert!(page(&result, "").contains("On a logarithmic scale"));
+    for (key, error) in [("nominal", 0.00102), ("recalibrated", 0.00101), ("repaired", 0.001)] {
+        result["gap"][key] = json!(error);
+    }
+    assert!(!page(&result, "").contains("On a logarithmic scale"));
 }

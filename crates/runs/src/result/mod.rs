@@ -8,6 +8,7 @@ mod calibration;
 mod comparison;
 mod diagnosis;
 mod prediction;
+mod rigs;
 mod simulation;
 mod sweep;
 mod trials;
@@ -25,6 +26,10 @@ pub use prediction::{
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
     SplitSummary,
 };
+pub use rigs::{
+    FarthestPair, RIGS_SCHEMA, RigClassRow, RigRow, RigValueRow, RigsResult, SharedClassRow,
+    SharedCoefficientRow,
+};
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 pub use sweep::{
     RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,
@@ -41,6 +46,9 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
 pub const RESULT_SCHEMA: &str = "ringdown.result/1";
+
+/// Reason of a method that has no outcome because the run was interrupted before its turn came.
+pub const NOT_BEGUN: &str = "interrupted before it began";
 
 /// What one estimation found: the content of `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

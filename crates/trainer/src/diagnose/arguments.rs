@@ -22,6 +22,8 @@ Examples:
   trainer diagnose gyro.csv --value rate --unit deg/s --quantity velocity --nominal nominal.toml
   trainer diagnose --batch CASES --out ANSWERS --threads 8
                                    every CASES/<id>/ with record-*.csv and nominal.toml
+  trainer diagnose --rigs A/ B/ C/ --out DIR
+                                   several rigs of one build: what they share, and where they differ
 
 Separator, decimal sign, columns and units are found from the file and printed: names such as time,
 timestamp_ms, angle [deg], theta, displacement_m, position, velocity_rad_s, gyro (deg/s), torque_nm;
@@ -31,18 +33,22 @@ nominal.toml holds inertia, damping, stiffness and rest_angle in SI units, or al
 inertia with inertia = 1.0; and, where they apply, coordinate = \"displacement\", input_gain (torque
 or force per unit of the input) and sensor_resolution.
 
-Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch gave no answer; 2 wrong input
+Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch, or some rig, gave no answer; 2 wrong input
 or usage; 130 interrupted.")]
 pub(crate) struct DiagnoseArguments {
     /// Records of one system
-    #[arg(value_name = "RECORD", required_unless_present = "batch", conflicts_with = "batch")]
+    #[arg(value_name = "RECORD", required_unless_present_any = ["batch", "rigs"], conflicts_with_all = ["batch", "rigs"])]
     pub(crate) records: Vec<PathBuf>,
     /// The simulator as it is: a nominal.toml
-    #[arg(long, value_name = "FILE", required_unless_present = "batch", conflicts_with = "batch")]
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "rigs"])]
     pub(crate) nominal: Option<PathBuf>,
     /// Diagnoses every folder CASES/<id>/ holding record-*.csv and nominal.toml
     #[arg(long, value_name = "CASES", requires = "out")]
     pub(crate) batch: Option<PathBuf>,
+    /// Diagnoses several rigs of one build, each a folder holding record-*.csv and nominal.toml: which classes of effects
+    /// they share, and where their coefficients agree
+    #[arg(long, value_name = "RIG", num_args = 1.., conflicts_with = "batch")]
+    pub(crate) rigs: Vec<PathBuf>,
     /// Folder for the answer: new or empty [default: a new one below reports/runs]. With --batch, for
     /// ANSWERS/<id>/diagnosis.json; answers that are there already are left alone
     #[arg(long, value_name = "DIR")]

@@ -16,10 +16,31 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// A folder with records of one system.
-struct Case {
-    id: String,
-    records: Vec<PathBuf>,
-    nominal: PathBuf,
+pub(super) struct Case {
+    pub(super) id: String,
+    pub(super) records: Vec<PathBuf>,
+    pub(super) nominal: PathBuf,
+}
+
+impl Case {
+    /// The case in a folder: its records by their names. Without one, the first is named all the same, so that reading it
+    /// says that it is not there.
+    pub(super) fn read(path: &Path) -> std::io::Result<Self> {
+        let mut records = Vec::new();
+        for file in std::fs::read_dir(path)? {
+            let file = file?.path();
+            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
+            if name.starts_with("record-") && name.ends_with(".csv") {
+                records.push(file);
+            }
+        }
+        records.sort();
+        if records.is_empty() {
+            records.push(path.join("record-000.csv"));
+        }
+        let id = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+        Ok(Self { id, records, nominal: path.join("nominal.toml") })
+    }
 }
 
 /// What became of a case.
@@ -119,21 +140,7 @@ fn list(cases: &Path) -> Result<Vec<Case>, TrainerError> {
         if !path.is_dir() {
             continue;
         }
-        let mut records = Vec::new();
-        for file in std::fs::read_dir(&path).map_err(unreadable)? {
-            let file = file.map_err(unreadable)?.path();
-            let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            if name.starts_with("record-") && name.ends_with(".csv") {
-                records.push(file);
-            }
-        }
-        records.sort();
-        if records.is_empty() {
-            // Named, so that reading it says that it is not there.
-            records.push(path.join("record-000.csv"));
-        }
-        let id = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        found.push(Case { id, records, nominal: path.join("nominal.toml") });
+        found.push(Case::read(&path).map_err(unreadable)?);
     }
     found.sort_by(|a, b| a.id.cmp(&b.id));
     Ok(found)

@@ -7,7 +7,7 @@ mod nominal;
 pub(crate) mod read;
 mod repair;
 mod result;
-mod sentence;
+mod rigs;
 mod summary;
 
 use crate::Outcome;
@@ -27,7 +27,7 @@ use result::{Beside, result, series_rows};
 use runs::result::DiagnosisResult;
 use runs::{Disk, RunFolder, default_root, to_csv};
 use seed::Seed;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use trials::BaselineRecord;
@@ -36,9 +36,11 @@ use trials::BaselineRecord;
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
     match (&arguments.batch, &arguments.out, &arguments.nominal) {
         (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
+        _ if !arguments.rigs.is_empty() => rigs::rigs(arguments),
         (_, _, Some(nominal)) => single(arguments, nominal),
-        // clap asks for these.
-        _ => Err(TrainerError::NoConfig),
+        _ => Err(TrainerError::NoNominal {
+            record: arguments.records.first().map(|path| path.display().to_string()).unwrap_or_default(),
+        }),
     }
 }
 
@@ -111,20 +113,30 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         (None, Some(path)) => RunFolder::create_at(path)?,
         (None, None) => RunFolder::create(&default_root(), "diagnosis")?,
     };
-    let digests: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
-    folder
-        .write_json("environment.json", &Environment::new(pool.current_num_threads(), &digests.join(" ")))?;
+    keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
+    arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
+    Ok(Outcome::Done)
+}
+
+/// Writes the run folder of an answer, its report last.
+fn keep(
+    folder: &RunFolder,
+    question: &Question,
+    asked: &Value,
+    answer: &Answer,
+    threads: usize,
+) -> Result<(), TrainerError> {
+    folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
     folder.write("nominal.toml", simulator::nominal_text(&question.stated.simulator).as_bytes())?;
-    folder.record_event(kept::ASKED, &asked)?;
+    folder.record_event(kept::ASKED, asked)?;
     folder.write_json("diagnosis.json", &answer.result)?;
     folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
     for (name, text) in export::files(&answer.repaired) {
         folder.write(name, text.as_bytes())?;
     }
-    write_report(&folder)?;
+    write_report(folder)?;
     folder.record_event(kept::END, &json!({ "status": answer.result.verdict.status }))?;
-    arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
-    Ok(Outcome::Done)
+    Ok(())
 }
 
 fn settings(arguments: &DiagnoseArguments) -> Settings {
@@ -150,6 +162,12 @@ impl Question {
             records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<Vec<_>, _>>()?;
         check_distinct(&given)?;
         Ok(Self { stated, given, nominal: nominal.to_owned() })
+    }
+
+    /// Digests of the records, with spaces between.
+    fn digests(&self) -> String {
+        let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
+        digests.join(" ")
     }
 
     fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, TrainerError> {

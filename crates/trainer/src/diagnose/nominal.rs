@@ -1,6 +1,8 @@
 //! Reading `nominal.toml`: what is believed of a system.
 
 use crate::error::TrainerError;
+use crate::simulate::is_simulation;
+use crate::trials::is_trials;
 use experiment::{StatedNominal, resolve_nominal};
 use settings::{Document, SettingsError};
 use std::path::Path;
@@ -17,8 +19,33 @@ pub(crate) fn read(path: &Path) -> Result<StatedNominal, TrainerError> {
         file: file.clone(),
         problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
     })?;
-    resolve_nominal(&Document::parse(&file, &text)?).map_err(|error| match error {
-        SettingsError::Refused { file, problem } => TrainerError::Nominal { file, problem },
-        other => other.into(),
+    let document = Document::parse(&file, &text)?;
+    resolve_nominal(&document).map_err(|error| match (command_for(&document), error) {
+        (Some(command), _) => {
+            TrainerError::NominalIsConfiguration { command: format!("{command} {file}"), file }
+        }
+        (None, SettingsError::Refused { file, problem }) => TrainerError::Nominal { file, problem },
+        (None, other) => other.into(),
     })
+}
+
+/// The command that runs a document which is the configuration of an experiment; `None` where it is none.
+fn command_for(document: &Document) -> Option<&'static str> {
+    if is_trials(document) {
+        Some("trainer trials")
+    } else if is_simulation(document)
+        || ["record", "start", "sensor"].iter().any(|key| has_section(document, key))
+    {
+        Some("trainer simulate")
+    } else {
+        let known = ["task", "base", "estimator", "data", "fit", "compare", "predict"];
+        known.iter().any(|key| has_section(document, key)).then_some("trainer")
+    }
+}
+
+/// Whether a document has a key or a section of this name.
+fn has_section(document: &Document, name: &str) -> bool {
+    let is_below =
+        |key: &str| key.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));
+    document.leaves().iter().any(|leaf| is_below(&leaf.key))
 }

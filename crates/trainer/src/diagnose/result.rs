@@ -14,8 +14,6 @@ use runs::result::{
     ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 
-use super::sentence;
-
 /// What stands beside the diagnosis itself.
 pub(crate) struct Beside<'a> {
     pub(crate) given: &'a [Given],
@@ -34,7 +32,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     let units = beside.repaired.units;
     let effects = effects(found);
     let chain = &found.measuring_chain;
-    DiagnosisResult {
+    let mut result = DiagnosisResult {
         schema: DIAGNOSIS_SCHEMA.to_owned(),
         verdict: DiagnosisVerdict {
             status: status(found.verdict.status).to_owned(),
@@ -42,7 +40,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             confidence: found.verdict.confidence,
             left_over: Some(found.verdict.left_over),
             equivalent: found.verdict.equivalent.iter().map(|class| owned(class)).collect(),
-            summary: sentence::verdict(found),
+            summary: String::new(),
         },
         effects,
         gap: gap(found),
@@ -128,7 +126,9 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             .map(|quantity| quantity.unit(units).to_owned()),
         backbone: if beside.repaired.driven { Backbone::default() } else { backbones(&found.series) },
         surface: surface_cells(found, quantity),
-    }
+    };
+    result.verdict.summary = report::verdict_sentence(&result);
+    result
 }
 
 fn owned(ids: &[&'static str]) -> Vec<String> {
@@ -291,11 +291,23 @@ fn next_experiment(found: &Diagnosis) -> NextExperiment {
             considered: experiment.considered.iter().map(|(text, d)| (text.clone(), finite(*d))).collect(),
         },
         None => NextExperiment {
-            text: sentence::no_experiment(found).to_owned(),
+            text: no_experiment(found).to_owned(),
             separates: Vec::new(),
             distance: None,
             considered: Vec::new(),
         },
+    }
+}
+
+/// Why no experiment is proposed.
+fn no_experiment(found: &Diagnosis) -> &'static str {
+    match found.verdict.status {
+        Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
+        Status::Effect => "None: no other effect explains these records as well as what was named.",
+        Status::Unknown => {
+            "None that these data suggest: what is missing has no name yet. A second release from another amplitude \
+             tells whether it depends on amplitude or on time."
+        }
     }
 }
 

@@ -4,18 +4,15 @@ use crate::summary::table;
 use report::format::{
     self, UNDETERMINED, estimate, interval, quantity, share_with_interval, significant, unit,
 };
-use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, EffectRow, MapCell, WithInterval};
+use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, MapCell, WithInterval};
 use std::path::Path;
-
-/// Effects listed; the rest is counted.
-const MOST_EFFECTS: usize = 6;
 
 /// The answer as a person wants to read it.
 pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
     let parts = [
         verdict(result),
+        classes(result),
         gap(result),
-        effects(result),
         apart(result),
         whereabouts(result),
         calibration(result),
@@ -32,13 +29,41 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
 fn verdict(result: &DiagnosisResult) -> String {
     let label = match result.verdict.status.as_str() {
         "none" => "NOTHING IS MISSING",
+        "calibration" if report::is_calibrated_already(result) => "NOTHING IS MISSING",
         "calibration" => "CALIBRATION",
         "effect" if report::is_of_the_chain_only(result) => "NOTHING IS MISSING IN THE MOTION",
         "effect" => "MISSING EFFECT",
         _ => "UNKNOWN",
     };
-    let confidence = format::share(result.verdict.confidence);
-    format!("{label} (confidence in exactly this: {confidence})\n{}", result.verdict.summary)
+    format!("{label}\n{}", result.verdict.summary)
+}
+
+/// What is certain, what is likely, what is open, and what has no name.
+fn classes(result: &DiagnosisResult) -> String {
+    let statements = report::class_statements(result);
+    let mut rows: Vec<Vec<String>> = statements
+        .iter()
+        .map(|one| {
+            vec![
+                one.standing.word().to_owned(),
+                one.title.clone(),
+                format::probability(one.class.probability),
+                one.sentence.clone(),
+            ]
+        })
+        .collect();
+    let unlikely = report::unlikely_classes(result);
+    if rows.is_empty() {
+        return unlikely.unwrap_or_default();
+    }
+    if let Some((share, left)) = report::nameless_share(result).zip(result.left_over) {
+        let left = significant(left.over_noise, 3);
+        let text =
+            format!("{} of the gap; the repaired simulator's error is {left} × noise", format::share(share));
+        rows.push(vec!["no name".to_owned(), String::new(), String::new(), text]);
+    }
+    let found = table(&["", "class of effects", "probability", ""], rows);
+    [Some(found), unlikely].into_iter().flatten().collect::<Vec<_>>().join("\n")
 }
 
 fn gap(result: &DiagnosisResult) -> String {
@@ -79,45 +104,6 @@ fn gap(result: &DiagnosisResult) -> String {
     }
     let told = "× noise: the RMS over that of the sensor's noise; 1 is as good as a simulator can get";
     format!("{}\n{told}", table(&["held-out error", "RMS", "× noise", ""], rows))
-}
-
-fn effects(result: &DiagnosisResult) -> String {
-    let shown: Vec<&EffectRow> = result
-        .effects
-        .iter()
-        .enumerate()
-        .filter(|(index, row)| *index < MOST_EFFECTS || row.gap_share.is_some())
-        .map(|(_, row)| row)
-        .collect();
-    let rows = shown
-        .iter()
-        .map(|row| {
-            let coefficients: Vec<String> = row
-                .parameters
-                .iter()
-                .map(|(name, parameter)| {
-                    let all = estimate(parameter.value, parameter.interval_95, unit(&parameter.unit));
-                    if parameter.determined {
-                        format!("{name} {all}")
-                    } else {
-                        format!("{name}: {UNDETERMINED}")
-                    }
-                })
-                .collect();
-            vec![
-                row.id.clone(),
-                format::probability(row.probability),
-                row.gap_share.as_ref().map_or_else(|| "–".to_owned(), share_with_interval),
-                coefficients.join("\n"),
-            ]
-        })
-        .collect();
-    let mut text = table(&["effect", "probability", "share of the gap", "coefficients, 95 % interval"], rows);
-    let rest = result.effects.len() - shown.len();
-    if rest > 0 {
-        text.push_str(&format!("\nand {rest} more in diagnosis.json"));
-    }
-    text
 }
 
 fn apart(result: &DiagnosisResult) -> String {

@@ -11,7 +11,7 @@ use clap::Args;
 use dynamics::Coordinate;
 use identify::{Estimated, LinearOscillator, identify};
 use record::{Look, look};
-use runs::RunFolder;
+use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
 
@@ -68,7 +68,10 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         let log = log.display().to_string();
         return Err(TrainerError::NoFolder { log });
     }
-    RunFolder::check_free(&folder)?;
+    RunFolder::check_free(&folder).map_err(|error| match error {
+        RunError::Occupied { path } => TrainerError::InitOccupied { folder: path.display().to_string() },
+        other => other.into(),
+    })?;
     // An input that stands in the file drives the system, whatever its name.
     let options = read_options(reading, None, true);
     let mut look = look(log, &options).map_err(TrainerError::DiagnosedRecord)?;

@@ -25,15 +25,15 @@ use rayon::ThreadPool;
 use rayon::prelude::*;
 use report::prediction_markdown;
 use runs::result::{
-    ExponentialScores, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome,
-    ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
+    ExponentialScores, NOT_BEGUN, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow,
+    ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
 };
 use runs::{RunFolder, to_csv};
 use serde_json::json;
 use split::SplitKind;
 use std::time::Instant;
 use tally::{Placed, adjust, outcome, score};
-use trial::{NOT_BEGUN, Trials, best_exponential};
+use trial::{Trials, best_exponential};
 
 /// Name of the best exponential in `predictions.csv`.
 const EXPONENTIAL: &str = "best-exponential";

@@ -3,8 +3,8 @@
 use crate::summary::table;
 use report::format;
 use runs::result::{
-    Coverage, HeldOutScore, MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome,
-    ProblemRow, ProblemStudy,
+    Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PredictionOutcome, PredictionResult, PredictionRow,
+    ProblemOutcome, ProblemRow, ProblemStudy,
 };
 use std::path::Path;
 
@@ -45,6 +45,11 @@ fn problem(row: &ProblemRow) -> String {
                 format!("{head}, {} peaks in {:.2} s: {source}", study.peaks, study.duration_s),
                 table(&HEADER, rows(study)),
             ];
+            let (_, waiting) = begun(study);
+            if !waiting.is_empty() {
+                let names: Vec<&str> = waiting.iter().map(|row| row.id.as_str()).collect();
+                lines.push(format!("interrupted before these were fitted: {}", names.join(", ")));
+            }
             lines.extend(equations);
             lines.extend(study.verdict.iter().cloned());
             lines.join("\n")
@@ -52,10 +57,16 @@ fn problem(row: &ProblemRow) -> String {
     }
 }
 
+/// Methods with an outcome, and those whose turn had not come when the run was interrupted.
+fn begun(study: &ProblemStudy) -> (Vec<&PredictionRow>, Vec<&PredictionRow>) {
+    let waits = |row: &&PredictionRow| matches!(&row.outcome, PredictionOutcome::Failed { reason } if reason == NOT_BEGUN);
+    study.methods.iter().partition(|row| !waits(row))
+}
+
 /// Methods that draw the best exponential's own line share one row.
 fn rows(study: &ProblemStudy) -> Vec<Vec<String>> {
     let (lines, others): (Vec<&PredictionRow>, Vec<&PredictionRow>) =
-        study.methods.iter().partition(|row| is_same_line(row, study));
+        begun(study).0.into_iter().partition(|row| is_same_line(row, study));
     let mut rows: Vec<(f64, Vec<String>)> = others.into_iter().map(|row| (error(row), cells(row))).collect();
     let exponential = &study.exponential;
     let mut cells = vec![match lines.len() {

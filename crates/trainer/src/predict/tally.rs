@@ -3,7 +3,7 @@
 use crate::predict::problem::Ready;
 use crate::predict::split::SplitKind;
 use crate::predict::trial::{Failure, Trial, held_out};
-use runs::result::{Coverage, HeldOutScore, MethodScores, PairedComparison, PredictionOutcome};
+use runs::result::{Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PairedComparison, PredictionOutcome};
 use scoring::HeldOutPeak;
 use std::collections::BTreeMap;
 
@@ -40,6 +40,10 @@ pub(crate) fn outcome(
     common: usize,
 ) -> PredictionOutcome {
     let fitted = || trials.iter().filter_map(|placed| placed.trial.as_ref().ok());
+    // Scores of some of its fits only would stand beside those of all.
+    if trials.iter().any(|placed| placed.trial.as_ref().is_err_and(|reason| reason == NOT_BEGUN)) {
+        return PredictionOutcome::Failed { reason: NOT_BEGUN.to_owned() };
+    }
     let first_failure = trials.iter().find_map(|placed| placed.trial.as_ref().err().cloned());
     if fitted().next().is_none() {
         return PredictionOutcome::Failed {

@@ -9,6 +9,7 @@ use crate::progress::Progress;
 use crate::resume::Ledger;
 use envelope::{Envelope, EnvelopeError};
 use estimator::{Cancel, Prediction, Reached, Silent};
+use runs::result::NOT_BEGUN;
 use scoring::HeldOutPeak;
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
@@ -35,9 +36,6 @@ pub(crate) struct Trials<'a> {
     pub(crate) cancel: &'a Cancel,
     pub(crate) ledger: &'a Ledger,
 }
-
-/// What stands in place of a trial that was not begun, or not ended.
-pub(crate) const NOT_BEGUN: &str = "interrupted before it began";
 
 impl Trials<'_> {
     /// Fits the peaks that the split leaves and asks for all, unless that was done before and kept under the name.

@@ -1,0 +1,463 @@
+//! Classes of effects in words: how sure, which kind, how large. Page, terminal and `diagnosis.json` share these sentences.
+
+use runs::result::{ClassRow, DiagnosisResult, EffectRow, KindRow};
+
+use crate::format::{
+    self, UNDETERMINED, estimate, plain_spaces, quantity, share_with_interval, significant, unit,
+};
+use crate::verdict::in_a_sentence;
+
+/// Share within its class from which on a kind is mentioned where the data do not tell the kind.
+const LEAST_KIND: f64 = 0.1;
+/// Kinds that are mentioned at most where the data do not tell which.
+const MOST_KINDS: usize = 3;
+
+/// Certainty of a class of effects, by its probability.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Standing {
+    /// Probability of 0.9 or more.
+    Certain,
+    /// Probability from 0.5 to 0.9.
+    Likely,
+    /// Probability from 0.1 to 0.5.
+    Open,
+}
+
+impl Standing {
+    /// Every standing, the surest first.
+    pub const ALL: [Self; 3] = [Self::Certain, Self::Likely, Self::Open];
+
+    /// Standing of a class with this probability; `None` below 0.1.
+    #[must_use]
+    pub fn of(probability: f64) -> Option<Self> {
+        Self::ALL.into_iter().find(|standing| probability >= standing.least())
+    }
+
+    /// Its word: `certain`, `likely` or `open`.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Certain => "certain",
+            Self::Likely => "likely",
+            Self::Open => "open",
+        }
+    }
+
+    /// Lowest probability that has this standing.
+    #[must_use]
+    pub fn least(self) -> f64 {
+        match self {
+            Self::Certain => 0.9,
+            Self::Likely => 0.5,
+            Self::Open => 0.1,
+        }
+    }
+}
+
+/// A class of effects with what is to be said of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClassStatement<'a> {
+    /// The class.
+    pub class: &'a ClassRow,
+    /// How sure it is.
+    pub standing: Standing,
+    /// Its name in words, as inside a sentence: `dry friction`.
+    pub title: String,
+    /// Whether fits speak for it, and not the record alone.
+    pub is_fitted: bool,
+    /// Kind, size, share of what the effects close, and the error without and with it, in one sentence.
+    pub sentence: String,
+}
+
+/// Name of a class in plain words, as inside a sentence. An id that is not known is its own name.
+#[must_use]
+pub fn class_title(id: &str) -> String {
+    match id {
+        "friction" => "dry friction",
+        "restoring" => "nonlinear restoring force",
+        "damping" => "damping beyond viscous",
+        "play" => "play or stops",
+        "drift" => "drift of spring or clock",
+        "second_body" => "second body",
+        "forcing" => "periodic forcing",
+        "preload" => "constant torque",
+        "actuator" => "delay or limits of the actuator",
+        "sensor" => "distortion by the sensor",
+        "stamps" => "irregular time stamps",
+        other => return other.replace('_', " "),
+    }
+    .to_owned()
+}
+
+/// Classes with a probability of 0.1 or more: by standing, and within that by their share of the gap. None for a file of an
+/// older version.
+#[must_use]
+pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
+    let mut statements: Vec<ClassStatement<'_>> = result
+        .classes
+        .iter()
+        .filter_map(|class| {
+            let standing = Standing::of(class.probability)?;
+            let told = Told::new(result, class);
+            let (is_fitted, sentence) = (told.is_fitted(), told.sentence());
+            Some(ClassStatement { class, standing, title: class_title(&class.id), is_fitted, sentence })
+        })
+        .collect();
+    let share = |one: &ClassStatement<'_>| one.class.gap_share.map_or(-1.0, |share| share.value);
+    statements.sort_by(|one, other| {
+        one.standing.cmp(&other.standing).then_with(|| share(other).total_cmp(&share(one)))
+    });
+    statements
+}
+
+/// Classes with a probability below 0.1, in one sentence; `None` where there are none.
+#[must_use]
+pub fn unlikely_classes(result: &DiagnosisResult) -> Option<String> {
+    let all = result.classes.iter().filter(|class| Standing::of(class.probability).is_none());
+    let named: Vec<String> = all
+        .map(|class| format!("{} {}", class_title(&class.id), format::probability(class.probability)))
+        .collect();
+    (!named.is_empty()).then(|| format!("Unlikely, with their probabilities: {}.", named.join(", ")))
+}
+
+/// Name of an effect inside a sentence, by the result's own table where it has a row.
+pub(crate) fn effect_title(result: &DiagnosisResult, id: &str) -> String {
+    let known = result.effects.iter().find(|row| row.id == id);
+    let title = known.map_or_else(|| capitalized(&id.replace('_', " ")), |row| row.title.clone());
+    in_a_sentence(&title)
+}
+
+/// A text with its first letter large.
+pub(crate) fn capitalized(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect()
+}
+
+/// Words with commas between and a last word before the last of them: `a, b and c`.
+#[must_use]
+pub fn listed(words: &[String], last: &str) -> String {
+    match words {
+        [] => String::new(),
+        [one] => one.clone(),
+        [most @ .., end] => format!("{} {last} {end}", most.join(", ")),
+    }
+}
+
+/// Name of a kind beside that of its class: `Coulomb` beside `dry friction`.
+pub(crate) fn kind_title(result: &DiagnosisResult, class: &str, id: &str) -> String {
+    let title = effect_title(result, id);
+    let short = match class {
+        "friction" => title.strip_suffix(" friction"),
+        "sensor" => title.strip_prefix("sensor "),
+        _ => None,
+    };
+    short.unwrap_or(&title).to_owned()
+}
+
+fn effect<'a>(result: &'a DiagnosisResult, id: &str) -> Option<&'a EffectRow> {
+    result.effects.iter().find(|row| row.id == id)
+}
+
+/// What is told of a class: kinds that stamps or values show without a fit, and kinds that were fitted.
+struct Told<'a> {
+    result: &'a DiagnosisResult,
+    class: &'a ClassRow,
+    /// Ids of kinds that the record shows.
+    shown: Vec<&'a str>,
+    /// Ids of kinds that the fits tell; empty where they do not tell which, or name none.
+    fitted: Vec<&'a str>,
+    /// Ids of kinds between which the fits do not tell.
+    possible: Vec<&'a str>,
+}
+
+impl<'a> Told<'a> {
+    fn new(result: &'a DiagnosisResult, class: &'a ClassRow) -> Self {
+        let is_shown = |id: &str| {
+            result.measuring_chain.findings.iter().any(|found| found.effect.as_deref() == Some(id))
+        };
+        let is_named = |id: &str| result.verdict.effects.iter().any(|named| named == id);
+        let (shown, others): (Vec<&KindRow>, Vec<&KindRow>) =
+            class.kinds.iter().partition(|kind| is_shown(&kind.id) && is_named(&kind.id));
+        let shown: Vec<&str> = shown.iter().map(|kind| kind.id.as_str()).collect();
+        let named: Vec<&str> = others.iter().map(|kind| kind.id.as_str()).filter(|id| is_named(id)).collect();
+        // Beside a kind that the record shows, a fitted one counts for itself.
+        let is_told = class.kind_is_told || others.len() == 1 || !shown.is_empty();
+        let likely = others.iter().enumerate().filter(|(at, kind)| *at < 2 || kind.share >= LEAST_KIND);
+        let (fitted, possible) = match (is_told, named.is_empty()) {
+            (true, false) => (named, Vec::new()),
+            (true, true) if shown.is_empty() => {
+                (others.first().map(|kind| kind.id.as_str()).into_iter().collect(), Vec::new())
+            }
+            (true, true) => (Vec::new(), Vec::new()),
+            (false, _) => (Vec::new(), likely.take(MOST_KINDS).map(|(_, kind)| kind.id.as_str()).collect()),
+        };
+        Self { result, class, shown, fitted, possible }
+    }
+
+    fn titles(&self, ids: &[&str]) -> Vec<String> {
+        let own = class_title(&self.class.id);
+        let titles = ids.iter().map(|id| kind_title(self.result, &self.class.id, id));
+        titles.filter(|title| *title != own).collect()
+    }
+
+    /// Whether fits speak for the class, and not the record alone.
+    fn is_fitted(&self) -> bool {
+        !self.fitted.is_empty() || !self.possible.is_empty()
+    }
+
+    /// Standing of what was fitted: that of the class, or of the surest fitted kind beside one that the record shows.
+    fn standing(&self) -> Option<Standing> {
+        if self.shown.is_empty() {
+            return Standing::of(self.class.probability);
+        }
+        let of = |id: &&str| effect(self.result, id).map_or(0.0, |row| row.probability);
+        Standing::of(self.fitted.iter().map(of).fold(0.0, f64::max))
+    }
+
+    /// The class with the fitted kinds in parentheses: `dry friction (Coulomb)`.
+    fn with_kind(&self) -> String {
+        let title = class_title(&self.class.id);
+        let (fitted, possible) = (self.titles(&self.fitted), self.titles(&self.possible));
+        if !fitted.is_empty() {
+            format!("{title} ({})", listed(&fitted, "and"))
+        } else if possible.len() > 1 {
+            format!("{title} ({}: these data don’t tell which)", listed(&possible, "or"))
+        } else {
+            title
+        }
+    }
+
+    /// A kind with its coefficients: `Coulomb: torque 2.0 N m [1.9, 2.1]`.
+    fn sized(&self, id: &str) -> String {
+        let title = self.titles(&[id]).into_iter().next();
+        let rows = effect(self.result, id).into_iter().flat_map(|row| &row.parameters);
+        let sizes: Vec<String> = rows
+            .map(|(name, own)| {
+                let name = name.replace('_', " ");
+                if own.determined {
+                    format!("{name} {}", estimate(own.value, own.interval_95, unit(&own.unit)))
+                } else {
+                    format!("{name} {UNDETERMINED}")
+                }
+            })
+            .collect();
+        match (title, sizes.is_empty()) {
+            (None, _) => sizes.join(", "),
+            (Some(title), true) => title,
+            (Some(title), false) => format!("{title}: {}", sizes.join(", ")),
+        }
+    }
+
+    /// Kind, size, share of the gap, and the error without and with the class.
+    fn sentence(&self) -> String {
+        let mut parts: Vec<String> = self
+            .shown
+            .iter()
+            .map(|id| format!("{}, which the record shows without a fit", self.sized(id)))
+            .collect();
+        let is_open = self.standing().is_none_or(|standing| standing == Standing::Open);
+        if is_open {
+            parts.extend(self.titles(&self.fitted));
+        } else {
+            parts.extend(self.fitted.iter().map(|id| self.sized(id)));
+        }
+        let possible = self.titles(&self.possible);
+        if possible.len() > 1 {
+            parts.push(format!("the kind can’t be told on these data ({})", listed(&possible, "or")));
+        }
+        if !is_open {
+            parts.extend(self.repaired_kind().map(|id| self.sized(id)));
+        }
+        if self.is_fitted() {
+            let share = self.class.gap_share.as_ref().filter(|_| !is_open);
+            parts.extend(
+                share.map(|share| format!("{} of what the effects close", share_with_interval(share))),
+            );
+            parts.extend(self.errors());
+        }
+        let text =
+            capitalized(&parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; "));
+        if text.is_empty() { text } else { format!("{text}.") }
+    }
+
+    /// The kind that the repaired simulator has where the data do not tell which, or the likeliest one.
+    fn repaired_kind(&self) -> Option<&'a str> {
+        let has_share = |id: &&&str| effect(self.result, id).is_some_and(|row| row.gap_share.is_some());
+        self.possible.iter().find(has_share).or(self.possible.first()).copied()
+    }
+
+    fn errors(&self) -> Option<String> {
+        let ClassRow { error_without: without, error_with: with, .. } = *self.class;
+        if !without.is_finite() || !with.is_finite() {
+            return None;
+        }
+        let [without, with] =
+            [without, with].map(|rms| quantity(&significant(rms, 3), &self.result.gap.unit));
+        Some(match without == with {
+            true => format!("error {with} with it and without"),
+            false => format!("error {without} without it, {with} with it"),
+        })
+    }
+}
+
+/// Share of the gap that has no name, 0 to 1: what the repaired simulator leaves, and a torque that was found and has no
+/// cause. `None` where there is no gap, where it is too small beside the noise to be divided, and in files of older versions.
+#[must_use]
+pub fn nameless_share(result: &DiagnosisResult) -> Option<f64> {
+    let left = result.left_over?.share_of_gap;
+    let [low, high] = result.gap.closure.interval_95;
+    let is_divisible = left.is_finite() && high - low < 1.0;
+    if result.verdict.status == "none" || !is_divisible {
+        return None;
+    }
+    let unnamed = effect(result, "unknown").and_then(|row| row.gap_share).map_or(0.0, |share| share.value);
+    Some((left + (1.0 - left) * unnamed).clamp(0.0, 1.0))
+}
+
+/// Whether a calibration is off by more than chance and yet by nothing that matters: recalibrated, the error on parts that
+/// were not fitted is less than 5 % smaller. So it is after `trainer init`, whose numbers come from the same record.
+#[must_use]
+pub fn is_calibrated_already(result: &DiagnosisResult) -> bool {
+    const OF_NO_SIZE: f64 = 1.05;
+    result.verdict.status == "calibration" && result.gap.nominal <= OF_NO_SIZE * result.gap.recalibrated
+}
+
+/// The verdict in one or two sentences: what is certain, what is likely, what is open, and how much of the gap has no name.
+#[must_use]
+pub fn verdict_sentence(result: &DiagnosisResult) -> String {
+    let floor = floor(result);
+    let rest = rest(result);
+    let not_fitted = "on parts that were not fitted";
+    let text = match result.verdict.status.as_str() {
+        "none" => format!(
+            "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}{}.",
+            remaining(result)
+        ),
+        "calibration" if is_calibrated_already(result) => format!(
+            "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}; \
+             recalibration moves its coefficients by more than their errors and takes next to nothing off the \
+             error{rest}{}.",
+            remaining(result)
+        ),
+        "calibration" => format!(
+            "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
+             {not_fitted}, and no effect is missing{rest}{}.",
+            remaining(result)
+        ),
+        "effect" => effects(result, &format!("{floor} {not_fitted}{rest}")),
+        _ => format!(
+            "Something is missing that no known effect explains{}{}{}.",
+            match repeating(result) {
+                Some(torque) => format!(": {torque}; with it the simulator leaves {floor}{rest}"),
+                None => format!(": the best named model leaves {floor}, and what it leaves is no noise"),
+            },
+            nameless(result).map_or_else(String::new, |share| format!("; {share}")),
+            remaining(result),
+        ),
+    };
+    plain_spaces(&text)
+}
+
+/// The sentence where effects are named.
+fn effects(result: &DiagnosisResult, left: &str) -> String {
+    let all: Vec<Told<'_>> =
+        class_statements(result).iter().map(|one| Told::new(result, one.class)).collect();
+    let of = |standing: Standing| -> Vec<String> {
+        let own = all.iter().filter(|one| one.is_fitted() && one.standing() == Some(standing));
+        own.map(Told::with_kind).collect()
+    };
+    let shown: Vec<String> =
+        all.iter().flat_map(|one| &one.shown).map(|id| effect_title(result, id)).collect();
+    let (certain, likely) = (listed(&of(Standing::Certain), "and"), listed(&of(Standing::Likely), "and"));
+    let lacks = match (certain.is_empty(), likely.is_empty()) {
+        (true, true) => String::new(),
+        (false, true) => format!("the simulator certainly lacks {certain}"),
+        (true, false) => format!("the simulator likely lacks {likely}"),
+        (false, false) => format!("the simulator certainly lacks {certain}, and likely {likely}"),
+    };
+    let shows = match shown.is_empty() {
+        true => String::new(),
+        false => format!("the record shows {}, which the simulator lacks", listed(&shown, "and")),
+    };
+    let is_in_the_motion = !lacks.is_empty();
+    let missing: Vec<String> = [lacks, shows].into_iter().filter(|text| !text.is_empty()).collect();
+    let mut text = capitalized(&missing.join("; "));
+    if text.is_empty() {
+        // Named by the rest angle or by a value alone, in no class of its own.
+        let named: Vec<String> = result.verdict.effects.iter().map(|id| effect_title(result, id)).collect();
+        text = format!("The simulator lacks {}", listed(&named, "and"));
+    }
+    text.push_str(&remaining(result));
+    text.push_str(&repeating(result).map_or_else(String::new, |torque| format!("; {torque}")));
+    if !is_in_the_motion {
+        let which = if is_off(result) { "recalibrated, the simulator" } else { "the simulator as given" };
+        return format!(
+            "{text}. Beside that nothing is missing: {which} explains what was recorded down to {left}."
+        );
+    }
+    let share = nameless(result).map_or_else(String::new, |share| format!("; {share}"));
+    format!("{text}. Recalibrated and repaired, the simulator leaves {left}{share}.")
+}
+
+/// Error of the repaired simulator in units of the noise.
+fn floor(result: &DiagnosisResult) -> String {
+    let gap = &result.gap;
+    if gap.ratio_to_floor.is_finite() {
+        format!("{} times the noise floor", significant(gap.ratio_to_floor, 3))
+    } else {
+        quantity(&significant(gap.repaired, 3), &gap.unit)
+    }
+}
+
+/// Half a sentence on what is left and is no noise.
+fn rest(result: &DiagnosisResult) -> &'static str {
+    // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
+    let [low, _] = result.gap.ratio_to_floor_interval_95;
+    if low.powi(2) > 2.0 {
+        "; most of the remaining error is not noise"
+    } else if result.verdict.left_over.is_some_and(|probability| probability > 0.5) {
+        "; part of the remaining error is not noise"
+    } else {
+        ""
+    }
+}
+
+/// Half a sentence on the classes that are open.
+fn remaining(result: &DiagnosisResult) -> String {
+    let all = class_statements(result);
+    let open = all.iter().filter(|one| Told::new(result, one.class).standing() == Some(Standing::Open));
+    let open: Vec<String> = open.map(|one| one.title.clone()).collect();
+    match open.len() {
+        0 => String::new(),
+        1 => format!("; {} remains open", listed(&open, "and")),
+        _ => format!("; {} remain open", listed(&open, "and")),
+    }
+}
+
+/// Half a sentence on the share of the gap that has no name.
+fn nameless(result: &DiagnosisResult) -> Option<String> {
+    let share = nameless_share(result)?;
+    Some(match share < 5e-4 {
+        true => "less than 0.1 % of the gap has no name".to_owned(),
+        false => format!("{} of the gap has no name", format::share(share)),
+    })
+}
+
+/// The torque along the position that has no name, where there is one.
+fn repeating(result: &DiagnosisResult) -> Option<String> {
+    let row = effect(result, "unknown").filter(|row| row.gap_share.is_some())?;
+    let wavenumber = row.parameters.get("wavenumber")?;
+    // Of a length it is stated how far apart the waves are.
+    let often = if wavenumber.unit == "1" {
+        format!("{} times a turn", significant(wavenumber.value, 3))
+    } else {
+        format!("every {} m", significant(std::f64::consts::TAU / wavenumber.value, 3))
+    };
+    Some(format!("a position-dependent torque of unknown cause repeats {often}"))
+}
+
+/// Whether the simulator's coefficients are more probably off than right.
+fn is_off(result: &DiagnosisResult) -> bool {
+    let probability = |id: &str| effect(result, id).map_or(0.0, |row| row.probability);
+    probability("calibration") > probability("none")
+}

@@ -1,0 +1,109 @@
+//! The first screen: classes of effects as bars, the surest first, and what has no name.
+
+use runs::result::DiagnosisResult;
+
+use crate::classes::{
+    ClassStatement, Standing, capitalized, class_statements, class_title, kind_title, nameless_share,
+};
+use crate::format::{self, significant};
+
+/// Shares of kinds add up to 1, but where stamps or values show a kind beside those that were fitted.
+const MOST_SHARED: f64 = 1.01;
+
+/// Classes of one standing.
+pub(super) struct Group {
+    /// `Certain`, `Likely` or `Open`.
+    pub(super) title: String,
+    /// The class in the style sheet, and the tag at each row.
+    pub(super) word: &'static str,
+    /// The probabilities that have this standing.
+    pub(super) range: String,
+    pub(super) rows: Vec<ClassView>,
+}
+
+/// A class with its bars.
+pub(super) struct ClassView {
+    pub(super) title: String,
+    pub(super) probability: Bar,
+    /// Absent where the repaired simulator has no effect of the class.
+    pub(super) share: Option<Bar>,
+    /// Share of the draws of segments in which the class comes back; absent where no fit speaks.
+    pub(super) stability: Option<String>,
+    pub(super) sentence: String,
+    /// Kinds with their shares of the class, where there are several.
+    pub(super) kinds: Vec<(String, Bar)>,
+}
+
+/// A bar with its number.
+pub(super) struct Bar {
+    pub(super) text: String,
+    /// Length in percent.
+    pub(super) length: String,
+}
+
+impl Bar {
+    fn new(text: String, share: f64) -> Self {
+        Self { text, length: format!("{:.1}", 100.0 * share.clamp(0.0, 1.0)) }
+    }
+}
+
+/// The share of the gap without a name, with what the repaired simulator leaves.
+pub(super) struct Nameless {
+    pub(super) bar: Bar,
+    pub(super) note: String,
+}
+
+/// Classes that are certain, likely or open; standings without a class are left out.
+pub(super) fn groups(result: &DiagnosisResult) -> Vec<Group> {
+    let all = class_statements(result);
+    Standing::ALL
+        .into_iter()
+        .filter_map(|standing| {
+            let own = all.iter().filter(|one| one.standing == standing);
+            let rows: Vec<ClassView> = own.map(|one| view(result, one)).collect();
+            (!rows.is_empty()).then(|| Group {
+                title: capitalized(standing.word()),
+                word: standing.word(),
+                range: match standing {
+                    Standing::Certain => "probability 0.9 or more",
+                    Standing::Likely => "probability 0.5 to 0.9",
+                    Standing::Open => "probability 0.1 to 0.5",
+                }
+                .to_owned(),
+                rows,
+            })
+        })
+        .collect()
+}
+
+fn view(result: &DiagnosisResult, one: &ClassStatement<'_>) -> ClassView {
+    let class = one.class;
+    let is_split =
+        class.kinds.len() > 1 && class.kinds.iter().map(|kind| kind.share).sum::<f64>() < MOST_SHARED;
+    let kinds = class.kinds.iter().filter(|kind| is_split && kind.share >= 0.01);
+    ClassView {
+        title: capitalized(&class_title(&class.id)),
+        probability: Bar::new(format::probability(class.probability), class.probability),
+        share: class.gap_share.map(|share| Bar::new(format::share(share.value), share.value)),
+        stability: one.is_fitted.then(|| format::share(class.stability)),
+        sentence: one.sentence.clone(),
+        kinds: kinds
+            .map(|kind| {
+                let title = capitalized(&kind_title(result, &class.id, &kind.id));
+                (title, Bar::new(format::share(kind.share), kind.share))
+            })
+            .collect(),
+    }
+}
+
+/// What has no name, where there is a gap that can be divided.
+pub(super) fn nameless(result: &DiagnosisResult) -> Option<Nameless> {
+    let share = nameless_share(result)?;
+    let left = result.left_over?;
+    let note = if left.over_noise.is_finite() {
+        format!("The repaired simulator leaves {} × noise.", significant(left.over_noise, 3))
+    } else {
+        String::new()
+    };
+    Some(Nameless { bar: Bar::new(format::share(share), share), note })
+}
