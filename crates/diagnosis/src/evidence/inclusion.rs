@@ -61,8 +61,6 @@ pub(crate) struct Inclusion<'a> {
     likelihood: Likelihood,
     /// Log likelihood of the recalibrated simulator.
     bare: f64,
-    /// Standard deviation of the sensor's noise.
-    noise: f64,
     vocabulary: usize,
 }
 
@@ -116,7 +114,7 @@ impl<'a> Inclusion<'a> {
             w.probability = odds(w.evidence) / total;
             w.evidence -= base;
         }
-        Self { weighed, left, likelihood, bare: base, noise, vocabulary }
+        Self { weighed, left, likelihood, bare: base, vocabulary }
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
