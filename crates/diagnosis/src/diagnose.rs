@@ -148,17 +148,17 @@ pub fn diagnose(
     let base = &followed(data, &segments, &horizon)?;
     let (coarse, coarse_base) = (&horizon.data, &horizon.calibrated);
     let vocabulary = candidates.len();
-    alternatives(coarse, coarse_base, &mut found, &candidates, (threshold, vocabulary));
-    let weighing = Weighing::of(coarse, coarse_base, &found, threshold, vocabulary);
+    alternatives(coarse, coarse_base, &mut found, &candidates, vocabulary);
+    let weighing = Weighing::of(coarse, coarse_base, &found, vocabulary);
     let sets = weighing.weigh(&found);
     let mut pool = refine(data, &Archive::of(&base.calibrated), &sets, &found.rejected, &candidates);
     if let Some((known, others)) = found.misled(&pool, &candidates) {
         found = search(coarse, coarse_base, known, &others, &breadth, enough);
-        let weighing = Weighing::of(coarse, coarse_base, &found, threshold, vocabulary);
+        let weighing = Weighing::of(coarse, coarse_base, &found, vocabulary);
         pool = refine(data, &pool, &weighing.weigh(&found), &found.rejected, &others);
     }
     let time = pool.autocorrelation_time();
-    let weighing = Weighing::of(data, &base.calibrated, &pool, threshold, vocabulary);
+    let weighing = Weighing::of(data, &base.calibrated, &pool, vocabulary);
     let fitted = weighing.weigh(&pool);
     lap("fits");
     let completed = OnceCell::new();

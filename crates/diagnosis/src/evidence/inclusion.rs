@@ -11,7 +11,7 @@ use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::probability;
-use crate::evidence::weights::{TEMPERATURE, Weighed};
+use crate::evidence::weights::{TEMPERATURE, Weighed, price};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -249,23 +249,6 @@ impl<'a> Inclusion<'a> {
 
 /// Share of a class below which a member is not listed.
 const LEAST_SHARE: f64 = 0.005;
-
-/// Log evidence that an effect has to bring which can sit where it likes on a record. In training banks
-/// (`experiments/rigs`, seed 1) such effects that brought 20 to 50 nats were there in 13 % of the cases, and plain laws
-/// that brought that much in 54 %: what a small unlisted law leaves has room for one. With this price evidence means the
-/// same for both.
-const FLEXIBLE: f64 = 30.0;
-
-/// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, a factor e for every
-/// number that says how it looks, and [`FLEXIBLE`]. Held-out parts charge for what is fitted to noise; this is for what
-/// could have been fitted instead.
-fn price(data: &Data, fit: &Fit, vocabulary: usize) -> f64 {
-    let of = |own: &Candidate| {
-        let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
-        (vocabulary.max(2) as f64).ln() + shapes as f64 + if own.is_flexible() { FLEXIBLE } else { 0.0 }
-    };
-    fit.hypothesis.candidates.iter().filter(|own| own.counts()).map(of).sum()
-}
 
 /// What half swings say of a class. They are a witness of losses; what bends a duration or moves a center is often
 /// something else (training banks).

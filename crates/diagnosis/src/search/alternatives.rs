@@ -29,10 +29,10 @@ pub(crate) fn alternatives(
     calibrated: &Fit,
     archive: &mut Archive,
     candidates: &[Candidate],
-    (threshold, vocabulary): (f64, usize),
+    vocabulary: usize,
 ) {
     let best = |archive: &Archive| {
-        let weighing = Weighing::of(data, calibrated, archive, threshold, vocabulary);
+        let weighing = Weighing::of(data, calibrated, archive, vocabulary);
         weighing.weigh(archive).first().map_or(calibrated.clone(), |w| w.fit.clone())
     };
     let mut top = best(archive);
