@@ -74,3 +74,50 @@ fn a_reader_that_goes_away_is_none() {
     assert_eq!(output.status.code(), Some(0));
     assert!(output.stderr.is_empty());
 }
+
+/// Expects exit code 2 and these words in the one message.
+fn refused(arguments: &[&str], expected: &[&str]) {
+    let output = trainer(arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    for words in expected {
+        assert!(message.contains(words), "no `{words}` in {message}");
+    }
+}
+
+#[test]
+fn a_log_without_a_simulator_is_sent_to_init() {
+    let record = "experiments/default-record/record.csv";
+    refused(&["diagnose", record], &["--nominal FILE", &format!("`trainer init {record}`")]);
+}
+
+#[test]
+fn a_configuration_in_the_place_of_a_simulator_is_told_as_one() {
+    let record = "experiments/default-record/record.csv";
+    for (config, command) in [
+        ("configs/pinn.toml", "trainer"),
+        ("configs/simulate.toml", "trainer simulate"),
+        ("configs/trials-quick.toml", "trainer trials"),
+    ] {
+        let runs = format!("the configuration of an experiment, which `{command} {config}` runs");
+        refused(&["diagnose", record, "--nominal", config], &[&runs, "`trainer init LOG`"]);
+    }
+}
+
+#[test]
+fn a_missing_configuration_is_answered_with_the_nearest_one() {
+    refused(&["configs/pin.toml"], &["did you mean configs/pinn.toml?"]);
+    refused(&["pinn.tml"], &["did you mean configs/pinn.toml?"]);
+    let output = trainer(&["configs/nothing-like-it.toml"]);
+    assert!(!String::from_utf8(output.stderr).unwrap().contains("did you mean"));
+}
+
+#[test]
+fn the_reason_for_the_clock_is_said_once() {
+    let scratch = tempfile::tempdir().unwrap();
+    let output = trainer(&["configs/ols.toml", "--out", scratch.path().to_str().unwrap()]);
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert!(shown.contains("clock in force: uniform-index"), "{shown}");
+    assert_eq!(shown.matches("repeat the one before").count(), 1, "{shown}");
+}

@@ -99,7 +99,7 @@ fn nothing_is_overwritten_and_what_says_nothing_is_refused() {
     let again = shell("trainer init log.csv", scratch.path());
     let message = String::from_utf8(again.stderr).unwrap();
     assert_eq!(again.status.code(), Some(2), "{message}");
-    assert!(message.contains("log"), "{message}");
+    assert!(message.contains("log is not empty") && message.contains("--out"), "{message}");
     write(
         scratch.path(),
         "still.csv",

@@ -109,6 +109,35 @@ fn an_interrupted_run_keeps_its_best_and_exits_with_130() {
     assert!(out.join("report.html").is_file());
 }
 
+/// Of a comparison that is asked to stop during its first fit the other methods have not failed.
+#[cfg(unix)]
+#[test]
+fn methods_that_were_not_begun_are_no_failures() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let child = std::process::Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(["configs/compare.toml", "compare.methods=pinn,lstm,transformer,ols", "fit.seeds=200"])
+        .args(["--threads", "1", "--out", out.to_str().unwrap()])
+        .current_dir(crate::support::root())
+        .stdout(std::process::Stdio::piped())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while !out.join("events.jsonl").exists() {
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    std::thread::sleep(std::time::Duration::from_millis(300));
+    let kill = std::process::Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+    let output = child.wait_with_output().unwrap();
+    let shown = String::from_utf8(output.stdout).unwrap();
+    assert_eq!(output.status.code(), Some(130), "{shown}");
+    assert!(!shown.contains("FAILED"), "{shown}");
+    let waiting =
+        shown.lines().find(|line| line.starts_with("interrupted before these were fitted: ")).unwrap();
+    assert!(waiting.contains("transformer") && shown.contains("WERE NOT BEGUN"), "{shown}");
+}
+
 #[test]
 fn the_null_estimator_fails_the_bar() {
     let (code, result, folder) = result(&["configs/baseline.toml"]);

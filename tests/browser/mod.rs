@@ -122,6 +122,17 @@ fn the_report_of_a_diagnosis() {
 }
 
 #[test]
+fn the_report_of_rigs() {
+    let scratch = tempfile::tempdir().unwrap();
+    let folders = crate::rigs::rigs(scratch.path(), &[40.0, 60.0]);
+    let asked = ["diagnose", "--rigs", &folders[0], &folders[1]];
+    let page = made(&scratch, "run", &asked).join("report.html");
+    let Some(mut browser) = Chromium::start() else { return };
+    look_at(&mut browser, &page);
+    without_scripts(&mut browser, &page);
+}
+
+#[test]
 fn the_report_of_trials() {
     report_of(&[&["configs/trials-quick.toml"], crate::documents::FEW_TRIALS].concat(), 1);
 }

@@ -89,6 +89,15 @@ pub fn class_title(id: &str) -> String {
     .to_owned()
 }
 
+/// Name of a class as the object of a sentence: `a second body`.
+fn with_article(id: &str) -> String {
+    let title = class_title(id);
+    match id {
+        "restoring" | "drift" | "second_body" | "preload" | "actuator" => format!("a {title}"),
+        _ => title,
+    }
+}
+
 /// Classes with a probability of 0.1 or more: by standing, and within that by their share of the gap. None for a file of an
 /// older version.
 #[must_use]
@@ -216,7 +225,7 @@ impl<'a> Told<'a> {
 
     /// The class with the fitted kinds in parentheses: `dry friction (Coulomb)`.
     fn with_kind(&self) -> String {
-        let title = class_title(&self.class.id);
+        let title = with_article(&self.class.id);
         let (fitted, possible) = (self.titles(&self.fitted), self.titles(&self.possible));
         if !fitted.is_empty() {
             format!("{title} ({})", listed(&fitted, "and"))
@@ -426,7 +435,7 @@ fn rest(result: &DiagnosisResult) -> &'static str {
 fn remaining(result: &DiagnosisResult) -> String {
     let all = class_statements(result);
     let open = all.iter().filter(|one| Told::new(result, one.class).standing() == Some(Standing::Open));
-    let open: Vec<String> = open.map(|one| one.title.clone()).collect();
+    let open: Vec<String> = open.map(|one| with_article(&one.class.id)).collect();
     match open.len() {
         0 => String::new(),
         1 => format!("; {} remains open", listed(&open, "and")),

@@ -115,10 +115,17 @@ pub fn share(value: f64) -> String {
     quantity(&fixed(100.0 * value, if left < 0.001 && left > 0.0 { 3 } else { 1 }), "%")
 }
 
-/// A probability to three decimals: what rounds to none is said to be small, however many zeros it has.
+/// A probability to three decimals: what rounds to none or to certainty is said to be small or large, however many zeros or
+/// nines it has.
 #[must_use]
 pub fn probability(value: f64) -> String {
-    if value > 0.0 && value < 5e-4 { format!("<{NO_BREAK}0.001") } else { fixed(value, 3) }
+    if value > 0.0 && value < 5e-4 {
+        format!("<{NO_BREAK}0.001")
+    } else if (1.0 - 5e-4..1.0).contains(&value) {
+        format!(">{NO_BREAK}0.999")
+    } else {
+        fixed(value, 3)
+    }
 }
 
 /// What stands for an estimate whose interval says nothing.
@@ -363,6 +370,8 @@ mod tests {
         assert_eq!(plain(&probability(7.6e-147)), "< 0.001");
         assert_eq!(probability(0.0), "0.000");
         assert_eq!(probability(0.9512), "0.951");
+        assert_eq!(plain(&probability(0.9996)), "> 0.999");
+        assert_eq!(probability(1.0), "1.000");
     }
 
     #[test]

@@ -24,16 +24,17 @@ struct RunPage<'a> {
 
 pub(crate) fn render(texts: &RunTexts<'_>, run: &Run) -> Result<String, ReportError> {
     let result = &run.result;
+    let frame = Frame::new(
+        texts,
+        "estimation of a damping ratio",
+        verdict::verdict(result),
+        &result.data,
+        &result.oracle,
+        &result.pipelines,
+    )
+    .disagreeing(result.disagreement.as_ref());
     let page = RunPage {
-        frame: Frame::new(
-            texts,
-            "estimation of a damping ratio",
-            verdict::verdict(result),
-            &result.data,
-            &result.oracle,
-            &result.pipelines,
-        )
-        .disagreeing(result.disagreement.as_ref()),
+        frame: Frame { next: verdict::next(result), ..frame },
         estimator: &result.estimator_title,
         comparison: tables::comparison(result),
         cards: [

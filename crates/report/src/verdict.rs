@@ -87,6 +87,33 @@ pub(crate) fn verdict(result: &EstimationResult) -> Verdict {
     }
 }
 
+/// Steps that follow an estimation, by how it ended.
+pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
+    let path = &result.data.path;
+    let mut steps = match result.estimate.reached.as_str() {
+        "interrupted" => {
+            vec!["Resume it: the same call with --out and this folder, and --resume.".to_owned()]
+        }
+        "budget_spent" => {
+            vec!["Raise fit.max_steps, or leave it out: the budget ended before the fit had.".to_owned()]
+        }
+        "diverged" | "stalled" => vec![
+            "Run it with another seed (seed=1), or with another method (trainer list estimators).".to_owned(),
+        ],
+        _ => Vec::new(),
+    };
+    if result.pass {
+        steps.push(format!(
+            "See whether the decay is exponential at all: “trainer init {path}” writes the linear oscillator nearest to the \
+             record and prints the call that diagnoses what it lacks."
+        ));
+        steps.push(format!(
+            "Compare other methods on the same envelope: “trainer configs/compare.toml data.path={path}”."
+        ));
+    }
+    steps
+}
+
 /// What follows "it": how far from the oracle, and whether that is within what was stated.
 fn comparison(result: &EstimationResult) -> String {
     const ORACLE: &str = "closed-form least squares";
@@ -179,6 +206,20 @@ mod tests {
         change(&mut result);
         let verdict = verdict(&result);
         (verdict.label, verdict.sentence.replace('\u{a0}', " "))
+    }
+
+    #[test]
+    fn what_comes_next_follows_from_how_it_ended() {
+        let mut result = Sample::new().result;
+        result.pass = true;
+        result.estimate.reached = "converged".into();
+        assert!(next(&result)[0].contains("trainer init "), "{:?}", next(&result));
+        result.pass = false;
+        result.estimate.reached = "budget_spent".into();
+        assert_eq!(next(&result).len(), 1);
+        assert!(next(&result)[0].contains("fit.max_steps"));
+        result.estimate.reached = "interrupted".into();
+        assert!(next(&result)[0].contains("--resume"));
     }
 
     #[test]

@@ -276,7 +276,7 @@ fn shares_that_round_to_zero_are_left_out() {
 fn the_verdict_tells_what_is_certain_likely_and_open_and_how_much_has_no_name() {
     let text = crate::verdict_sentence(&read(&classed()));
     for part in [
-        "The simulator certainly lacks dry friction (Coulomb or hysteresis: these data don’t tell which), and likely nonlinear \
+        "The simulator certainly lacks dry friction (Coulomb or hysteresis: these data don’t tell which), and likely a nonlinear \
          restoring force (gravity); the record shows sensor quantization, which the simulator lacks; periodic forcing \
          remains open.",
         "; 10.0 % of the gap has no name.",

@@ -103,9 +103,10 @@ fn headline(result: &RigsResult) -> Verdict {
     let shared = if said.is_empty() { "no class of effects is likely".to_owned() } else { said.join("; ") };
     let of_coefficients = match (compared, differing) {
         (0, _) => "No coefficient could be compared.".to_owned(),
-        (all, 0) => format!("Of {all} coefficients that can be compared all agree within their errors."),
+        (all, 0) => format!("Of {all} coefficients that can be compared, all agree within their errors."),
         (all, differing) => {
-            format!("Of {all} coefficients that can be compared {differing} differ between the rigs.")
+            let verb = if differing == 1 { "differs" } else { "differ" };
+            format!("Of {all} coefficients that can be compared, {differing} {verb} between the rigs.")
         }
     };
     let is_whole = result.complete && result.failed.is_empty();

@@ -34,7 +34,7 @@ fn agreement_and_difference_are_told_in_words_and_by_rig() {
     let html = page(&small());
     for part in [
         "certain: dry friction",
-        "Of 2 coefficients that can be compared 1 differ between the rigs.",
+        "Of 2 coefficients that can be compared, 1 differs between the rigs.",
         "the same within errors",
         "not the same",
         "A and B: 0.70 standard errors",

@@ -102,18 +102,30 @@ pub(super) fn classes(rigs: &[Answered]) -> Vec<SharedClassRow> {
     rows
 }
 
-/// Coefficients of the kinds of a class that some rig names.
+/// Share within its class from which on a kind is possible on a rig whose data do not tell the kind.
+const POSSIBLE: f64 = 0.1;
+
+/// Coefficients of the kinds of a class that some rig names, or cannot rule out; those of the likeliest kind first.
 fn coefficients(rigs: &[Answered], class: &str) -> Vec<SharedCoefficientRow> {
-    let mut kinds: Vec<&str> = Vec::new();
+    let mut kinds: Vec<(&str, f64, bool)> = Vec::new();
     for rig in rigs {
-        let own = rig.result.classes.iter().filter(|own| own.id == class).flat_map(|own| &own.kinds);
-        for kind in own.filter(|kind| rig.result.verdict.effects.contains(&kind.id)) {
-            if !kinds.contains(&kind.id.as_str()) {
-                kinds.push(&kind.id);
+        for own in rig.result.classes.iter().filter(|own| own.id == class) {
+            for kind in &own.kinds {
+                let is_named = rig.result.verdict.effects.contains(&kind.id);
+                let counts = is_named || !own.kind_is_told && kind.share >= POSSIBLE;
+                match kinds.iter_mut().find(|(id, ..)| *id == kind.id) {
+                    Some((_, share, is_shown)) => {
+                        *share += kind.share;
+                        *is_shown |= counts;
+                    }
+                    None => kinds.push((&kind.id, kind.share, counts)),
+                }
             }
         }
     }
-    kinds.into_iter().flat_map(|kind| of_kind(rigs, kind)).collect()
+    kinds.retain(|(.., is_shown)| *is_shown);
+    kinds.sort_by(|(_, one, _), (_, other, _)| other.total_cmp(one));
+    kinds.into_iter().flat_map(|(kind, ..)| of_kind(rigs, kind)).collect()
 }
 
 fn of_kind(rigs: &[Answered], effect: &str) -> Vec<SharedCoefficientRow> {
@@ -212,7 +224,10 @@ fn sentence(rigs: &[Answered], class: &SharedClassRow) -> String {
             report::listed(&absent, "and")
         )
     };
-    let told: Vec<String> = class.coefficients.iter().map(told).collect();
+    // Of several kinds that the data do not tell apart the likeliest one speaks; the table has all.
+    let likeliest = class.coefficients.first().map(|row| row.effect.as_str());
+    let own = class.coefficients.iter().filter(|row| Some(row.effect.as_str()) == likeliest);
+    let told: Vec<String> = own.map(told).collect();
     let mut letters = lead.chars();
     let lead: String = letters.next().into_iter().flat_map(char::to_uppercase).chain(letters).collect();
     if told.is_empty() { format!("{lead}.") } else { format!("{lead}; {}.", told.join("; ")) }
