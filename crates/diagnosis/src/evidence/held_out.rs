@@ -13,9 +13,10 @@ pub(crate) struct HeldOut {
     pub(crate) residuals: Vec<DVector<f64>>,
     /// Start values fitted by segment.
     pub(crate) starts: usize,
-    /// Mean square where nothing at all was fitted to the parts held out, not even their start states: what
-    /// goes on from the parts that were. The same as with start states where segments are not joined.
-    pub(crate) continued: f64,
+    /// By segment too, where nothing at all was fitted to the parts held out, not even their start states: what goes on
+    /// from the parts that were. With fitted start states, on the scale that residuals have before these are fitted, where a
+    /// record begins and where segments are not joined.
+    pub(crate) continued: Vec<DVector<f64>>,
 }
 
 impl HeldOut {
@@ -69,13 +70,13 @@ impl Both<'_> {
         Ok(fit(&rest, &self.fitted.hypothesis, point, Moving::Starts, Stopping::HELD_OUT)?.residuals)
     }
 
-    /// Residuals of the parts that neither `train` names nor a record begins with, nothing fitted to them.
+    /// Residuals of the parts that neither `train` names nor a record begins with, with their numbers, nothing fitted to them.
     /// The first part is always among those fitted: going back to it would be another question than going on.
     fn continued(
         &self,
         train: &(dyn Fn(usize) -> bool + Sync),
         moving: Moving,
-    ) -> Result<Vec<DVector<f64>>, DynamicsError> {
+    ) -> Result<Vec<(usize, DVector<f64>)>, DynamicsError> {
         let firsts = self.longer.firsts();
         let train = |index: usize| train(index) || firsts.contains(&index);
         let (learned, numbers) = self.learned(&train, moving)?;
@@ -88,7 +89,7 @@ impl Both<'_> {
             }
         }
         let parts = self.longer.by_part(&all).into_iter().enumerate();
-        Ok(parts.filter(|(index, _)| !train(*index)).map(|(_, part)| part).collect())
+        Ok(parts.filter(|(index, _)| !train(*index)).collect())
     }
 
     /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
@@ -101,14 +102,20 @@ impl Both<'_> {
         let residuals: Vec<DVector<f64>> = (0..self.segments.segments.len())
             .filter_map(|index| if even(index) { first.next() } else { second.next() })
             .collect();
-        let continued = if self.longer.is_joined() {
+        let scaled = |own: &DVector<f64>| {
+            let freedom = (own.len() as f64 - starts as f64).max(1.0);
+            own * (own.len() as f64 / freedom).sqrt()
+        };
+        let mut continued: Vec<DVector<f64>> = residuals.iter().map(scaled).collect();
+        if self.longer.is_joined() {
             let (first, second) =
                 rayon::join(|| self.continued(&odd, moving), || self.continued(&even, moving));
-            let parts = [first?, second?].concat();
-            mean_square(&parts, 0)
-        } else {
-            mean_square(&residuals, starts)
-        };
+            for (index, part) in first?.into_iter().chain(second?) {
+                if let Some(own) = continued.get_mut(index) {
+                    *own = part;
+                }
+            }
+        }
         Ok(HeldOut { residuals, starts, continued })
     }
 

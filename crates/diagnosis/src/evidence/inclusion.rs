@@ -78,29 +78,28 @@ const TOLD: f64 = 0.9;
 
 impl<'a> Inclusion<'a> {
     /// Weighs sets by what they predict of `segments`; the recalibrated simulator, `bare`, is the empty one.
-    pub(crate) fn of(
+    pub(crate) fn of<'b>(
         segments: &Data,
-        predictions: &Predictions<'a>,
+        predictions: &'b Predictions<'a>,
         bare: &'a Fit,
         vocabulary: usize,
     ) -> Self {
-        let own = |set: &Predicted<'a>| (set.followed, scaled(&set.after));
-        let sets = predictions.sets.iter().map(own).chain([(bare, scaled(&predictions.recalibrated))]);
-        let sets: Vec<(&'a Fit, Vec<DVector<f64>>)> = sets.collect();
+        let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
+        let sets = predictions.sets.iter().map(own).chain([(bare, &predictions.recalibrated)]);
+        let sets: Vec<(&'a Fit, &'b HeldOut)> = sets.collect();
         let square = |own: &[DVector<f64>]| own.iter().map(DVector::norm_squared).sum::<f64>();
-        let closest = sets.iter().min_by(|a, b| square(&a.1).total_cmp(&square(&b.1)));
-        let closest = closest.map(|own| own.1.as_slice()).unwrap_or_default();
+        let closest = sets.iter().min_by(|a, b| square(&a.1.continued).total_cmp(&square(&b.1.continued)));
+        let closest = closest.map(|own| own.1.continued.as_slice()).unwrap_or_default();
         let noise = floor::floor(segments, closest).value;
         let likelihood = Likelihood::of(segments, closest, noise);
-        let samples: usize = closest.iter().map(DVector::len).sum();
         let whole: Vec<usize> = (0..closest.len()).collect();
         let mut all: Vec<(Weighed<'a>, Left)> = sets
             .into_iter()
-            .map(|(fit, residuals)| {
-                let powers = likelihood.powers(&residuals);
+            .map(|(fit, held)| {
+                let powers = likelihood.powers(&held.continued);
                 let price = price(segments, fit, vocabulary);
                 let evidence = likelihood.log_of(&powers, &whole) - price;
-                let error = (square(&residuals) / samples.max(1) as f64).sqrt();
+                let error = held.mean_square().sqrt();
                 (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers, price })
             })
             .collect();
@@ -185,7 +184,7 @@ impl<'a> Inclusion<'a> {
     /// Log evidence of a set by what it predicts, on the scale of the others.
     pub(crate) fn evidence(&self, segments: &Data, set: &Predicted<'_>) -> f64 {
         let whole: Vec<usize> = (0..set.after.residuals.len()).collect();
-        let powers = self.likelihood.powers(&scaled(&set.after));
+        let powers = self.likelihood.powers(&set.after.continued);
         self.likelihood.log_of(&powers, &whole) - price(segments, set.followed, self.vocabulary) - self.bare
     }
 
@@ -258,13 +257,4 @@ fn shown(witness: &Witness, class: EvidenceClass) -> Option<f64> {
         EvidenceClass::Damping => witness.drag,
         _ => None,
     }
-}
-
-/// Held-out residuals, on the scale that they have before start states are fitted to them.
-fn scaled(held: &HeldOut) -> Vec<DVector<f64>> {
-    let of = |own: &DVector<f64>| {
-        let freedom = (own.len() as f64 - held.starts as f64).max(1.0);
-        own * (own.len() as f64 / freedom).sqrt()
-    };
-    held.residuals.iter().map(of).collect()
 }
