@@ -122,7 +122,7 @@ fn trials_are_blind_sealed_and_resumable() {
         assert_eq!(line["truth_digest"], truth::digest(&text));
     }
     assert_eq!(std::fs::read_to_string(root.join("cases.csv")).unwrap().lines().count(), 13);
-    assert!(std::fs::read_to_string(root.join("report.html")).unwrap().contains("The bars"));
+    assert!(std::fs::read_to_string(root.join("report.html")).unwrap().contains("Targets and results"));
 
     // Scored again from the files alone: the same; with a truth that was changed: refused, naming it.
     let again = trainer(&["trials", "--score", out, "--json"]);

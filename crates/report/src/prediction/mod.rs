@@ -167,9 +167,9 @@ fn scored(row: &PredictionRow) -> Option<&MethodScores> {
 
 fn held_out(splits: &SplitSummary) -> String {
     format!(
-        "Inside: of every {} blocks of {} successive peaks one is kept from the fit, never the first or the \
-         last block; a record is fitted once for each such choice, a draw of a simulation with the next one in \
-         turn. Beyond: the last {} % of the peaks are kept from the fit.",
+        "Inside: of every {} blocks of {} successive peaks one is held out, never the first or the last block; a record is \
+         fitted once for each such choice, and each draw of a simulation with the next choice in turn. Beyond: the last \
+         {} % of the peaks are held out.",
         splits.every,
         splits.block_peaks,
         format::fixed(100.0 * splits.last_share, 0)
@@ -200,8 +200,8 @@ fn headline(result: &PredictionResult) -> Verdict {
         tone,
         label,
         sentence: format!(
-            "Methods were scored on held-out peaks of {all} problems ({}). Each section says what its numbers \
-             carry; agreement with least squares is no virtue where the envelope is no exponential.",
+            "Methods were scored on held-out peaks of {all} problems ({}). Each section states what its numbers \
+             support; agreement with least squares is no merit where the envelope is not exponential.",
             kinds.join(", ")
         ),
     }

@@ -52,8 +52,8 @@ pub(super) fn reliability(result: &TrialsResult) -> Option<Figure> {
         series,
         shaded: Vec::new(),
     };
-    let explanation = "Each point is a tenth of the statements. Below the dashed line the diagnosis is surer than it \
-                       should be, above it less sure.";
+    let explanation = "Each point is a tenth of the statements. Below the dashed line the diagnosis is \
+                       overconfident, above it underconfident.";
     figure("reliability", "Reliability", explanation, &plot, table)
 }
 

@@ -125,10 +125,10 @@ pub(super) fn accuracy(result: &TrialsResult) -> Section {
         id: "accuracy",
         title: "Accuracy by effect and size",
         sentences: vec![
-            "Size is what no recalibration can absorb of the hidden effect, in units of the noise. Of two effects the size \
-             is that of the smaller. A class holds what an answer says it cannot tell from what it named first. Where \
-             nothing is missing the first name is right if there is none; where the effect was not to be considered, \
-             if the answer is unknown."
+            "The size of a hidden effect is the part of its trace that recalibration cannot absorb, in units of the noise; of two \
+             effects it is that of the smaller. The class of an answer is its first name with all that the answer calls \
+             indistinguishable from it. Where nothing is missing, no name is the right first name; where the hidden effect was \
+             excluded, the right answer is unknown."
                 .to_owned(),
         ],
         grids,
@@ -170,13 +170,13 @@ pub(super) fn confusion(result: &TrialsResult) -> Section {
     ];
     if !nuisances.is_empty() {
         sentences.push(format!(
-            "What comes with records of every bank alike counts neither for nor against an answer. It was named: {}.",
+            "Effects that the records of every bank have in common count neither for nor against an answer. They were named: {}.",
             nuisances.join(", ")
         ));
     }
     Section {
         id: "confusion",
-        title: "What is mistaken for what",
+        title: "Confusion matrices",
         sentences,
         grids: vec![
             counts("Effects", "Hidden", &result.confusion),
@@ -202,7 +202,7 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
     }
     Section {
         id: "closure",
-        title: "How far the gap closes, and how long an answer takes",
+        title: "Closure of the gap, and time per answer",
         sentences,
         grids: vec![
             Grid {
@@ -255,7 +255,7 @@ pub(super) fn baselines(result: &TrialsResult) -> Section {
     });
     Section {
         id: "baselines",
-        title: "Simpler diagnosers on the same records",
+        title: "Baselines on the same records",
         sentences: result.baselines.iter().map(|row| format!("{}: {}.", row.id, row.method)).collect(),
         grids: vec![Grid {
             title: "Cases of a single effect".to_owned(),

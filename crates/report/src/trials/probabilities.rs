@@ -31,11 +31,11 @@ pub(super) fn section(result: &TrialsResult) -> Section {
     };
     Section {
         id: "probabilities",
-        title: "Whether probabilities hold what they say",
+        title: "Calibration of the stated probabilities",
         sentences: vec![
-            "The expected calibration error is the mean distance of stated and found over ten bins of equal count. Scatter \
-             alone makes one: what it would be on average for probabilities that are exactly right stands beside it. \
-             Its interval, by drawing cases again, leans upward for the same reason."
+            "The expected calibration error is the mean distance between stated probability and observed frequency over ten bins \
+             of equal count. Scatter alone makes it larger than zero: the column “By chance alone” has its mean for \
+             probabilities that are exactly right. Its interval, by the bootstrap, is biased upward for the same reason."
                 .to_owned(),
             mapping,
         ],
@@ -63,10 +63,10 @@ pub(super) fn unknown(result: &TrialsResult) -> Section {
     });
     Section {
         id: "unknown",
-        title: "Telling what has no name",
+        title: "Detection of effects outside the vocabulary",
         sentences: vec![
-            "Positives are cases whose effect was not to be considered or lies outside the vocabulary, negatives those with \
-             named effects or none; the score is the stated probability of unknown."
+            "Positives are cases whose effect was excluded or lies outside the vocabulary, negatives those with effects of the \
+             vocabulary or none; the score is the stated probability of unknown."
                 .to_owned(),
         ],
         grids: vec![Grid {

@@ -473,36 +473,6 @@ pub struct SeriesRow {
     pub input_torque: Option<f64>,
 }
 
-/// What a batch came to.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct BatchResult {
-    /// Always [`super::RESULT_SCHEMA`].
-    pub schema: String,
-    /// What was asked for: `"diagnose-batch"`.
-    pub task: String,
-    /// Cases found.
-    pub cases: usize,
-    /// Cases diagnosed now.
-    pub diagnosed: usize,
-    /// Cases whose answer was there already and was left alone.
-    pub skipped: usize,
-    /// Cases that gave no answer.
-    pub failed: Vec<FailedCase>,
-    /// Whether every case was looked at: an interrupted batch leaves some.
-    pub complete: bool,
-    /// Wall time in seconds.
-    pub seconds: f64,
-}
-
-/// A case that gave no answer.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub struct FailedCase {
-    /// Name of its folder.
-    pub id: String,
-    /// Why: the message of its own diagnosis.
-    pub message: String,
-}
-
 /// As [`null_is_not_a_number`], for two numbers.
 pub(super) fn nulls_are_not_numbers<'de, D: serde::Deserializer<'de>>(
     deserializer: D,

@@ -4,6 +4,7 @@
 //! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
 //! is not.
 
+mod batch;
 mod calibration;
 mod comparison;
 mod diagnosis;
@@ -13,13 +14,14 @@ mod simulation;
 mod sweep;
 mod trials;
 
+pub use batch::{BatchResult, FailedCase};
 pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
-    Backbone, BackbonePoint, BatchResult, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow,
-    ClassRow, DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
-    EffectRow, Equation, FailedCase, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment,
-    ParameterRow, RecordRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+    Backbone, BackbonePoint, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow, ClassRow,
+    DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,
+    Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
+    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

@@ -1,6 +1,7 @@
 //! Several rigs of one build: the content of `rigs.json`.
 
-use super::diagnosis::{FailedCase, WithInterval, nulls_are_not_numbers};
+use super::batch::FailedCase;
+use super::diagnosis::{WithInterval, nulls_are_not_numbers};
 use super::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
 

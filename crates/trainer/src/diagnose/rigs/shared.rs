@@ -287,7 +287,7 @@ mod tests {
     #[test]
     fn no_rig_overrules_all_others() {
         assert!(combined(&[0.0, 0.99, 0.99]) > 0.5);
-        assert!(combined(&[1.0, 0.01, 0.01]) < 0.5);
+        assert!(combined(&[1.0, 0.01, 0.01, 0.01]) < 0.5);
         assert!(combined(&[0.0, 0.0]) > 0.0 && combined(&[1.0, 1.0]) < 1.0);
     }
 
