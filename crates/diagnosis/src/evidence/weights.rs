@@ -98,13 +98,19 @@ impl<'a> Weighing<'a> {
 /// same for both.
 const FLEXIBLE: f64 = 30.0;
 
-/// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, a factor e for every
-/// number that says how it looks, and [`FLEXIBLE`]. Held-out parts charge for what is fitted to noise; this is for what
+/// Log evidence that every number has to bring which says how an effect looks: twenty to one, so that a law is the special
+/// case of another unless the data say otherwise.
+const SHAPE: f64 = 3.0;
+
+/// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, [`SHAPE`] for every such
+/// number, and [`FLEXIBLE`]. Held-out parts charge for what is fitted to noise; this is for what
 /// could have been fitted instead.
 pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize) -> f64 {
     let of = |own: &Candidate| {
         let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
-        (vocabulary.max(2) as f64).ln() + shapes as f64 + if own.is_flexible() { FLEXIBLE } else { 0.0 }
+        (vocabulary.max(2) as f64).ln()
+            + SHAPE * shapes as f64
+            + if own.is_flexible() { FLEXIBLE } else { 0.0 }
     };
     fit.hypothesis.candidates.iter().filter(|own| own.counts()).map(of).sum()
 }
