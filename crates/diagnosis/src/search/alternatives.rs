@@ -3,7 +3,7 @@
 //! A search goes by what sets gain. Once they are weighed, the best of them may be one that the search has not gone on
 //! from. So effects are added to it, one of each class at a time, for as long as that makes a better one; and then every
 //! class of it is taken out and replaced, since a class is as well supported as the best set with it is over the best one
-//! without.
+//! without, and each kind of the class is put in its place.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::Weighing;
@@ -68,7 +68,7 @@ pub(crate) fn alternatives(
     }
 }
 
-/// A set without a class, and proposals of what could take its place.
+/// A set without a class, and proposals of what could take its place: other classes, and each kind of this one.
 fn without(
     data: &Data,
     set: &Fit,
@@ -84,7 +84,10 @@ fn without(
     let is_other =
         |own: &Candidate| own.evidence_class() != class && !bare.hypothesis.candidates.contains(own);
     let others: Vec<Candidate> = candidates.iter().copied().filter(is_other).collect();
-    let begun = proposals(data, &bare, &others, INSTEAD, archive);
+    let mut begun = proposals(data, &bare, &others, INSTEAD, archive);
+    // Which kind of the class it is has to be asked too.
+    let kinds = candidates.iter().filter(|own| own.evidence_class() == class);
+    begun.extend(kinds.flat_map(|own| proposals(data, &bare, &[*own], 1, archive)));
     (Some(bare), begun)
 }
 
