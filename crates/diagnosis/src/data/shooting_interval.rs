@@ -339,11 +339,11 @@ mod tests {
         assert!((short.squares / horizon.calibrated.squares - 1.0).abs() < 0.05);
     }
 
-    /// A softening whose frequency shift adds up over the record: 8e-4 of the spring's torque at most, next
+    /// A softening whose frequency shift adds up over the record: 2.3e-3 of the spring's torque at most, next
     /// to nothing within six periods.
     #[test]
     fn what_adds_up_over_a_record_is_seen() {
-        let observations = observed(&[("cubic_stiffness", &[-1.0])]);
+        let observations = observed(&[("cubic_stiffness", &[-3.0])]);
         let seconds = || 0.0;
         let answer = diagnose(&[observations], &nominal(), &Settings::default(), &seconds).unwrap();
         assert_eq!(answer.verdict.status, Status::Effect, "{:?}", answer.verdict);
