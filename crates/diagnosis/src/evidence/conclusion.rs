@@ -159,10 +159,19 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
         let probability = effects.iter().find(|row| row.id == id).map_or(SHOWN, |row| row.probability);
         match classes.iter_mut().find(|own| own.id == class) {
             Some(own) => {
-                own.probability = own.probability.max(probability);
-                if !own.kinds.iter().any(|kind| kind.id == id) {
-                    own.kinds.push(Kind { id, share: 1.0 });
+                // Fitted kinds are there with the probability that the class had by them alone.
+                for kind in &mut own.kinds {
+                    kind.share *= own.probability;
                 }
+                if !own.kinds.iter().any(|kind| kind.id == id) {
+                    own.kinds.push(Kind { id, share: probability });
+                }
+                let total: f64 = own.kinds.iter().map(|kind| kind.share).sum();
+                for kind in &mut own.kinds {
+                    kind.share /= total;
+                }
+                own.kinds.sort_by(|a, b| b.share.total_cmp(&a.share));
+                own.probability = own.probability.max(probability);
             }
             None => classes.push(EffectClass {
                 id: class,
