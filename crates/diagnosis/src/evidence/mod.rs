@@ -4,7 +4,7 @@ pub(crate) mod conclusion;
 pub(crate) mod context;
 pub(crate) mod determined;
 pub(crate) mod discrepancy;
-#[allow(dead_code, reason = "the verdict asks it next")]
+#[allow(dead_code, reason = "what durations and centers say is read by tests and tables only")]
 pub(crate) mod half_swings;
 pub(crate) mod held_out;
 pub(crate) mod inclusion;
