@@ -176,6 +176,14 @@ pub(crate) struct Origin {
     pub(crate) note: &'static str,
 }
 
+/// The origin that several records share; unstated where they have several.
+pub(crate) fn common_origin<'a>(mut stated: impl Iterator<Item = &'a str>) -> Origin {
+    match stated.next() {
+        Some(first) if stated.all(|other| other == first) => origin(first),
+        _ => origin("unstated"),
+    }
+}
+
 pub(crate) fn origin(stated: &str) -> Origin {
     match stated {
         "measured" => {

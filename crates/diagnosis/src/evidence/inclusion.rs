@@ -11,7 +11,7 @@ use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::probability;
-use crate::evidence::weights::{TEMPERATURE, Weighed, price};
+use crate::evidence::weights::{Weighed, price, share};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -106,11 +106,8 @@ impl<'a> Inclusion<'a> {
         let base = all.last().map_or(0.0, |bare| bare.0.evidence);
         all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
         let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();
-        let best = weighed.first().map_or(0.0, |w| w.evidence);
-        let odds = |evidence: f64| ((evidence - best) / TEMPERATURE).exp();
-        let total: f64 = weighed.iter().map(|w| odds(w.evidence)).sum();
+        share(&mut weighed);
         for w in &mut weighed {
-            w.probability = odds(w.evidence) / total;
             w.evidence -= base;
         }
         Self { weighed, left, likelihood, bare: base, vocabulary }
@@ -119,14 +116,11 @@ impl<'a> Inclusion<'a> {
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
     pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
-        let mut ids: Vec<EvidenceClass> = Vec::new();
         let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
-        for own in members.filter(|own| own.counts()) {
-            if !ids.contains(&own.evidence_class()) {
-                ids.push(own.evidence_class());
-            }
-        }
-        ids.into_iter().filter_map(|class| self.class(class, witness, seed)).collect()
+        EvidenceClass::among(members)
+            .into_iter()
+            .filter_map(|class| self.class(class, witness, seed))
+            .collect()
     }
 
     fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
@@ -162,15 +156,14 @@ impl<'a> Inclusion<'a> {
     /// has the class; none where it lacks nothing.
     pub(crate) fn completed(&self, data: &Data, classes: &[&str]) -> Option<Fit> {
         let base = self.within(classes)?.fit;
-        let has = |fit: &Fit, id: &str| {
-            fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class().id() == id)
-        };
+        let is_of = |own: &Candidate, id: &str| own.counts() && own.evidence_class().id() == id;
+        let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(own, id));
         let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
         for &id in classes.iter().filter(|id| !has(base, id)) {
             let Some(from) = self.weighed.iter().find(|w| has(w.fit, id)) else { continue };
             let parts = from.fit.hypothesis.parts(&data.facts, &from.fit.point.globals);
             let members = from.fit.hypothesis.candidates.iter().zip(parts);
-            let own = members.filter(|(own, _)| own.counts() && own.evidence_class().id() == id);
+            let own = members.filter(|(own, _)| is_of(own, id));
             added.extend(own.map(|(own, part)| (*own, part.to_vec())));
         }
         if added.is_empty() {
@@ -192,7 +185,7 @@ impl<'a> Inclusion<'a> {
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
         let with = || self.weighed.iter().filter(|w| holds(w.fit, class));
         let best = with().next().map_or(0.0, |w| w.evidence);
-        let odds = |w: &Weighed<'_>| ((w.evidence - best) / TEMPERATURE).exp();
+        let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
         let total: f64 = with().map(odds).sum();
         let mut members: Vec<(Candidate, f64)> = Vec::new();
         for w in with() {

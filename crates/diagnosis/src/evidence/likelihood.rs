@@ -102,8 +102,10 @@ impl Likelihood {
                 bins.push(Bins::new(times, data.facts.frequency, interval));
             }
         }
-        let worth = (0..BANDS).map(|band| worth(&bins, closest, band)).collect();
-        Self { bins, worth, noise: noise * noise }
+        let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };
+        let powers = own.powers(closest);
+        own.worth = (0..BANDS).map(|band| worth(&own.bins, &powers, band)).collect();
+        own
     }
 
     /// Power of residuals by segment and band.
@@ -147,13 +149,13 @@ impl Likelihood {
 }
 
 /// Independent squares in a band of all segments: fewer than its bins where few segments hold most of the power, beyond
-/// the scatter that noise of one size has.
-fn worth(bins: &[Bins], closest: &[DVector<f64>], band: usize) -> f64 {
+/// the scatter that noise of one size has. `closest` is the power that the closest set leaves, by segment and band.
+fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize) -> f64 {
     let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
-    for (bins, residual) in bins.iter().zip(closest) {
+    for (bins, powers) in bins.iter().zip(closest) {
         let own = bins.counts.get(band).copied().unwrap_or_default();
         if own > 0.0 {
-            let power = bins.powers(residual).get(band).copied().unwrap_or_default();
+            let power = powers.get(band).copied().unwrap_or_default();
             all += power;
             square += power * power / own / (1.0 + 2.0 / (own * WORTH));
             count += own;

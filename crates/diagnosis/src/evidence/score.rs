@@ -13,7 +13,7 @@ pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
     let worth = samples / autocorrelation_time;
     let extra = further_starts(fit);
     let mean = (fit.squares / samples).max(f64::MIN_POSITIVE);
-    -0.5 * worth * mean.ln() - price(fit.globals() + extra, worth)
+    -0.5 * worth * mean.ln() - parameter_price(fit.globals() + extra, worth)
 }
 
 /// Start values that a hypothesis has beyond those of every one.
@@ -22,8 +22,8 @@ pub(crate) fn further_starts(fit: &Fit) -> usize {
     fit.point.starts.iter().map(|start| start.len().saturating_sub(common)).sum()
 }
 
-/// What parameters cost: (p/2)·ln(N/τ).
-fn price(parameters: usize, worth: f64) -> f64 {
+/// What parameters cost beside so many independent numbers: (p/2)·ln of these.
+pub(crate) fn parameter_price(parameters: usize, worth: f64) -> f64 {
     0.5 * parameters as f64 * worth.max(2.0).ln()
 }
 
@@ -31,7 +31,7 @@ fn price(parameters: usize, worth: f64) -> f64 {
 pub(crate) fn squares_at(score: f64, samples: usize, parameters: usize, autocorrelation_time: f64) -> f64 {
     let samples = samples as f64;
     let worth = samples / autocorrelation_time;
-    samples * (-2.0 * (score + price(parameters, worth)) / worth).exp()
+    samples * (-2.0 * (score + parameter_price(parameters, worth)) / worth).exp()
 }
 
 /// A decaying swing of 1000 samples, and the calibrated simulator fitted to it.

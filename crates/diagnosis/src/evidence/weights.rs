@@ -2,25 +2,20 @@
 
 use crate::data::segments::Data;
 use crate::evidence::likelihood::Likelihood;
-use crate::evidence::score::further_starts;
+use crate::evidence::score::{further_starts, parameter_price};
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::noise::statistics::chi_squared_above;
 use crate::search::archive::Archive;
 use rayon::prelude::*;
 
-/// Differences of log evidence are divided by this before they become probabilities. 1 takes the tempered
-/// evidence at its word; a training bank may teach another value.
-pub(crate) const TEMPERATURE: f64 = 1.0;
-
 /// Share of what recalibration leaves that is without a name, at which `unknown` is as likely a verdict as
 /// the named effects that explain the rest.
 ///
 /// In training banks nearly every set that leaves something behind is wrong, however little it is: the
 /// smaller this share, the better. But laws of the vocabulary are idealizations of what acts in a machine,
-/// and a set that explains all but a few hundredths of a gap is worth its names, with the confidence that
-/// [`crate::confidence`] gives it.
-pub(crate) const UNKNOWN_SHARE: f64 = 0.03;
+/// and a set that explains all but a few hundredths of a gap is worth its names.
+const UNKNOWN_SHARE: f64 = 0.03;
 
 /// How steeply the odds of `unknown` grow with that share: a factor e⁴ from one half of it to twice it.
 const UNKNOWN_STEEPNESS: f64 = 2.885_390_081_777_927;
@@ -73,7 +68,7 @@ impl<'a> Weighing<'a> {
     /// criterion's price of its parameters and that of its effects.
     pub(crate) fn evidence(&self, fit: &Fit) -> f64 {
         let parameters = fit.globals().saturating_sub(self.calibrated.globals()) + further_starts(fit);
-        let fitted = 0.5 * parameters as f64 * self.likelihood.worth().ln();
+        let fitted = parameter_price(parameters, self.likelihood.worth());
         let own = self.likelihood.log(&self.data.by_part(&fit.residuals));
         own - self.bare - fitted - price(self.data, fit, self.vocabulary)
     }
@@ -83,12 +78,17 @@ impl<'a> Weighing<'a> {
         let of = |fit: &'b Fit| Weighed { fit, evidence: self.evidence(fit), probability: 0.0 };
         let mut weighed: Vec<Weighed<'b>> = archive.fits.par_iter().map(of).collect();
         weighed.sort_by(|a, b| b.evidence.total_cmp(&a.evidence));
-        let best = weighed.first().map_or(0.0, |w| w.evidence);
-        let total: f64 = weighed.iter().map(|w| ((w.evidence - best) / TEMPERATURE).exp()).sum();
-        for w in &mut weighed {
-            w.probability = ((w.evidence - best) / TEMPERATURE).exp() / total;
-        }
+        share(&mut weighed);
         weighed
+    }
+}
+
+/// Gives sets, best first, their probabilities among each other.
+pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
+    let best = weighed.first().map_or(0.0, |w| w.evidence);
+    let total: f64 = weighed.iter().map(|w| (w.evidence - best).exp()).sum();
+    for w in weighed {
+        w.probability = (w.evidence - best).exp() / total;
     }
 }
 

@@ -52,12 +52,7 @@ pub(crate) fn alternatives(
         }
         top = better;
     }
-    let mut classes: Vec<EvidenceClass> = Vec::new();
-    for own in top.hypothesis.candidates.iter().filter(|own| own.counts()) {
-        if !classes.contains(&own.evidence_class()) {
-            classes.push(own.evidence_class());
-        }
-    }
+    let classes = EvidenceClass::among(&top.hypothesis.candidates);
     let known: &Archive = archive;
     let replaced: Vec<(Option<Fit>, Vec<Proposal>)> =
         classes.par_iter().map(|&class| without(data, &top, class, candidates, known)).collect();

@@ -118,13 +118,7 @@ fn headline(result: &DiagnosisResult) -> Verdict {
 }
 
 fn origin(result: &DiagnosisResult) -> Origin {
-    let mut origins: Vec<&str> = result.records.iter().map(|record| record.origin.as_str()).collect();
-    origins.sort_unstable();
-    origins.dedup();
-    match origins[..] {
-        [one] => verdict::origin(one),
-        _ => verdict::origin("unstated"),
-    }
+    verdict::common_origin(result.records.iter().map(|record| record.origin.as_str()))
 }
 
 fn warnings(result: &DiagnosisResult) -> Vec<String> {

@@ -118,13 +118,7 @@ fn headline(result: &RigsResult) -> Verdict {
 }
 
 fn origin(result: &RigsResult) -> Origin {
-    let mut origins: Vec<&str> = result.rigs.iter().map(|rig| rig.origin.as_str()).collect();
-    origins.sort_unstable();
-    origins.dedup();
-    match origins[..] {
-        [one] => verdict::origin(one),
-        _ => verdict::origin("unstated"),
-    }
+    verdict::common_origin(result.rigs.iter().map(|rig| rig.origin.as_str()))
 }
 
 fn warnings(result: &RigsResult) -> Vec<String> {

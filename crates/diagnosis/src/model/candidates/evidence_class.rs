@@ -48,6 +48,17 @@ impl EvidenceClass {
         }
     }
 
+    /// The classes of candidates that take a place in a set, each once, in the order in which they come.
+    pub(crate) fn among<'a>(candidates: impl IntoIterator<Item = &'a Candidate>) -> Vec<Self> {
+        let mut classes = Vec::new();
+        for own in candidates.into_iter().filter(|own| own.counts()) {
+            if !classes.contains(&own.evidence_class()) {
+                classes.push(own.evidence_class());
+            }
+        }
+        classes
+    }
+
     /// The class of an effect: what its candidate's file says, or, for an effect of the measuring chain that no fit
     /// follows, what its part of a gap budget says; none for an effect of the system that no fit follows.
     pub(crate) fn of(effect: Effect) -> Option<Self> {
