@@ -119,7 +119,7 @@ pub fn diagnose(
 
     let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
     candidates.retain(|candidate| settings.considers(candidate.id()));
-    let coarse = data.strided();
+    let coarse = data.averaged(data.spare_knots(&base.calibrated)).strided();
     let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
     let coarse_base = fit(
         &coarse,
@@ -143,6 +143,10 @@ pub fn diagnose(
     let (horizon, mut found) = explore(&coarse, &coarse_base, &candidates, &breadth, enough, is_whole);
     plain_family(&horizon.data, &horizon.calibrated, &candidates, &mut found);
     lap("search");
+    let found_best =
+        found.ranked(found.autocorrelation_time()).first().map_or(&horizon.calibrated, |best| *best);
+    let knots = data.joined(horizon.by).spare_knots(found_best);
+    let data = data.averaged(knots);
     let segments = Unjoined { data: &data, base: &base };
     let data = &data.joined(horizon.by);
     let base = &followed(data, &segments, &horizon)?;
