@@ -47,6 +47,11 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     asked
 }
 
+/// Whether an effect is one of a class.
+fn is_of(own: Candidate, class: &str) -> bool {
+    own.counts() && own.evidence_class().id() == class
+}
+
 /// Whether a set has an effect of a class.
 pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
     fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class() == class)
@@ -152,24 +157,28 @@ impl<'a> Inclusion<'a> {
         self.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
     }
 
-    /// The fit of that set with the classes that it lacks, each with the members and where these are in the best set that
-    /// has the class; none where it lacks nothing.
+    /// A fit of the effects of some classes, all of them, where no set is known that has these and no others: begun at the
+    /// best set that has most of them, without its other members. Where that lacks a class too, it gets the members from the
+    /// best set with the class.
     pub(crate) fn completed(&self, data: &Data, classes: &[&str]) -> Option<Fit> {
-        let base = self.within(classes)?.fit;
-        let is_of = |own: &Candidate, id: &str| own.counts() && own.evidence_class().id() == id;
-        let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(own, id));
+        let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(*own, id));
+        let count = |fit: &Fit| classes.iter().filter(|id| has(fit, id)).count();
+        if self.within(classes).is_some_and(|own| count(own.fit) == classes.len()) {
+            return None;
+        }
+        // The first of the best.
+        let base = self.weighed.iter().rev().max_by_key(|w| count(w.fit))?.fit;
         let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
-        for &id in classes.iter().filter(|id| !has(base, id)) {
+        for id in classes.iter().filter(|id| !has(base, id)) {
             let Some(from) = self.weighed.iter().find(|w| has(w.fit, id)) else { continue };
             let parts = from.fit.hypothesis.parts(&data.facts, &from.fit.point.globals);
             let members = from.fit.hypothesis.candidates.iter().zip(parts);
-            let own = members.filter(|(own, _)| is_of(own, id));
+            let own = members.filter(|(own, _)| is_of(**own, id));
             added.extend(own.map(|(own, part)| (*own, part.to_vec())));
         }
-        if added.is_empty() {
-            return None;
-        }
-        let begun = proposal(data, base, &[], &added);
+        let is_other = |own: &&Candidate| own.counts() && !classes.contains(&own.evidence_class().id());
+        let others: Vec<Candidate> = base.hypothesis.candidates.iter().filter(is_other).copied().collect();
+        let begun = proposal(data, base, &others, &added);
         let ended = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
         (!vanished(data, &ended)).then_some(ended)
     }
