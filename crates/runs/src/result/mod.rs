@@ -44,6 +44,7 @@ pub use trials::{
     TrialsResult, UnknownStudy,
 };
 
+use record::{Clock, Record, Source, Statements};
 use serde::{Deserialize, Deserializer, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
@@ -154,6 +155,40 @@ pub struct DataSummary {
     /// How the file was read; empty in results of earlier versions.
     #[serde(default)]
     pub reading: record::Reading,
+}
+
+impl DataSummary {
+    /// The summary of a record file under the clock in force and the one that is believed. What `stated` leaves open, the
+    /// file answers.
+    #[must_use]
+    pub fn new(
+        record: &Record,
+        source: &Source,
+        clock: &Clock,
+        believed: &Clock,
+        stated: Statements,
+    ) -> Self {
+        let statements = stated.or(&source.statements);
+        let mut findings = source.findings.clone();
+        findings.extend(statements.contradictions(record.len(), clock));
+        Self {
+            path: source.path.clone(),
+            digest: source.digest.clone(),
+            origin: statements.origin.unwrap_or_default().name().to_owned(),
+            samples: record.len(),
+            clock: clock.kind.name().to_owned(),
+            clock_reason: clock.reason.clone(),
+            believed_clock: believed.kind.name().to_owned(),
+            believed_clock_reason: believed.reason.clone(),
+            sample_period_s: 1.0 / clock.sample_rate_hz,
+            sample_rate_hz: clock.sample_rate_hz,
+            sample_rate_std_error_hz: clock.sample_rate_std_error_hz,
+            resolution: record.lattice().map(|lattice| lattice.step),
+            unit: record.unit().to_owned(),
+            findings,
+            reading: source.reading.clone(),
+        }
+    }
 }
 
 /// The envelope that every method was given.
