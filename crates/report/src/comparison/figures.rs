@@ -2,7 +2,7 @@
 
 use runs::result::{EnvelopeRow, MethodRow};
 
-use super::estimate;
+use super::parts::estimate;
 use crate::figures::{Figure, csv, figure, number, oracle, time_axis};
 use crate::format;
 use crate::parse::Comparison;

@@ -2,8 +2,8 @@
 
 use runs::result::{ComparisonResult, MethodEstimate, MethodRow};
 
+use super::parts::{WordTable, estimate, estimates};
 use super::verdict::listed;
-use super::{WordTable, estimate, estimates};
 use crate::format::{count, duration, fixed, percent, significant};
 use crate::tables::whole;
 use crate::verdict::in_a_sentence;

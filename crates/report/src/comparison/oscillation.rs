@@ -3,7 +3,7 @@
 
 use runs::result::ComparisonResult;
 
-use super::WordTable;
+use super::parts::WordTable;
 use super::verdict::passed;
 use crate::format::{
     count, duration, exact, fixed, interval, percent, quantity, significant, with_uncertainty,

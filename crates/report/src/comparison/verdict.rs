@@ -2,7 +2,7 @@
 
 use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
 
-use super::{estimate, estimates};
+use super::parts::{estimate, estimates};
 use crate::format;
 use crate::verdict::{Tone, Verdict, in_a_sentence};
 

@@ -2,8 +2,8 @@
 
 use runs::result::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
 
-use super::scored;
 use super::scores::error;
+use super::study::scored;
 use crate::figures::{Figure, csv, figure, number, time_axis};
 use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 

@@ -2,8 +2,9 @@
 
 use runs::result::{PredictionResult, ProblemOutcome, ProblemRow};
 
+use super::scores;
 use super::scores::{READING, ScoreTable};
-use super::{facts, headline, held_out, laws, origin, scores};
+use super::study::{facts, headline, held_out, laws, origin};
 use crate::comparison::markdown::{escape, grid, list};
 use crate::verdict;
 

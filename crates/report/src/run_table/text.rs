@@ -3,7 +3,7 @@
 use runs::result::{RunTable, RunTableRow};
 
 use super::cells::{self, setting};
-use super::headline;
+use super::headline::{READING, headline};
 use crate::comparison::markdown::{escape, grid};
 use crate::figures::number;
 
@@ -83,7 +83,7 @@ pub fn markdown(table: &RunTable) -> String {
         format!("# {}", escape(name)),
         format!("**{}.** {}", verdict.label, escape(&verdict.sentence)),
         grid(&titles, rows),
-        escape(super::READING),
+        escape(READING),
     ];
     blocks.join("\n\n") + "\n"
 }

@@ -2,8 +2,8 @@
 
 use runs::result::{ClassScores, InclusionRow, Proportion, TrialsResult};
 
+use super::grid::{Grid, GridCell, GridRow, Section};
 use super::grids::{plain, share};
-use super::{Grid, GridCell, GridRow, Section};
 use crate::format::fixed;
 
 /// A score of one group.

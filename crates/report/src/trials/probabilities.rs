@@ -3,8 +3,8 @@
 use runs::result::{Reliability, TrialsResult};
 
 use super::figures;
+use super::grid::{Grid, GridRow, Section};
 use super::grids::{plain, size};
-use super::{Grid, GridRow, Section};
 use crate::format::{count, fixed, interval};
 
 pub(super) fn section(result: &TrialsResult) -> Section {

@@ -1,6 +1,6 @@
 //! One answer beside one truth.
 
-use super::classes::class_of;
+use super::class::class_of;
 use crate::hidden::{Asked, Bank, Hidden};
 use dynamics::{Class, Effect};
 use runs::result::DiagnosisResult;

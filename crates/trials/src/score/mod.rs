@@ -2,6 +2,7 @@
 
 pub(crate) mod accuracy;
 mod bars;
+mod class;
 mod classes;
 #[cfg(test)]
 mod classes_tests;

@@ -44,19 +44,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         },
         effects,
         gap: gap(found),
-        place: GapMaps {
-            budget: BudgetShares {
-                dissipative: found.place.budget.dissipative,
-                conservative: found.place.budget.conservative,
-                time_dependent: found.place.budget.time_dependent,
-                sensor: found.place.budget.sensor,
-                clock: found.place.budget.clock,
-            },
-            time: cells(&found.place.time),
-            amplitude: cells(&found.place.amplitude),
-            phase: cells(&found.place.phase),
-            frequency: cells(&found.place.frequency),
-        },
+        place: place(found),
         measuring_chain: ChainSummary {
             clock: chain.clock.to_owned(),
             clock_reason: first.map(|given| given.row.clock_reason.clone()).unwrap_or_default(),
@@ -129,6 +117,23 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     };
     result.verdict.summary = report::verdict_sentence(&result);
     result
+}
+
+/// Where the gap lies.
+fn place(found: &Diagnosis) -> GapMaps {
+    GapMaps {
+        budget: BudgetShares {
+            dissipative: found.place.budget.dissipative,
+            conservative: found.place.budget.conservative,
+            time_dependent: found.place.budget.time_dependent,
+            sensor: found.place.budget.sensor,
+            clock: found.place.budget.clock,
+        },
+        time: cells(&found.place.time),
+        amplitude: cells(&found.place.amplitude),
+        phase: cells(&found.place.phase),
+        frequency: cells(&found.place.frequency),
+    }
 }
 
 fn owned(ids: &[&'static str]) -> Vec<String> {

@@ -56,6 +56,14 @@ pub(crate) struct SweepArguments {
     pub(crate) output: Output,
 }
 
+impl SweepArguments {
+    /// As many threads as asked for, or one for each core.
+    pub(super) fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.run.threads.map_or_else(cores, usize::from)
+    }
+}
+
 /// Who runs the shares.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Launcher {

@@ -56,7 +56,7 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
     let folder = SweepFolder::open(folder.path());
     let configs: Vec<String> = planned.runs.iter().map(|run| run.config.clone()).collect();
     let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
-    let environment = Environment::new(super::threads(arguments), &digests.join(" "));
+    let environment = Environment::new(arguments.threads(), &digests.join(" "));
     let environment = serde_json::to_vec_pretty(&environment)
         .map_err(|error| TrainerError::System { what: "environment.json", problem: error.to_string() })?;
     let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];

@@ -52,7 +52,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         console::remark(&format!("sweep of {} in {path}, {} of them now", counted(all, "run"), jobs.len()));
     }
     let made = jobs.len();
-    execute::execute(&sweep, &jobs, threads(arguments), output, cancel)?;
+    execute::execute(&sweep, &jobs, arguments.threads(), output, cancel)?;
     let _saving = Saving::begin();
     let table = finish(&mut sweep)?;
     let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
@@ -75,12 +75,6 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     }
     let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
     Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
-}
-
-/// As many threads as asked for, or one for each core.
-fn threads(arguments: &SweepArguments) -> usize {
-    let cores = || std::thread::available_parallelism().map_or(1, usize::from);
-    arguments.run.threads.map_or_else(cores, usize::from)
 }
 
 fn is_missing(line: &SweepLine, failed_too: bool) -> bool {

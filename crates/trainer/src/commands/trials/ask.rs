@@ -1,7 +1,7 @@
 //! Asking the diagnosis: a process of its own for each group of cases, which gets that group's folder and nothing else.
 
 use super::arguments::TrialsArguments;
-use super::make::WITHOUT;
+use super::files::{self, WITHOUT};
 use super::open;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
@@ -29,7 +29,7 @@ pub(crate) fn ask(
     manifest: &TrialsManifest,
     cancel: &Cancel,
 ) -> Result<Option<BTreeMap<String, String>>, TrainerError> {
-    let is_missing = |id: &str, group: &str| !folder.path().join(open::answer_name(group, id)).exists();
+    let is_missing = |id: &str, group: &str| !folder.path().join(files::answer_name(group, id)).exists();
     let missing = manifest.cases.iter().filter(|line| is_missing(&line.id, &line.group));
     let mut groups: BTreeMap<&str, usize> = BTreeMap::new();
     for line in missing.clone() {
@@ -37,7 +37,7 @@ pub(crate) fn ask(
     }
     let missing_ids: Vec<&String> = missing.map(|line| &line.id).collect();
     let count = missing_ids.len();
-    let truths = folder.path().join(open::TRUTHS);
+    let truths = folder.path().join(files::TRUTHS);
     if count > 0 && truths.exists() {
         // What got no answer when it was asked gets none now.
         let known = open::failed(folder)?;
@@ -145,5 +145,5 @@ fn drained(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<
 /// Names of the answers that are there.
 fn names(answers: &Path) -> BTreeSet<std::ffi::OsString> {
     let entries = std::fs::read_dir(answers).into_iter().flatten().flatten();
-    entries.filter(|entry| entry.path().join(open::ANSWER).exists()).map(|entry| entry.file_name()).collect()
+    entries.filter(|entry| entry.path().join(files::ANSWER).exists()).map(|entry| entry.file_name()).collect()
 }

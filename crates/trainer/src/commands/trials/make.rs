@@ -2,27 +2,18 @@
 
 use super::arguments::TrialsArguments;
 use super::each::each;
-use super::{left_out, open};
+use super::files::{FULL, MANIFEST, WITHOUT, case_name, text};
 use crate::error::TrainerError;
 use crate::error::TrialsError;
 use crate::terminal::progress::Progress;
 use estimator::Cancel;
 use rayon::ThreadPool;
 use runs::RunFolder;
-use runs::result::{TRIALS_MANIFEST_SCHEMA, TrialsManifest, TrialsManifestLine};
+use runs::result::{LeftOutBank, TRIALS_MANIFEST_SCHEMA, TrialsManifest, TrialsManifestLine};
 use serde_json::json;
 use std::collections::BTreeMap;
 use trials::{Case, Hidden, TrialPlan};
 use truth::{Sealed, digest};
-
-/// Name of the manifest in the folder.
-pub(crate) const MANIFEST: &str = "manifest.json";
-
-/// The group of cases that the diagnosis considers every effect for.
-pub(crate) const FULL: &str = "full";
-
-/// Begins the name of the groups that it is told to leave an effect out for.
-pub(crate) const WITHOUT: &str = "without-";
 
 /// All cases: what was published of them, and their sealed truths, in the same order.
 pub(crate) struct Made {
@@ -76,7 +67,7 @@ fn write(folder: &RunFolder, case: &Case) -> Result<(TrialsManifestLine, Sealed<
     texts.push(("nominal.toml".to_owned(), &case.nominal));
     let mut files = BTreeMap::new();
     for (name, text) in texts {
-        folder.write_reproducible(&open::case_name(&group, &case.id, &name), text.as_bytes())?;
+        folder.write_reproducible(&case_name(&group, &case.id, &name), text.as_bytes())?;
         files.insert(name, digest(text));
     }
     let truth_digest = sealed.digest().to_owned();
@@ -88,7 +79,7 @@ pub(crate) fn read_manifest(folder: &RunFolder) -> Result<Option<TrialsManifest>
     if !folder.path().join(MANIFEST).exists() {
         return Ok(None);
     }
-    let text = open::text(folder, MANIFEST)?;
+    let text = text(folder, MANIFEST)?;
     serde_json::from_str(&text).map(Some).map_err(|error| TrialsError::Unreadable {
         file: folder.path().join(MANIFEST).display().to_string(),
         problem: error.to_string(),
@@ -129,4 +120,12 @@ fn compare(
         });
     }
     Ok(())
+}
+
+/// Banks that were asked for and not made, as the manifest has them.
+fn left_out(plan: &TrialPlan) -> Vec<LeftOutBank> {
+    plan.left_out_banks()
+        .iter()
+        .map(|left| LeftOutBank { bank: left.bank.name().to_owned(), reason: left.reason.clone() })
+        .collect()
 }

@@ -4,6 +4,7 @@ pub(crate) mod arguments;
 mod ask;
 mod baselines;
 mod each;
+mod files;
 mod make;
 mod open;
 mod summary;
@@ -21,7 +22,7 @@ use estimator::Cancel;
 use experiment::sweep::first_difference;
 use open::Opened;
 use rayon::ThreadPool;
-use runs::result::{LeftOutBank, TrialsManifest};
+use runs::result::TrialsManifest;
 use runs::{Disk, RunFolder, to_csv};
 use serde_json::json;
 use settings::Document;
@@ -54,10 +55,10 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
         return interrupted(&folder, "the diagnosis", &go_on(&folder));
     };
-    folder.write_json(open::FAILED, &failed)?;
+    folder.write_json(files::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
-        folder.write_reproducible(&open::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
+        folder.write_reproducible(&files::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
     }
     folder.record_event("opened", &json!({ "truths": made.sealed.len() }))?;
     finish(arguments, &folder, &made.manifest, &pool, &failed, cancel, start)
@@ -88,7 +89,7 @@ fn begin(
         }
         let folder = RunFolder::resume_on(&Disk::default(), path)?;
         let file = path.join("config.toml").display().to_string();
-        let begun = open::text(&folder, "config.toml")?;
+        let begun = files::text(&folder, "config.toml")?;
         let then = Document::parse(&file, &begun)?;
         let now = Document::parse("configuration", &config)?;
         // By value: where each was written stands in the comments, and may have changed.
@@ -139,7 +140,7 @@ fn finish(
         name: manifest.name.clone(),
         seed: manifest.seed,
         left_out: manifest.left_out.clone(),
-        gate: Gate::of(&Document::parse("config.toml", &open::text(folder, "config.toml")?)?)?,
+        gate: Gate::of(&Document::parse("config.toml", &files::text(folder, "config.toml")?)?)?,
         seconds: start.elapsed().as_secs_f64(),
     };
     let result = trials::score(&trials, &cases, &baselines);
@@ -153,12 +154,4 @@ fn finish(
     } else {
         Outcome::Done
     })
-}
-
-/// Banks that were asked for and not made, as the manifest has them.
-fn left_out(plan: &TrialPlan) -> Vec<LeftOutBank> {
-    plan.left_out_banks()
-        .iter()
-        .map(|left| LeftOutBank { bank: left.bank.name().to_owned(), reason: left.reason.clone() })
-        .collect()
 }

@@ -2,7 +2,7 @@
 
 use super::baselines::{DIAGNOSERS, Diagnoser};
 use super::each::each;
-use super::make::WITHOUT;
+use super::files::{FAILED, WITHOUT, answer_name, case_name, text, truth_name};
 use crate::diagnose;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
@@ -14,26 +14,6 @@ use runs::result::{DiagnosisResult, TrialsManifest, TrialsManifestLine};
 use std::collections::BTreeMap;
 use trials::{AnsweredCase, Baseline, Hidden, true_closure};
 use truth::{Sealed, digest};
-
-/// Folder of the truths.
-pub(crate) const TRUTHS: &str = "truth";
-/// The file of an answer.
-pub(crate) const ANSWER: &str = "diagnosis.json";
-
-pub(crate) fn truth_name(id: &str) -> String {
-    format!("{TRUTHS}/{id}.json")
-}
-
-pub(crate) fn case_name(group: &str, id: &str, file: &str) -> String {
-    format!("cases/{group}/{id}/{file}")
-}
-
-pub(crate) fn answer_name(group: &str, id: &str) -> String {
-    format!("answers/{group}/{id}/{ANSWER}")
-}
-
-/// The file of what was said of cases without an answer.
-pub(crate) const FAILED: &str = "failed.json";
 
 /// Why cases have no answer, by case, as the diagnosis said when it was asked; empty where that is not there.
 pub(crate) fn failed(folder: &RunFolder) -> Result<BTreeMap<String, String>, TrialsError> {
@@ -55,15 +35,6 @@ pub(crate) struct Opened {
 
 /// What each simpler diagnoser names in a case.
 type Named = Vec<Option<String>>;
-
-/// The text of a file of the trials.
-pub(crate) fn text(folder: &RunFolder, name: &str) -> Result<String, TrialsError> {
-    let path = folder.path().join(name);
-    std::fs::read_to_string(&path).map_err(|error| TrialsError::Unreadable {
-        file: path.display().to_string(),
-        problem: error.to_string(),
-    })
-}
 
 /// Opens every truth and reads every answer; `None` where interrupted. `failed` says why an answer is missing, where
 /// that is known.
