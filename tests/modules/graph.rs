@@ -56,9 +56,7 @@ impl Graph {
         let together = |one: &Name, other: &Name| reach[one].contains(other) && reach[other].contains(one);
         let groups: BTreeSet<Vec<String>> = (self.modules.keys())
             .filter(|module| reach[module].contains(*module))
-            .map(|one| {
-                self.modules.keys().filter(|other| together(one, other)).map(|name| shown(name)).collect()
-            })
+            .map(|one| self.modules.keys().filter(|other| together(one, other)).map(shown).collect())
             .collect();
         groups.into_iter().collect()
     }

@@ -9,7 +9,7 @@ use experiment::{
 };
 use oracle::DecayFit;
 use record::{Clock, ClockChoice, read_file};
-use runs::result::{DataSummary, LawSummary};
+use results::{DataSummary, LawSummary};
 use seed::Seed;
 use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
 use std::path::Path;

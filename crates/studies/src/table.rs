@@ -6,7 +6,7 @@ use crate::tally::{Placed, adjust, outcome, score};
 use crate::trial::best_exponential;
 use crate::verdict::verdict;
 use experiment::PredictionStudy;
-use runs::result::{
+use results::{
     ExponentialScores, NOT_BEGUN, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow,
     ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
 };

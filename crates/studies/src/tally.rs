@@ -3,7 +3,7 @@
 use crate::problem::Ready;
 use crate::split::SplitKind;
 use crate::trial::{Failure, Trial, held_out};
-use runs::result::{Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PairedComparison, PredictionOutcome};
+use results::{Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PairedComparison, PredictionOutcome};
 use scoring::HeldOutPeak;
 use std::collections::BTreeMap;
 
@@ -300,7 +300,7 @@ pub(crate) fn form(law: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{Units, adjust, compare, form};
-    use runs::result::PairedComparison;
+    use results::PairedComparison;
     use scoring::HeldOutPeak;
     use std::collections::BTreeMap;
 

@@ -1,7 +1,7 @@
 //! What the scores of a problem come to, in sentences that claim no more than they carry.
 
 use report::format;
-use runs::result::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+use results::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 /// Names in one list, beyond which the rest is counted.
 const MOST_NAMES: usize = 6;

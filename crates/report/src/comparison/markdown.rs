@@ -1,6 +1,6 @@
 //! The tables of a comparison as GitHub Markdown.
 
-use runs::result::ComparisonResult;
+use results::ComparisonResult;
 
 use super::methods::{self, MethodTable, MethodView};
 use super::parts::WordTable;

@@ -14,7 +14,7 @@ mod sample;
 mod tests;
 
 use askama::Template;
-use runs::result::Caution;
+use results::Caution;
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};

@@ -1,7 +1,7 @@
 //! What certified least squares says of the oscillation, and what follows from that: the paper's
 //! Table 3 and the derived parameters.
 
-use runs::result::ComparisonResult;
+use results::ComparisonResult;
 
 use super::parts::WordTable;
 use super::verdict::passed;

@@ -1,6 +1,6 @@
 //! What the sections of the page on a comparison share.
 
-use runs::result::{ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
 
 /// A table of three columns: what a row is about, and two things said of it.
 pub(super) struct WordTable {

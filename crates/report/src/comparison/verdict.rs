@@ -1,6 +1,6 @@
 //! What a comparison came to, in a sentence or two.
 
-use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodOutcome, MethodRow};
 
 use super::parts::{estimate, estimates};
 use crate::format;

@@ -1,6 +1,6 @@
 //! The plots of a problem.
 
-use runs::result::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
+use results::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
 
 use super::scores::error;
 use super::study::scored;

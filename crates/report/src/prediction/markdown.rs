@@ -1,6 +1,6 @@
 //! The tables of a study of held-out prediction as GitHub Markdown.
 
-use runs::result::{PredictionResult, ProblemOutcome, ProblemRow};
+use results::{PredictionResult, ProblemOutcome, ProblemRow};
 
 use super::scores;
 use super::scores::{READING, ScoreTable};

@@ -11,7 +11,7 @@ mod sample;
 mod tests;
 
 use askama::Template;
-use runs::result::{PredictionResult, ProblemOutcome, ProblemRow};
+use results::{PredictionResult, ProblemOutcome, ProblemRow};
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};

@@ -1,6 +1,6 @@
 //! The table of a problem: a row for each method.
 
-use runs::result::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+use results::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::whole;

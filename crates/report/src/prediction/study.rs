@@ -3,7 +3,7 @@
 use crate::format;
 use crate::tables::{Fact, fact, whole};
 use crate::verdict::{self, Origin, Tone, Verdict};
-use runs::result::{
+use results::{
     MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
     ProblemStudy, SplitSummary,
 };

@@ -2,7 +2,7 @@
 
 use crate::format::count;
 use crate::verdict::{Tone, Verdict};
-use runs::result::RunTable;
+use results::RunTable;
 
 /// How to read the table.
 pub(super) const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \

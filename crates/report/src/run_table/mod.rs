@@ -8,7 +8,7 @@ mod tests;
 mod text;
 
 use askama::Template;
-use runs::result::{RunState, RunTable, SweepAxis};
+use results::{RunState, RunTable, SweepAxis};
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};

@@ -1,6 +1,6 @@
 //! The table of runs as CSV, as Markdown, and as cells for a terminal.
 
-use runs::result::{RunTable, RunTableRow};
+use results::{RunTable, RunTableRow};
 
 use super::cells::{self, setting};
 use super::headline::{READING, headline};

@@ -1,6 +1,6 @@
 //! Scores by effect and by class where several effects act.
 
-use runs::result::{ClassScores, InclusionRow, Proportion, TrialsResult};
+use results::{ClassScores, InclusionRow, Proportion, TrialsResult};
 
 use super::grid::{Grid, GridCell, GridRow, Section};
 use super::grids::{plain, share};

@@ -1,6 +1,6 @@
 //! The tables of the page on trials.
 
-use runs::result::{Confusion, Proportion, SizeRow, TrialsResult};
+use results::{Confusion, Proportion, SizeRow, TrialsResult};
 
 use super::grid::{Grid, GridCell, GridRow, Section, percent, percents};
 use crate::format::{count, fixed, interval, quantity, significant};

@@ -12,7 +12,7 @@ pub use classes::class_rows;
 use grid::{Section, percent, percents};
 
 use askama::Template;
-use runs::result::{BarRow, FailureRow, TrialsResult};
+use results::{BarRow, FailureRow, TrialsResult};
 
 use crate::format::{count, fixed, interval, quantity, significant};
 use crate::frame::{Frame, finish};

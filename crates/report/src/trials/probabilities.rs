@@ -1,6 +1,6 @@
 //! Probabilities held against what was so.
 
-use runs::result::{Reliability, TrialsResult};
+use results::{Reliability, TrialsResult};
 
 use super::figures;
 use super::grid::{Grid, GridRow, Section};

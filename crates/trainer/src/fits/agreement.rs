@@ -1,7 +1,7 @@
 //! Whether pipelines and clocks agree on a record, in one sentence.
 
 use report::format;
-use runs::result::{DataSummary, PipelineOutcome, PipelineRow};
+use results::{DataSummary, PipelineOutcome, PipelineRow};
 
 /// Distance between two answers, in standard errors of their difference, that is no chance.
 const PLAIN: f64 = 3.0;

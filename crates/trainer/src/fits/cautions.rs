@@ -3,7 +3,7 @@
 use crate::fits::input::Input;
 use oracle::curvature;
 use report::format;
-use runs::result::{Caution, Derived, EnvelopeSummary, PipelineOutcome, PipelineRow};
+use results::{Caution, Derived, EnvelopeSummary, PipelineOutcome, PipelineRow};
 
 /// A bend or a correlation larger than chance would make it, in standard errors.
 const PLAIN: f64 = 3.0;

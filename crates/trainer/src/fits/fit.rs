@@ -7,7 +7,7 @@ use crate::folders::resume::Ledger;
 use crate::terminal::progress::Progress;
 use envelope::Envelope;
 use estimator::{Estimate, Reached};
-use runs::result::{SeedRow, TraceRow};
+use results::{SeedRow, TraceRow};
 use serde::{Deserialize, Serialize};
 
 /// One seed's fit.

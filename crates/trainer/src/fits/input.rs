@@ -6,7 +6,7 @@ use estimator::Uncertainty;
 use experiment::{DataSettings, Experiment, Pipeline};
 use oracle::DecayFit;
 use record::{Clock, ClockChoice, Record, RecordError, Source, read_file};
-use runs::result::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
+use results::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
 use std::path::Path;
 
 /// The record, its clock and its envelope, with the oracle's answer.

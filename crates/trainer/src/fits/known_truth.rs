@@ -9,7 +9,7 @@ use dynamics::reference::{Tolerance, simulate};
 use envelope::{Envelope, RatioDefinition, RecommendedPipeline};
 use oracle::decay_rate;
 use record::{Clock, ClockChoice, Quantity, Record};
-use runs::result::TruthComparison;
+use results::TruthComparison;
 use serde::Deserialize;
 use settings::{Default, Field, Kind, Resolved, Section};
 use simulator::Plan;

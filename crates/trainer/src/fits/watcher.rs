@@ -4,7 +4,7 @@ use crate::error::TrainerError;
 use crate::folders::resume::{Ledger, Resumed};
 use crate::terminal::progress::Progress;
 use estimator::{Checkpoints, Observer, Step};
-use runs::result::TraceRow;
+use results::TraceRow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 

@@ -2,7 +2,7 @@
 
 use crate::error::TableError;
 use experiment::sweep::differing_keys;
-use runs::result::{RunTable, RunTableRow, SweepAxis};
+use results::{RunTable, RunTableRow, SweepAxis};
 use serde_json::Value;
 use settings::Document;
 use std::cmp::Ordering;
@@ -93,7 +93,7 @@ fn compare(one: &Value, other: &Value) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::{Entry, build, sort};
-    use runs::result::{RunState, RunTable, RunTableRow};
+    use results::{RunState, RunTable, RunTableRow};
     use settings::Document;
 
     fn entry(run: &str, config: &str, error: Option<f64>) -> Entry {

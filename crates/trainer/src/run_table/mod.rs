@@ -7,7 +7,7 @@ use crate::terminal::console;
 use crate::terminal::table::table as aligned;
 use record::counted;
 use report::run_table_text;
-use runs::result::RunTable;
+use results::RunTable;
 
 /// Rows that a terminal is shown; files and `--json` have all.
 const MOST_LINES: usize = 100;

@@ -1,7 +1,7 @@
 //! The table of a sweep: what became of each run of the frozen list.
 
 use crate::run_table::build::{Entry, build};
-use runs::result::{RunState, RunTable, RunTableRow, SweepLine, SweepManifest, SweepState};
+use results::{RunState, RunTable, RunTableRow, SweepLine, SweepManifest, SweepState};
 use runs::{SweepFolder, read_run};
 use settings::Document;
 
@@ -65,7 +65,7 @@ pub(crate) fn label(manifest: &SweepManifest, line: &SweepLine) -> String {
 #[cfg(test)]
 mod tests {
     use super::label;
-    use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepState};
+    use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepState};
 
     #[test]
     fn a_label_is_a_file_name_that_tells_runs_apart() {

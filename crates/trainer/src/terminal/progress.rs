@@ -4,7 +4,7 @@ use crate::terminal::console;
 use crate::terminal::table::two_digits;
 use estimator::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use runs::result::SeedRow;
+use results::SeedRow;
 use std::fmt::Display;
 use std::io::IsTerminal;
 

@@ -5,7 +5,7 @@ use super::judgment::{Judgment, Said};
 use super::reliability::Statements;
 use super::statistics::{proportion, quantiles};
 use crate::hidden::{Asked, Bank, HiddenEffect};
-use runs::result::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
+use results::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
 
 /// Ranges of sizes, × noise, whose recall is stated; the last has no end.
 const FLOORS: [f64; 5] = [1.0, 4.0, 10.0, 30.0, f64::INFINITY];

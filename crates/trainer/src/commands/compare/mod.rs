@@ -13,7 +13,7 @@ use crate::run_table::{
 use crate::terminal::console;
 use arguments::{CompareArguments, Format};
 use report::{RunTexts, render_run_table, run_table_csv, run_table_markdown};
-use runs::result::RunTable;
+use results::RunTable;
 use runs::{RunFolder, SweepFolder, has_run_files, list_runs, read_run};
 use std::path::{Path, PathBuf};
 

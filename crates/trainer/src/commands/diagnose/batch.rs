@@ -10,8 +10,8 @@ use crate::terminal::progress::Progress;
 use crate::terminal::table::table;
 use rayon::prelude::*;
 use record::counted;
+use results::{BatchResult, FailedCase, RESULT_SCHEMA};
 use runs::RunFolder;
-use runs::result::{BatchResult, FailedCase, RESULT_SCHEMA};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -4,7 +4,7 @@ use super::arguments::DiagnoseArguments;
 use super::{Question, nominal};
 use crate::error::{KeptError, TrainerError};
 use record::file_digest;
-use runs::result::DiagnosisResult;
+use results::DiagnosisResult;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};

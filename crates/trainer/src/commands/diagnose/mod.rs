@@ -23,7 +23,7 @@ use export::Repaired;
 use read::Given;
 use record::Quantity;
 use result::{Beside, result, series_rows};
-use runs::result::DiagnosisResult;
+use results::DiagnosisResult;
 use runs::{Disk, RunFolder, default_root, to_csv};
 use seed::Seed;
 use serde_json::{Value, json};

@@ -9,7 +9,7 @@ use experiment::StatedNominal;
 use record::{
     Clock, ClockChoice, CsvColumns, Fault, Format, Quantity, ReadOptions, Record, Statements, Unit,
 };
-use runs::result::RecordRow;
+use results::RecordRow;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use serde::de::value::Error;
@@ -45,7 +45,7 @@ pub(crate) fn read(path: &Path, reading: &Reading, stated: &StatedNominal) -> Re
     let clock_of = |choice: ClockChoice| Clock::new(&record, choice).map_err(fault);
     let (clock, believed) = (clock_of(choice)?, clock_of(ClockChoice::Auto)?);
     let stated = Statements { origin: reading.origin.as_deref().and_then(word), ..Statements::default() };
-    let summary = runs::result::DataSummary::new(&record, &source, &clock, &believed, stated);
+    let summary = results::DataSummary::new(&record, &source, &clock, &believed, stated);
     let (first, last) = (clock.times_s.first(), clock.times_s.last());
     Ok(Given {
         observations: Observations::new(&record, &clock),

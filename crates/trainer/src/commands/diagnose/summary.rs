@@ -4,7 +4,7 @@ use crate::terminal::table::table;
 use report::format::{
     self, UNDETERMINED, estimate, interval, quantity, share_with_interval, significant, unit,
 };
-use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, MapCell, WithInterval};
+use results::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, MapCell, VerdictStatus, WithInterval};
 use std::path::Path;
 
 /// The answer as a person wants to read it.
@@ -27,13 +27,13 @@ pub(super) fn summary(result: &DiagnosisResult, folder: &Path) -> String {
 }
 
 fn verdict(result: &DiagnosisResult) -> String {
-    let label = match result.verdict.status.as_str() {
-        "none" => "NOTHING IS MISSING",
-        "calibration" if report::is_calibrated_already(result) => "NOTHING IS MISSING",
-        "calibration" => "CALIBRATION",
-        "effect" if report::is_of_the_chain_only(result) => "NOTHING IS MISSING IN THE MOTION",
-        "effect" => "MISSING EFFECT",
-        _ => "UNKNOWN",
+    let label = match result.verdict.status {
+        VerdictStatus::None => "NOTHING IS MISSING",
+        VerdictStatus::Calibration if report::is_calibrated_already(result) => "NOTHING IS MISSING",
+        VerdictStatus::Calibration => "CALIBRATION",
+        VerdictStatus::Effect if report::is_of_the_chain_only(result) => "NOTHING IS MISSING IN THE MOTION",
+        VerdictStatus::Effect => "MISSING EFFECT",
+        VerdictStatus::Unknown => "UNKNOWN",
     };
     format!("{label}\n{}", result.verdict.summary)
 }
@@ -75,7 +75,7 @@ fn gap(result: &DiagnosisResult) -> String {
     };
     let closed = |of: &WithInterval| format!("closes {}", share_with_interval(of));
     let same = gap.repaired == gap.recalibrated;
-    let nothing = result.verdict.status == "none";
+    let nothing = result.verdict.status == VerdictStatus::None;
     let [low, high] = gap.closure.interval_95;
     let mut rows = vec![
         row("simulator as given", gap.nominal, String::new()),

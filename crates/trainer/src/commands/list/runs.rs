@@ -7,7 +7,7 @@ use crate::run_table::RED;
 use crate::terminal::console;
 use crate::terminal::table::{table, two_digits};
 use record::counted;
-use runs::result::{RunState, RunTableRow};
+use results::{RunState, RunTableRow};
 use runs::{KeptRun, SweepFolder, default_root, list_runs as read_runs};
 use serde_json::{Value, json};
 use std::path::Path;

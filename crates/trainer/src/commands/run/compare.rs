@@ -16,7 +16,7 @@ use crate::terminal::progress::Progress;
 use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
-use runs::result::{
+use results::{
     ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN, RESULT_SCHEMA, SeedRow,
 };
 use runs::to_csv;

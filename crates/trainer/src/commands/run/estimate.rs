@@ -13,7 +13,7 @@ use crate::outcome::Outcome;
 use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use rayon::prelude::*;
-use runs::result::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
+use results::{EstimateSummary, EstimationResult, RESULT_SCHEMA, SeedRow};
 use runs::to_csv;
 use serde_json::json;
 

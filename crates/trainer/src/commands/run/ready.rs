@@ -8,8 +8,8 @@ use crate::options::Output;
 use estimator::Cancel;
 use experiment::Experiment;
 use rayon::ThreadPool;
+use results::SeedRow;
 use runs::RunFolder;
-use runs::result::SeedRow;
 use serde::Serialize;
 
 /// An experiment that is ready to be fitted.

@@ -2,7 +2,7 @@
 
 use crate::terminal::table::{table, two_digits};
 use report::format;
-use runs::result::{
+use results::{
     ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, TruthComparison,
 };

@@ -15,7 +15,7 @@ use crate::terminal::table::two_digits;
 use estimator::Cancel;
 use experiment::{CheckpointSettings, resolve};
 use registry::ESTIMATORS;
-use runs::result::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
+use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
 use runs::{Disk, RunError, RunFolder, read_run};
 use serde_json::json;
 use settings::Document;

@@ -9,7 +9,7 @@ use crate::terminal::console;
 use experiment::resolve;
 use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
 use registry::ESTIMATORS;
-use runs::result::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
+use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
 use runs::{Disk, RunError, RunFolder, SweepFolder, default_root};
 use serde_json::json;
 use settings::Document;

@@ -17,7 +17,7 @@ use experiment::sweep::Shard;
 use frozen::FrozenSweep;
 use record::counted;
 use report::{run_table_csv, run_table_markdown};
-use runs::result::{RunTable, SweepLine, SweepManifest, SweepState};
+use results::{RunTable, SweepLine, SweepManifest, SweepState};
 use serde::Serialize;
 use serde_json::json;
 

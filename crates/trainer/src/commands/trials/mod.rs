@@ -22,7 +22,7 @@ use estimator::Cancel;
 use experiment::sweep::first_difference;
 use open::Opened;
 use rayon::ThreadPool;
-use runs::result::TrialsManifest;
+use results::TrialsManifest;
 use runs::{Disk, RunFolder, to_csv};
 use serde_json::json;
 use settings::Document;

@@ -2,7 +2,7 @@
 
 use crate::terminal::table::table;
 use report::format::{fixed, interval, quantity, significant};
-use runs::result::{BarRow, Proportion, SizeRow, TrialsResult};
+use results::{BarRow, Proportion, SizeRow, TrialsResult};
 use std::path::Path;
 
 /// Effects listed among the worst.

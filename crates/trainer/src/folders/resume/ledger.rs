@@ -4,7 +4,7 @@ use crate::error::ResumeError;
 use crate::error::TrainerError;
 use crate::folders::resume::started;
 use experiment::CheckpointSettings;
-use runs::result::TraceRow;
+use results::TraceRow;
 use runs::{RunError, RunFolder, digest};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};

@@ -14,7 +14,7 @@ use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use crate::terminal::{console, interrupt};
 use rayon::prelude::*;
-use runs::result::{FailedCase, RIGS_SCHEMA, RigsResult};
+use results::{FailedCase, RIGS_SCHEMA, RigsResult};
 use runs::{Disk, RunFolder, default_root};
 use shared::Answered;
 use std::path::{Path, PathBuf};

@@ -1,7 +1,7 @@
 //! Classes of effects that several rigs of one build share: their probability over all rigs, and where coefficients agree.
 
 use report::{format, nameless_share};
-use runs::result::{
+use results::{
     DiagnosisResult, EffectRow, FarthestPair, ParameterRow, RigClassRow, RigRow, RigValueRow, SharedClassRow,
     SharedCoefficientRow, WithInterval,
 };
@@ -44,7 +44,7 @@ impl Answered {
             name: self.name.clone(),
             folder: self.folder.clone(),
             origin: origin.to_owned(),
-            status: self.result.verdict.status.clone(),
+            status: self.result.verdict.status,
             summary: self.result.verdict.summary.clone(),
             nameless_share: nameless_share(&self.result),
             classes: self
@@ -267,7 +267,7 @@ fn told(row: &SharedCoefficientRow) -> String {
 #[cfg(test)]
 mod tests {
     use super::{PRIOR, coefficient, combined, told};
-    use runs::result::ParameterRow;
+    use results::ParameterRow;
 
     fn value(value: f64, std_error: f64, unit: &str) -> ParameterRow {
         let half = super::HALF_WIDTH * std_error;

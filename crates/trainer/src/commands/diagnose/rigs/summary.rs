@@ -2,7 +2,7 @@
 
 use crate::terminal::table::table;
 use report::{class_title, format};
-use runs::result::{RigRow, RigsResult, SharedCoefficientRow};
+use results::{RigRow, RigsResult, SharedCoefficientRow};
 use std::path::Path;
 
 /// Classes below this probability over all rigs, and on each of them, are left to `rigs.json`.

@@ -18,7 +18,7 @@ use experiment::PredictionStudy;
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use report::prediction_markdown;
-use runs::result::{PredictionCsvRow, PredictionResult};
+use results::{PredictionCsvRow, PredictionResult};
 use runs::{RunFolder, to_csv};
 use serde_json::json;
 use std::time::Instant;

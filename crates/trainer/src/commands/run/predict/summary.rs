@@ -2,7 +2,7 @@
 
 use crate::terminal::table::table;
 use report::format;
-use runs::result::{
+use results::{
     Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PredictionOutcome, PredictionResult, PredictionRow,
     ProblemOutcome, ProblemRow, ProblemStudy,
 };

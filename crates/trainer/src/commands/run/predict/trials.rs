@@ -5,7 +5,7 @@ use crate::fits::method::{Method, Request};
 use crate::folders::resume::Ledger;
 use envelope::Envelope;
 use estimator::{Cancel, Reached, Silent};
-use runs::result::NOT_BEGUN;
+use results::NOT_BEGUN;
 use std::time::Instant;
 use studies::{Failure, Split, Trial, seen};
 

@@ -1,8 +1,7 @@
 //! A comparison of many methods on one envelope.
 
-use super::{
-    DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison, null_is_not_a_number,
-};
+use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison};
+use super::interval::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
 
 /// What a comparison found: the content of `result.json` with `task = "compare"`.

@@ -3,7 +3,7 @@
 //! A number that is not finite is `null` there and reads as no number.
 
 use super::calibration::Calibration;
-use super::null_is_not_a_number;
+use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -75,22 +75,58 @@ pub struct DiagnosisResult {
     pub surface: Vec<SurfaceCell>,
 }
 
-/// A number with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct WithInterval {
-    /// The estimate; not finite, in JSON `null`, where there is none.
-    #[serde(deserialize_with = "null_is_not_a_number")]
-    pub value: f64,
-    /// Lower and upper end of the 95 % interval; an end that is not finite is `null`.
-    #[serde(deserialize_with = "nulls_are_not_numbers")]
-    pub interval_95: [f64; 2],
+impl DiagnosisResult {
+    /// The row of [`Self::effects`] that a status has, where there is one.
+    #[must_use]
+    pub fn row(&self, status: VerdictStatus) -> Option<&EffectRow> {
+        self.effects.iter().find(|row| row.id == status.name())
+    }
+
+    /// The probability of that row, 0 where there is none.
+    #[must_use]
+    pub fn probability(&self, status: VerdictStatus) -> f64 {
+        self.row(status).map_or(0.0, |row| row.probability)
+    }
 }
 
 /// What a diagnosis comes to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum VerdictStatus {
+    /// Nothing beyond the noise.
+    None,
+    /// Coefficients were off; no effect is missing.
+    Calibration,
+    /// One or more effects of the vocabulary.
+    Effect,
+    /// A gap that no member of the vocabulary explains.
+    Unknown,
+}
+
+impl VerdictStatus {
+    /// The name as files write it; of all but [`Self::Effect`] also the id of a row of [`DiagnosisResult::effects`].
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Calibration => "calibration",
+            Self::Effect => "effect",
+            Self::Unknown => "unknown",
+        }
+    }
+
+    /// The status whose row of [`DiagnosisResult::effects`] has this id; `None` for the id of an effect.
+    #[must_use]
+    pub fn of_row(id: &str) -> Option<Self> {
+        [Self::None, Self::Calibration, Self::Unknown].into_iter().find(|status| status.name() == id)
+    }
+}
+
+/// The verdict of a diagnosis.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DiagnosisVerdict {
-    /// `none`, `calibration`, `effect` or `unknown`.
-    pub status: String,
+    /// What it comes to.
+    pub status: VerdictStatus,
     /// Ids of the effects, best first.
     pub effects: Vec<String>,
     /// Probability of this status and of these effects together.
@@ -471,25 +507,4 @@ pub struct SeriesRow {
     /// Torque (force) of the input, in the third of [`DiagnosisResult::units`]; `None` where the record has no input.
     #[serde(default)]
     pub input_torque: Option<f64>,
-}
-
-/// As [`null_is_not_a_number`], for two numbers.
-pub(super) fn nulls_are_not_numbers<'de, D: serde::Deserializer<'de>>(
-    deserializer: D,
-) -> Result<[f64; 2], D::Error> {
-    Ok(<[Option<f64>; 2]>::deserialize(deserializer)?.map(|end| end.unwrap_or(f64::NAN)))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::WithInterval;
-
-    #[test]
-    fn an_end_that_is_no_number_is_null_and_read_again_as_none() {
-        let open = WithInterval { value: 0.25, interval_95: [f64::NEG_INFINITY, 0.75] };
-        let text = serde_json::to_string(&open).unwrap();
-        assert_eq!(text, "{\"value\":0.25,\"interval_95\":[null,0.75]}");
-        let read: WithInterval = serde_json::from_str(&text).unwrap();
-        assert!(read.interval_95[0].is_nan() && read.interval_95[1] == 0.75 && read.value == 0.25);
-    }
 }

@@ -2,8 +2,7 @@
 //!
 //! A number that could not be had is not finite, and `null` in JSON.
 
-use super::diagnosis::{WithInterval, nulls_are_not_numbers};
-use super::null_is_not_a_number;
+use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

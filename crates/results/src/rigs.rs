@@ -1,8 +1,8 @@
 //! Several rigs of one build: the content of `rigs.json`.
 
 use super::batch::FailedCase;
-use super::diagnosis::{WithInterval, nulls_are_not_numbers};
-use super::null_is_not_a_number;
+use super::diagnosis::VerdictStatus;
+use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
 use serde::{Deserialize, Serialize};
 
 /// The `schema` field of a diagnosis of several rigs.
@@ -37,7 +37,7 @@ pub struct RigRow {
     /// `measured`, `simulated` or `unstated`; `unstated` too where its records differ.
     pub origin: String,
     /// Status of its own verdict.
-    pub status: String,
+    pub status: VerdictStatus,
     /// Its own verdict in words.
     pub summary: String,
     /// Share of its gap without a name; `None` where there is no gap to be divided.

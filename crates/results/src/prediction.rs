@@ -1,6 +1,7 @@
 //! Many methods scored on peaks that were held out, over several problems.
 
-use super::{DataSummary, null_is_not_a_number};
+use super::estimation::DataSummary;
+use super::interval::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
 
 /// What a study of held-out prediction found: the content of `result.json` with `task = "predict"`.

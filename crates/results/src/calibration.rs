@@ -1,6 +1,6 @@
 //! What a calibration moves: the nominal simulator's numbers before and after.
 
-use super::diagnosis::WithInterval;
+use super::interval::WithInterval;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

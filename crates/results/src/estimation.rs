@@ -1,51 +1,8 @@
-//! The schema of `result.json` and of the tables beside it: plain data, written by the trainer and
-//! read by the report.
-//!
-//! Field names are part of what the outside world may rely on; growing the schema is fine, renaming
-//! is not.
+//! What an estimation found, and the parts that several answers share.
 
-mod batch;
-mod calibration;
-mod comparison;
-mod diagnosis;
-mod prediction;
-mod rigs;
-mod simulation;
-mod sweep;
-mod trials;
-
-pub use batch::{BatchResult, FailedCase};
-pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
-pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
-pub use diagnosis::{
-    Backbone, BackbonePoint, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow, ClassRow,
-    DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,
-    Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
-    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
-};
-pub use prediction::{
-    Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
-    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
-    SplitSummary,
-};
-pub use rigs::{
-    FarthestPair, RIGS_SCHEMA, RigClassRow, RigRow, RigValueRow, RigsResult, SharedClassRow,
-    SharedCoefficientRow,
-};
-pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
-pub use sweep::{
-    RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,
-    SweepRecord, SweepState,
-};
-pub use trials::{
-    AreaRow, BankRow, BarRow, BaselineRow, ClassScores, ClosureStudy, Confusion, FailureRow, InclusionRow,
-    LeftOutBank, NuisanceRow, ProbabilityMap, Proportion, Quantiles, RecallRow, Reliability, ReliabilityBin,
-    SizeRow, TRIALS_MANIFEST_SCHEMA, TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine,
-    TrialsResult, UnknownStudy,
-};
-
+use crate::interval::null_is_not_a_number;
 use record::{Clock, Record, Source, Statements};
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
 pub const RESULT_SCHEMA: &str = "ringdown.result/1";
@@ -353,9 +310,4 @@ pub struct EnvelopeRow {
 /// The factor of a result that was written before there was one.
 fn one() -> f64 {
     1.0
-}
-
-/// JSON has no word for infinite or no number; it writes `null`.
-pub(crate) fn null_is_not_a_number<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
-    Ok(Option::<f64>::deserialize(deserializer)?.unwrap_or(f64::NAN))
 }
