@@ -3,7 +3,7 @@
 use super::case::{Case, Job};
 use super::draws::Draws;
 use super::error::TrialError;
-use super::hiding::{DRIVEN, LEFT_OUT, MEASURED, PAIRS, RELEASES, SINGLE};
+use super::hiding::{INPUTS, PAIRS, RELEASES, RESIDUALS, SINGLE, UNNAMED};
 use super::outside::{self, EngineCase, ResidualFile};
 use super::ranges::Ranges;
 use super::rigs::{self, RigCase};
@@ -230,11 +230,11 @@ impl TrialPlan {
             Bank::None | Bank::Calibration | Bank::Engine | Bank::Composite | Bank::Rigs => 1,
             Bank::Single => SINGLE.len(),
             Bank::Pair => PAIRS.len(),
-            Bank::LeftOut => LEFT_OUT.len(),
+            Bank::LeftOut => UNNAMED.len(),
             Bank::Foreign => foreign::KINDS.len(),
             Bank::Releases => RELEASES.len(),
-            Bank::Measured => MEASURED.len(),
-            Bank::Driven => DRIVEN.len(),
+            Bank::Measured => RESIDUALS.len(),
+            Bank::Driven => INPUTS.len(),
             Bank::Stressed => stressed::EFFECTS.len(),
         }
     }
