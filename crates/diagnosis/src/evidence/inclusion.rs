@@ -10,7 +10,7 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood};
-use crate::evidence::probability::probability;
+use crate::evidence::probability::{Doubt, probability};
 use crate::evidence::weights::{Weighed, price, share};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
@@ -120,15 +120,21 @@ impl<'a> Inclusion<'a> {
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
-    pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
+    pub(crate) fn classes(&self, witness: Option<&Witness>, doubt: Doubt, seed: &Seed) -> Vec<EffectClass> {
         let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         EvidenceClass::among(members)
             .into_iter()
-            .filter_map(|class| self.class(class, witness, seed))
+            .filter_map(|class| self.class(class, witness, doubt, seed))
             .collect()
     }
 
-    fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
+    fn class(
+        &self,
+        class: EvidenceClass,
+        witness: Option<&Witness>,
+        doubt: Doubt,
+        seed: &Seed,
+    ) -> Option<EffectClass> {
         let place = |with: bool| self.weighed.iter().position(|w| holds(w.fit, class) == with);
         let (with, without) = (place(true)?, place(false)?);
         let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
@@ -147,7 +153,7 @@ impl<'a> Inclusion<'a> {
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
         };
-        class_row.probability = probability(&class_row);
+        class_row.probability = probability(&class_row, doubt);
         Some(class_row)
     }
 
