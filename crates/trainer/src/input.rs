@@ -5,9 +5,10 @@ use envelope::Extraction;
 use estimator::Uncertainty;
 use experiment::{DataSettings, Experiment, Pipeline};
 use oracle::DecayFit;
-use record::{Clock, ClockChoice, Record, RecordError, Source, Statements, read_file};
+use record::{Clock, ClockChoice, Record, RecordError, Source, read_file};
 use runs::result::{DataSummary, EnvelopeRow, EnvelopeSummary, OracleSummary, PipelineOutcome, PipelineRow};
 use std::path::Path;
+use workflow::summarize;
 
 /// The record, its clock and its envelope, with the oracle's answer.
 pub(crate) struct Input {
@@ -161,36 +162,5 @@ fn absent(error: RecordError, data: &DataSettings) -> TrainerError {
             TrainerError::AbsentRecord { error, source_of: source.clone() }
         }
         _ => error.into(),
-    }
-}
-
-/// A record file, what it states of itself and what was found, under the clock in force and the one that is
-/// believed. What `stated` leaves open, the file answers.
-pub(crate) fn summarize(
-    record: &Record,
-    source: &Source,
-    clock: &Clock,
-    believed: &Clock,
-    stated: Statements,
-) -> DataSummary {
-    let statements = stated.or(&source.statements);
-    let mut findings = source.findings.clone();
-    findings.extend(statements.contradictions(record.len(), clock));
-    DataSummary {
-        path: source.path.clone(),
-        digest: source.digest.clone(),
-        origin: statements.origin.unwrap_or_default().name().to_owned(),
-        samples: record.len(),
-        clock: clock.kind.name().to_owned(),
-        clock_reason: clock.reason.clone(),
-        believed_clock: believed.kind.name().to_owned(),
-        believed_clock_reason: believed.reason.clone(),
-        sample_period_s: 1.0 / clock.sample_rate_hz,
-        sample_rate_hz: clock.sample_rate_hz,
-        sample_rate_std_error_hz: clock.sample_rate_std_error_hz,
-        resolution: record.lattice().map(|lattice| lattice.step),
-        unit: record.unit().to_owned(),
-        findings,
-        reading: source.reading.clone(),
     }
 }

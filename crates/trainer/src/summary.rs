@@ -7,6 +7,7 @@ use runs::result::{
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
+pub(crate) use workflow::guess::two_digits;
 
 /// A table with aligned columns, as wide as the terminal at most.
 pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
@@ -17,17 +18,6 @@ pub(crate) fn table(header: &[&str], rows: Vec<Vec<String>>) -> String {
     }
     table.add_rows(rows);
     table.lines().map(|line| line.trim_end().to_owned()).collect::<Vec<_>>().join("\n")
-}
-
-/// An error to two significant digits: with a power of ten only where that is shorter.
-pub(crate) fn two_digits(value: f64) -> String {
-    let exponent = value.abs().log10().floor();
-    if (-2.0..4.0).contains(&exponent) {
-        let decimals = (1.0 - exponent).max(0.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.1e}")
-    }
 }
 
 /// The result as a person wants to read it.

@@ -1,7 +1,6 @@
 //! What a folder holds of a diagnosis: for `--resume`, and for the answers of a batch.
 
 use super::arguments::DiagnoseArguments;
-use super::{Question, nominal};
 use crate::error::TrainerError;
 use record::file_digest;
 use runs::result::DiagnosisResult;
@@ -9,6 +8,7 @@ use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use thiserror::Error;
+use workflow::{Question, nominal};
 
 /// The event that says what was asked, before any other file of a diagnosis is there.
 pub(super) const ASKED: &str = "start";

@@ -1,7 +1,6 @@
 //! The problems of a study, read or drawn.
 
 use crate::error::TrainerError;
-use crate::input::summarize;
 use crate::predict::split::{Split, SplitKind, splits};
 use envelope::Envelope;
 use experiment::{
@@ -13,6 +12,7 @@ use runs::result::{DataSummary, LawSummary};
 use seed::Seed;
 use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
 use std::path::Path;
+use workflow::summarize;
 
 /// A problem that is ready to be studied.
 pub(crate) struct Ready {

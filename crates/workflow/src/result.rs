@@ -1,6 +1,6 @@
 //! A diagnosis in the form that files and scripts get.
 
-use super::read::Given;
+use crate::read::Given;
 use diagnosis::{
     Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
     backbone, surface,
@@ -163,7 +163,8 @@ fn class_row(class: &EffectClass) -> ClassRow {
 }
 
 /// The name of an id in words.
-pub(crate) fn title(id: &str) -> String {
+#[must_use]
+pub fn title(id: &str) -> String {
     match id {
         "none" => "nothing is missing".to_owned(),
         "calibration" => "only the coefficients were off".to_owned(),
@@ -355,7 +356,8 @@ fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCe
 }
 
 /// The rows of `series.csv`.
-pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
+#[must_use]
+pub fn series_rows(series: &Series) -> Vec<SeriesRow> {
     let mut rows = Vec::with_capacity(series.time_s.len());
     let mut segment = 0;
     let driven = series.input_torque.iter().any(|torque| *torque != 0.0);
