@@ -51,7 +51,7 @@ fn what_the_simulator_has_already_is_not_named() {
         .run()
         .unwrap();
     let named = |nominal: &Nominal| {
-        let found = diagnose(&[record.clone()], nominal, &DiagnosisOptions::default()).unwrap();
+        let found = diagnose(std::slice::from_ref(&record), nominal, &DiagnosisOptions::default()).unwrap();
         found.verdict().effects.clone()
     };
     assert_eq!(named(&arm()), ["coulomb_friction"]);
@@ -70,7 +70,7 @@ fn a_driven_displacement_needs_its_input_and_its_unit() {
     let simulation = Simulation::of(&drive).starting(0.0, 0.0).driven_by(chirp).noise(1e-5);
     let record = simulation.run().unwrap();
     assert_eq!(record.unit(), "m");
-    let found = diagnose(&[record.clone()], &drive, &DiagnosisOptions::default()).unwrap();
+    let found = diagnose(std::slice::from_ref(&record), &drive, &DiagnosisOptions::default()).unwrap();
     assert!(found.verdict().effects.is_empty(), "{:?}", found.verdict());
     // The guess from the record has the gain.
     let guessed = Nominal::guess(&record).unwrap().coefficients();
