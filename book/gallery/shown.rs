@@ -1,4 +1,4 @@
-//! How an effect shows: two panels from simulated records with and without it.
+//! The signature of an effect: two panels from simulated records with and without it.
 
 use crate::plot::Panel;
 use dynamics::{Class, Description, Kind};

@@ -10,7 +10,7 @@ use simulator::GenerationError;
 use thiserror::Error;
 use workflow::WorkflowError;
 
-/// Why a call gave no answer, with the message of the command line: what was found, where, and what to do.
+/// Reason why a call gave no answer, with the message of the command line: what was found, where, and what to do.
 ///
 /// Messages name options of the command line (`--unit deg`); the field of [`Reading`](crate::Reading) or
 /// [`Arrays`](crate::Arrays) has the same name.
@@ -39,7 +39,7 @@ pub enum Error {
     Envelope {
         /// Name of the record.
         record: String,
-        /// What is wrong.
+        /// The fault.
         source: EnvelopeError,
     },
     /// An envelope that least squares has no answer for.
@@ -47,7 +47,7 @@ pub enum Error {
     LeastSquares {
         /// Name of the record.
         record: String,
-        /// What is wrong.
+        /// The fault.
         source: OracleError,
     },
     /// A method that gives no estimate.
@@ -57,7 +57,7 @@ pub enum Error {
         method: String,
         /// The seed that it drew from.
         seed: u64,
-        /// What went wrong.
+        /// The fault.
         source: FitError,
     },
     /// An estimate that is not a finite number.

@@ -37,7 +37,7 @@ pub struct Method {
     pub id: &'static str,
     /// Name in words.
     pub title: &'static str,
-    /// What it does, in a sentence.
+    /// Description in a sentence.
     pub summary: &'static str,
 }
 
@@ -71,9 +71,9 @@ pub struct Estimate {
     pub least_squares: f64,
     /// |ζ − ζ of least squares| over that, in percent: how well the method solved the problem that it was given.
     pub error_percent: f64,
-    /// What the fit reached: `converged`, `budget_spent`, `stalled`, `diverged`.
+    /// State that the fit reached: `converged`, `budget_spent`, `stalled`, `diverged`.
     pub reached: &'static str,
-    /// Why it stopped there: a sentence; where it did not converge, with what to do.
+    /// Reason for stopping there: a sentence; where it did not converge, with what to do.
     pub because: String,
     /// Training steps taken.
     pub steps: u64,
@@ -126,6 +126,16 @@ pub fn estimate_with(
 ///
 /// # Errors
 /// As [`estimate`].
+///
+/// ```
+/// use ringdown_lab::{EstimateOptions, Nominal, Simulation, peaks};
+///
+/// let record = Simulation::of(&Nominal::swinging(2.0, 0.01)?).sampled(200.0, 10.0).run()?;
+/// let found = peaks(&record, &EstimateOptions::default())?;
+/// // Both half cycles count: four peaks a second, but for those at the ends.
+/// assert!((38..=41).contains(&found.envelope.len()));
+/// # Ok::<(), ringdown_lab::Error>(())
+/// ```
 pub fn peaks(record: &Record, options: &EstimateOptions) -> Result<Extraction, Error> {
     Ok(Prepared::new(record, &experiment("ols", &EstimateOptions { max_steps: None, ..options.clone() })?)?
         .extraction)

@@ -56,7 +56,8 @@ pub use export::Repaired;
 pub use runs::result;
 pub use workflow::Reading;
 
-/// What an estimator is given and gives: the contract that every estimator of the workspace fulfills.
+/// The contract that every estimator of the workspace fulfills: the peaks and the context that it is given, the estimate that it
+/// gives.
 pub mod contract {
     pub use envelope::{Envelope, Extraction};
     pub use estimator::{

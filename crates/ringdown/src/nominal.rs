@@ -50,6 +50,15 @@ impl Nominal {
     ///
     /// # Errors
     /// [`Error::Record`] where nothing moves or the record is shorter than a few swings.
+    ///
+    /// ```
+    /// use ringdown_lab::{Nominal, Simulation};
+    ///
+    /// let record = Simulation::of(&Nominal::swinging(3.5, 0.01)?).noise(1e-4).run()?;
+    /// let guessed = Nominal::guess(&record)?.coefficients();
+    /// assert!((guessed.stiffness.sqrt() / std::f64::consts::TAU - 3.5).abs() < 1e-3);
+    /// # Ok::<(), ringdown_lab::Error>(())
+    /// ```
     pub fn guess(record: &Record) -> Result<Self, Error> {
         let source = &record.loaded.source;
         let oscillator = identify::identify(&record.loaded.record, &record.clock()?).map_err(|problem| {
@@ -72,6 +81,18 @@ impl Nominal {
     ///
     /// # Errors
     /// As [`Nominal::read`].
+    ///
+    /// ```
+    /// use ringdown_lab::Nominal;
+    ///
+    /// let pendulum = "inertia = 0.02\ndamping = 0.001\nstiffness = 0.0\nrest_angle = 0.0\n\
+    ///     [[effects]]\nid = \"gravity\"\nparameters = { torque = 0.9, angle = 0.0 }\n";
+    /// assert_eq!(Nominal::parse("nominal.toml", pendulum)?.coefficients().inertia, 0.02);
+    /// // A message says where.
+    /// let error = Nominal::parse("nominal.toml", "inertia = 0.02\ndampin = 0.001\n").unwrap_err();
+    /// assert!(error.to_string().starts_with("nominal.toml:2:1: "), "{error}");
+    /// # Ok::<(), ringdown_lab::Error>(())
+    /// ```
     pub fn parse(name: &str, text: &str) -> Result<Self, Error> {
         Ok(Self { stated: nominal::parse(name, text)?, name: name.to_owned() })
     }
@@ -81,6 +102,14 @@ impl Nominal {
     ///
     /// # Errors
     /// [`Error::Config`] for an unknown effect or parameter, a value out of range, or an effect given twice.
+    ///
+    /// ```
+    /// use ringdown_lab::Nominal;
+    ///
+    /// let arm = Nominal::swinging(3.5, 0.01)?.with_effect("coulomb_friction", &[("torque", 0.8)])?;
+    /// assert!(arm.to_toml().contains("coulomb_friction"));
+    /// # Ok::<(), ringdown_lab::Error>(())
+    /// ```
     pub fn with_effect(self, id: &str, parameters: &[(&str, f64)]) -> Result<Self, Error> {
         let active = Active::named(id, parameters).map_err(config)?;
         let simulator = &self.stated.simulator;

@@ -16,14 +16,14 @@ pub struct Record {
     pub(crate) loaded: Loaded,
 }
 
-/// What arrays hold, for [`Record::new`]. The default is positions in radians, free motion.
+/// Description of arrays, for [`Record::new`]. The default is positions in radians, free motion.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Arrays {
     /// Name of the record in messages and results.
     pub name: String,
     /// Unit of the values.
     pub unit: Unit,
-    /// What the sensor observes; left open, what the unit says.
+    /// Observed quantity; left open, the unit tells it.
     pub quantity: Option<Quantity>,
     /// The input that drove the system, one number for each sample.
     pub input: Option<Vec<f64>>,
@@ -121,7 +121,7 @@ impl Record {
 
     /// Reads a record file: CSV with any separator, units and dates in its header, or a host log.
     ///
-    /// What the options leave open is found from the file and told by [`Record::reading`].
+    /// Everything that the options leave open is found from the file and told by [`Record::reading`].
     ///
     /// # Errors
     /// [`Error::Record`] with line, what was expected and the option to set.
@@ -153,7 +153,7 @@ impl Record {
         self.loaded.record.len()
     }
 
-    /// Whether there are no samples: never so.
+    /// True where there are no samples: never so.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.loaded.record.is_empty()
@@ -183,7 +183,7 @@ impl Record {
         self.loaded.record.unit()
     }
 
-    /// What the sensor observes.
+    /// Observed quantity.
     #[must_use]
     pub fn quantity(&self) -> Quantity {
         self.loaded.record.quantity()
@@ -195,7 +195,7 @@ impl Record {
         &self.loaded.source.path
     }
 
-    /// How the record was read, in one line.
+    /// Account of how the record was read, in one line.
     #[must_use]
     pub fn reading(&self) -> &str {
         &self.loaded.source.reading.sentence

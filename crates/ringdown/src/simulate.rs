@@ -86,7 +86,16 @@ impl Simulation {
         Self { start: Start { position, velocity }, ..self }
     }
 
-    /// The same, driven by an input.
+    /// The same, driven by an input, which stands in the record too.
+    ///
+    /// ```
+    /// use ringdown_lab::{Excitation, Nominal, Simulation, Waveform};
+    ///
+    /// let chirp = Excitation { waveform: Waveform::Chirp, amplitude: 2.0, frequency_hz: 1.0, end_frequency_hz: 8.0 };
+    /// let record = Simulation::of(&Nominal::swinging(3.5, 0.02)?.driven(1.0)?).starting(0.0, 0.0).driven_by(chirp).run()?;
+    /// assert_eq!(record.input().map(<[f64]>::len), Some(record.len()));
+    /// # Ok::<(), ringdown_lab::Error>(())
+    /// ```
     #[must_use]
     pub fn driven_by(self, excitation: Excitation) -> Self {
         Self { excitation: Some(excitation), ..self }

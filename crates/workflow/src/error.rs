@@ -6,7 +6,7 @@ use record::RecordError;
 use settings::SettingsError;
 use thiserror::Error;
 
-/// Why records and a nominal simulator give no answer; messages name the options of the command line.
+/// Reason why records and a nominal simulator give no answer; messages name the options of the command line.
 #[derive(Debug, Error)]
 pub enum WorkflowError {
     /// A record that cannot be read; its message names options in place of configuration keys.
@@ -20,7 +20,7 @@ pub enum WorkflowError {
     Diagnosis {
         /// The record that the message is about.
         file: String,
-        /// What is wrong.
+        /// The fault.
         source: DiagnosisError,
     },
     /// A driven system whose record holds no input.
@@ -54,7 +54,7 @@ pub enum WorkflowError {
     Nominal {
         /// The file.
         file: String,
-        /// What is wrong with it.
+        /// Its fault.
         problem: String,
     },
     /// A configuration in the place of a nominal simulator.
@@ -85,7 +85,7 @@ pub enum WorkflowError {
     Identify {
         /// The record.
         file: String,
-        /// What is wrong.
+        /// The fault.
         source: IdentifyError,
     },
 }

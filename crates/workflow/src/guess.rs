@@ -93,7 +93,7 @@ pub fn name(coordinate: Coordinate) -> &'static str {
     }
 }
 
-/// What the oscillator was read from, in words.
+/// The basis of the guess, in words: turning points or windows.
 #[must_use]
 pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {

@@ -55,7 +55,7 @@ fn command_for(document: &Document) -> Option<&'static str> {
     }
 }
 
-/// Whether a document has a key or a section of this name.
+/// True where a document has a key or a section of this name.
 fn has_section(document: &Document, name: &str) -> bool {
     let is_below =
         |key: &str| key.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));

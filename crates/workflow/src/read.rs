@@ -19,7 +19,7 @@ pub struct Reading {
     pub clock: ClockChoice,
     /// Origin of the numbers, where the file does not state it.
     pub origin: Option<Origin>,
-    /// Whether the means of the observed column and of the input are taken away: for channels with an arbitrary zero.
+    /// Takes the means of the observed column and of the input away: for channels with an arbitrary zero.
     pub remove_mean: bool,
 }
 
@@ -94,9 +94,9 @@ pub struct Given {
     pub observations: Observations,
     /// The record's line in results.
     pub row: RecordRow,
-    /// What the sensor observes.
+    /// Observed quantity.
     pub quantity: Quantity,
-    /// Whether there is an input.
+    /// True where there is an input.
     pub driven: bool,
     /// Sampling rate of the believed clock, in hertz.
     pub rate_hz: f64,

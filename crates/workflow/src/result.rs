@@ -14,7 +14,7 @@ use runs::result::{
     ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 
-/// What stands beside the diagnosis itself.
+/// The records, the nominal simulator and the repaired one, beside the diagnosis itself.
 pub(crate) struct Beside<'a> {
     pub(crate) given: &'a [Given],
     /// The file of the nominal simulator.
@@ -300,7 +300,7 @@ fn next_experiment(found: &Diagnosis) -> NextExperiment {
     }
 }
 
-/// Why no experiment is proposed.
+/// Reason why no experiment is proposed.
 fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
         Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
@@ -331,7 +331,7 @@ fn backbones(series: &Series) -> Backbone {
     }
 }
 
-/// What the recalibrated law lacks; a coefficient that these data cannot tell stays as it was.
+/// Restoring force that the recalibrated law lacks, by cells of the phase plane; a coefficient that these data cannot tell stays as it was.
 fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCell> {
     let value = |name: &str| {
         let row = found.calibration.iter().find(|row| row.name == name);
