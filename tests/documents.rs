@@ -206,3 +206,26 @@ fn examples_and_tests_that_the_documents_name_exist() {
         assert!(is_there, "{}: no package {}", path.display(), words[0]);
     }
 }
+
+/// The lines of the diagnosis that the README and the first hour show, each cut off somewhere, are those of the command now.
+#[test]
+fn the_diagnosis_that_the_documents_show_is_what_the_command_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("GAP");
+    let shipped = "experiments/default-record";
+    let [record, nominal] = ["record.csv", "nominal.toml"].map(|name| format!("{shipped}/{name}"));
+    let told = trainer(&["diagnose", &record, "--nominal", &nominal, "--out", out.to_str().unwrap()]);
+    let plain = |line: &str| line.replace('’', "'").split_whitespace().collect::<Vec<_>>().join(" ");
+    let told: Vec<String> = String::from_utf8(told.stdout).unwrap().lines().map(plain).collect();
+    let rows = ["certain ", "likely ", "open ", "simulator as given ", "recalibrated ", "repaired "];
+    for document in ["README.md", "book/src/first-hour.md"] {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        let shown = text.lines().filter_map(|line| line.strip_prefix("    ")).map(plain);
+        let shown: Vec<String> = shown.filter(|line| rows.iter().any(|row| line.starts_with(row))).collect();
+        assert!(shown.len() >= 6, "{document}: {shown:?}");
+        for line in shown {
+            let is_there = told.iter().any(|own| own.starts_with(&line));
+            assert!(is_there, "{document} shows `{line}`; the command says\n{}", told.join("\n"));
+        }
+    }
+}
