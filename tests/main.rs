@@ -29,6 +29,7 @@ mod init;
 mod json_schema;
 mod listing;
 mod measured_records;
+mod modules;
 mod nist;
 mod nominal;
 mod prediction;

@@ -5,7 +5,7 @@ use crate::nominal::{Nominal, config};
 use crate::record::Record;
 use export::Repaired;
 use report::RunTexts;
-use runs::result::{ClassRow, DiagnosisResult, DiagnosisVerdict, EffectRow, GapSummary, SeriesRow};
+use results::{ClassRow, DiagnosisResult, DiagnosisVerdict, EffectRow, GapSummary, SeriesRow};
 use seed::Seed;
 use std::path::Path;
 use workflow::{Answer, Question, series_rows};
@@ -66,7 +66,7 @@ impl DiagnosisOptions {
 /// [`Error::Config`] for options out of range.
 ///
 /// ```
-/// use ringdown_lab::{DiagnosisOptions, Nominal, Simulation, diagnose};
+/// use ringdown_lab::{DiagnosisOptions, Nominal, Simulation, diagnose, result::VerdictStatus};
 ///
 /// // A record of an arm with dry friction that its simulator lacks; a real one comes from `Record::read`.
 /// let nominal = Nominal::swinging(3.5, 0.005)?;
@@ -78,7 +78,7 @@ impl DiagnosisOptions {
 ///     .run()?;
 ///
 /// let diagnosis = diagnose(&[record], &nominal, &DiagnosisOptions::default())?;
-/// assert_eq!(diagnosis.verdict().status, "effect");
+/// assert_eq!(diagnosis.verdict().status, VerdictStatus::Effect);
 /// assert_eq!(diagnosis.classes()[0].id, "friction");
 /// assert!(diagnosis.gap().repaired < 0.2 * diagnosis.gap().recalibrated);
 /// println!("{}", diagnosis.verdict().summary);

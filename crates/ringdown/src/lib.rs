@@ -53,7 +53,7 @@ pub use ::record::{ClockChoice, Filter, Format, Missing, Origin, Quantity, TimeU
 pub use dynamics::{Coefficients, Description};
 pub use experiment::Pipeline;
 pub use export::Repaired;
-pub use runs::result;
+pub use results as result;
 pub use workflow::Reading;
 
 /// The contract that every estimator of the workspace fulfills: the peaks and the context that it is given, the estimate that it

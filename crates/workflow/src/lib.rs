@@ -13,10 +13,8 @@ mod question;
 pub mod read;
 mod repair;
 mod result;
-mod summary;
 
 pub use error::{WorkflowError, in_options};
 pub use question::{Answer, Question};
 pub use read::{Given, Loaded, Reading};
 pub use result::{series_rows, title};
-pub use summary::summarize;

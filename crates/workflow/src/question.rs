@@ -8,7 +8,7 @@ use crate::result::{Beside, result};
 use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
 use experiment::StatedNominal;
 use export::Repaired;
-use runs::result::DiagnosisResult;
+use results::DiagnosisResult;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 

@@ -1,13 +1,12 @@
 //! From files to what a diagnosis may see: no name and no path among it.
 
 use crate::error::{WorkflowError, in_options};
-use crate::summary::summarize;
 use diagnosis::Observations;
 use dynamics::Coordinate;
 use dynamics::chain::Observed;
 use experiment::StatedNominal;
 use record::{Clock, ClockChoice, Fault, Origin, Quantity, ReadOptions, Record, Source, Statements, Unit};
-use runs::result::RecordRow;
+use results::{DataSummary, RecordRow};
 use std::path::Path;
 
 /// Options for reading record files.
@@ -159,7 +158,7 @@ impl Loaded {
         }
         let (clock, believed) = (self.believed()?, self.clock_of(ClockChoice::Auto)?);
         let stated = Statements { origin: self.origin, ..Statements::default() };
-        let summary = summarize(record, &self.source, &clock, &believed, stated);
+        let summary = DataSummary::new(record, &self.source, &clock, &believed, stated);
         let (first, last) = (clock.times_s.first(), clock.times_s.last());
         Ok(Given {
             observations: Observations::new(record, &clock),

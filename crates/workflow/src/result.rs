@@ -7,7 +7,7 @@ use diagnosis::{
 };
 use dynamics::{Effect, Quantity, Units};
 use export::{Repaired, equation_latex, equation_text};
-use runs::result::{
+use results::{
     Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
     ClassEvidenceRow, ClassRow, DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
     EffectRow, Equation, GapMaps, GapSummary, KindRow, KnownEffectRow, LeftOverRow, MapCell, NextExperiment,
@@ -35,7 +35,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     let mut result = DiagnosisResult {
         schema: DIAGNOSIS_SCHEMA.to_owned(),
         verdict: DiagnosisVerdict {
-            status: status(found.verdict.status).to_owned(),
+            status: found.verdict.status,
             effects: owned(&found.verdict.effects),
             confidence: found.verdict.confidence,
             left_over: Some(found.verdict.left_over),
@@ -44,19 +44,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         },
         effects,
         gap: gap(found),
-        place: GapMaps {
-            budget: BudgetShares {
-                dissipative: found.place.budget.dissipative,
-                conservative: found.place.budget.conservative,
-                time_dependent: found.place.budget.time_dependent,
-                sensor: found.place.budget.sensor,
-                clock: found.place.budget.clock,
-            },
-            time: cells(&found.place.time),
-            amplitude: cells(&found.place.amplitude),
-            phase: cells(&found.place.phase),
-            frequency: cells(&found.place.frequency),
-        },
+        place: place(found),
         measuring_chain: ChainSummary {
             clock: chain.clock.to_owned(),
             clock_reason: first.map(|given| given.row.clock_reason.clone()).unwrap_or_default(),
@@ -131,17 +119,25 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     result
 }
 
-fn owned(ids: &[&'static str]) -> Vec<String> {
-    ids.iter().map(|id| (*id).to_owned()).collect()
+/// Where the gap lies.
+fn place(found: &Diagnosis) -> GapMaps {
+    GapMaps {
+        budget: BudgetShares {
+            dissipative: found.place.budget.dissipative,
+            conservative: found.place.budget.conservative,
+            time_dependent: found.place.budget.time_dependent,
+            sensor: found.place.budget.sensor,
+            clock: found.place.budget.clock,
+        },
+        time: cells(&found.place.time),
+        amplitude: cells(&found.place.amplitude),
+        phase: cells(&found.place.phase),
+        frequency: cells(&found.place.frequency),
+    }
 }
 
-fn status(status: Status) -> &'static str {
-    match status {
-        Status::None => "none",
-        Status::Calibration => "calibration",
-        Status::Effect => "effect",
-        Status::Unknown => "unknown",
-    }
+fn owned(ids: &[&'static str]) -> Vec<String> {
+    ids.iter().map(|id| (*id).to_owned()).collect()
 }
 
 /// A class of effects as it is stored.
@@ -165,12 +161,13 @@ fn class_row(class: &EffectClass) -> ClassRow {
 /// The name of an id in words.
 #[must_use]
 pub fn title(id: &str) -> String {
-    match id {
-        "none" => "nothing is missing".to_owned(),
-        "calibration" => "only the coefficients were off".to_owned(),
-        "unknown" => "something without a name".to_owned(),
-        id => Effect::find(id).map_or(id, |effect| effect.description().title).to_owned(),
+    match Status::of_row(id) {
+        Some(Status::None) => "nothing is missing",
+        Some(Status::Calibration) => "only the coefficients were off",
+        Some(Status::Unknown) => "something without a name",
+        Some(Status::Effect) | None => Effect::find(id).map_or(id, |effect| effect.description().title),
     }
+    .to_owned()
 }
 
 fn with_interval(interval: Interval) -> WithInterval {
@@ -180,8 +177,10 @@ fn with_interval(interval: Interval) -> WithInterval {
 fn effects(found: &Diagnosis) -> Vec<EffectRow> {
     let row = |effect: &diagnosis::EffectProbability| EffectRow {
         id: effect.id.to_owned(),
-        title: match (effect.id, effect.gap_share) {
-            ("unknown", Some(_)) => "something without a name: a torque along the position".to_owned(),
+        title: match (Status::of_row(effect.id), effect.gap_share) {
+            (Some(Status::Unknown), Some(_)) => {
+                "something without a name: a torque along the position".to_owned()
+            }
             _ => title(effect.id),
         },
         probability: effect.probability,
@@ -386,6 +385,6 @@ mod tests {
     /// The answer's readers and the diagnosis draw the line at the same distance.
     #[test]
     fn one_distance_tells_explanations_apart() {
-        assert_eq!(runs::result::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);
+        assert_eq!(results::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);
     }
 }
