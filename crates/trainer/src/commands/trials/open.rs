@@ -3,7 +3,7 @@
 use super::baselines::{DIAGNOSERS, Diagnoser};
 use super::each::each;
 use super::files::{FAILED, WITHOUT, answer_name, case_name, text, truth_name};
-use crate::commands::diagnose;
+use crate::diagnose;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
 use crate::terminal::progress::Progress;
