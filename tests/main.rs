@@ -38,6 +38,7 @@ mod recipe;
 mod resuming;
 mod rigs;
 mod run_folders;
+mod rust_interface;
 mod schema;
 mod simulation;
 mod support;
