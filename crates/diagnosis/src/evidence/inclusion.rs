@@ -49,6 +49,14 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     asked
 }
 
+/// Probability that something is left beside a set: certain where its error is above the white noise, whatever the spectrum
+/// of that.
+fn left_over(data: &Data, set: &Fit) -> Result<f64, DynamicsError> {
+    let noise = floor::floor(data, &set.residuals);
+    let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise.interval_95[1];
+    Ok(if is_white { acts(unexplained(data, set)?.evidence) } else { 1.0 })
+}
+
 /// Whether an effect is one of a class.
 fn is_of(own: Candidate, class: &str) -> bool {
     own.counts() && own.evidence_class().id() == class
@@ -78,6 +86,9 @@ struct Left {
     powers: Vec<[f64; BANDS]>,
     price: f64,
 }
+
+/// Error over the upper end of the white noise's interval up to which a residual counts as white.
+const WHITE: f64 = 1.05;
 
 /// Draws of segments for a class's stability.
 const DRAWS: usize = 200;
@@ -118,7 +129,7 @@ impl<'a> Inclusion<'a> {
         let of_certain =
             |own: &(Weighed<'_>, Left)| own.0.evidence - price(segments, own.0.fit, vocabulary, 0.0);
         let closest = all.iter().max_by(|a, b| of_certain(a).total_cmp(&of_certain(b)));
-        let left_over = acts(unexplained(data, closest.map_or(bare, |own| own.0.fit))?.evidence);
+        let left_over = left_over(data, closest.map_or(bare, |own| own.0.fit))?;
         for (set, left) in &mut all {
             left.price = price(segments, set.fit, vocabulary, left_over);
             set.evidence -= left.price;
