@@ -1,0 +1,67 @@
+//! What each learner reaches on simulated systems whose law is known.
+
+use super::library::Term;
+use crate::baselines::exact;
+use crate::judge::{Truth, runs, score};
+use crate::testing::{context, data_set, drag_and_cubic, friction_and_gravity, learner};
+
+/// Root mean square over terms of error over the exact fit's standard error is not defined for terms that the exact fit
+/// has in other words, so free runs and true weights are compared.
+#[test]
+fn sindy_finds_friction_and_gravity() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    for id in ["sindy", "weak-sindy"] {
+        let fitted = learner(id, &[]).fit(&data, &context()).unwrap();
+        let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["theta", "theta_dot", "sign(theta_dot)", "sin(theta)"],
+            "{id}: {:?}",
+            fitted.model.equation()
+        );
+        let truth = Truth::new(&system, &data).unwrap().unwrap();
+        for error in truth.coefficient_errors(fitted.model.as_ref()).unwrap() {
+            assert!(error.std_errors.unwrap().abs() < 4.0, "{id}: {error:?}");
+        }
+        let scores = score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data);
+        assert!(scores.over_noise < 1.1, "{id}: {scores:?}");
+        assert!((0.9..=1.0).contains(&scores.coverage_95.unwrap()), "{id}: {scores:?}");
+        assert!(truth.torque_error(fitted.model.as_ref()).unwrap() < 0.01);
+    }
+}
+
+#[test]
+fn sindy_finds_drag_and_a_stiffening_spring_under_an_input() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    let fitted = learner("sindy", &["members=10"]).fit(&data, &context()).unwrap();
+    let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+    let expected = ["theta", "theta_dot", "theta^3", "theta_dot*|theta_dot|", "u"];
+    assert_eq!(names, expected, "{:?}", fitted.model.equation());
+    let scores = score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data);
+    let best = exact(&system, &data, &context()).unwrap();
+    let ceiling = score(best.model.as_ref(), &runs(best.model.as_ref(), &data), &data);
+    assert!(scores.free_run_rmse < 1.05 * ceiling.free_run_rmse, "{scores:?} {ceiling:?}");
+}
+
+#[test]
+fn without_a_refit_noise_leaves_a_bias() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let error = |refit: &str| {
+        let fitted = learner("sindy", &[refit, "members=0"]).fit(&data, &context()).unwrap();
+        score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data).free_run_rmse
+    };
+    assert!(error("refit=false") > 1.5 * error("refit=true"));
+}
+
+#[test]
+fn the_true_coefficients_are_those_of_the_law() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    let found = truth.coefficients(&Term::ALL).unwrap();
+    let of = |term: Term| found.iter().find(|(own, _)| *own == term).map(|(_, value)| *value);
+    assert!((of(Term::Cube).unwrap() + 30.0).abs() < 1e-3 && (of(Term::Drag).unwrap() + 0.2).abs() < 1e-6);
+}
