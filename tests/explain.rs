@@ -78,7 +78,7 @@ fn every_shipped_configuration_can_be_checked_and_names_its_task() {
         assert!(!checked["plan"].as_array().unwrap().is_empty(), "{checked}");
     }
     let tasks: Vec<&str> = tasks.iter().map(String::as_str).collect();
-    assert_eq!(tasks, ["compare", "estimate", "predict", "simulate", "trials"]);
+    assert_eq!(tasks, ["compare", "estimate", "learn", "predict", "simulate", "trials"]);
 }
 
 #[test]

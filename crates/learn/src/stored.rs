@@ -28,6 +28,8 @@ pub struct Stored {
     pub learner: String,
     /// All that is no weight, as JSON.
     pub description: serde_json::Value,
+    /// What a caller says of the training, as JSON.
+    pub about: serde_json::Value,
     /// The weights.
     pub tensors: Vec<Tensor>,
 }
@@ -36,6 +38,7 @@ pub struct Stored {
 struct Header {
     learner: String,
     description: serde_json::Value,
+    about: serde_json::Value,
 }
 
 fn refused(problem: impl Into<String>) -> LearnError {
@@ -53,7 +56,23 @@ impl Stored {
         tensors: Vec<Tensor>,
     ) -> Result<Self, LearnError> {
         let description = serde_json::to_value(description).map_err(|error| refused(error.to_string()))?;
-        Ok(Self { learner: learner.to_owned(), description, tensors })
+        let about = serde_json::Value::Null;
+        Ok(Self { learner: learner.to_owned(), description, about, tensors })
+    }
+
+    /// The same model with what a caller says of its training.
+    #[must_use]
+    pub fn about(self, about: serde_json::Value) -> Self {
+        Self { about, ..self }
+    }
+
+    /// What a caller said of the training, read back.
+    ///
+    /// # Errors
+    /// [`LearnError::Stored`] where it is of another form.
+    pub fn about_as<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
+        serde_json::from_value(self.about.clone())
+            .map_err(|error| refused(format!("what it says of its training is of another form: {error}")))
     }
 
     /// The description read back.
@@ -80,7 +99,11 @@ impl Stored {
     /// # Errors
     /// [`LearnError::Stored`] for tensors whose shapes are not those of their numbers.
     pub fn to_bytes(&self) -> Result<Vec<u8>, LearnError> {
-        let header = Header { learner: self.learner.clone(), description: self.description.clone() };
+        let header = Header {
+            learner: self.learner.clone(),
+            description: self.description.clone(),
+            about: self.about.clone(),
+        };
         let header = serde_json::to_string(&header).map_err(|error| refused(error.to_string()))?;
         let bytes: Vec<Vec<u8>> = self
             .tensors
@@ -117,7 +140,7 @@ impl Stored {
             tensors.push(Tensor { name, shape: view.shape().to_vec(), values });
         }
         tensors.sort_by(|a, b| a.name.cmp(&b.name));
-        Ok(Self { learner: header.learner, description: header.description, tensors })
+        Ok(Self { learner: header.learner, description: header.description, about: header.about, tensors })
     }
 }
 

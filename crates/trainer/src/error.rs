@@ -1,6 +1,7 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
 use crate::diagnose::KeptError;
+use crate::learn::LearnCommandError;
 use crate::resume::ResumeError;
 use crate::side_by_side::TableError;
 use crate::sweep::SweepCommandError;
@@ -104,6 +105,8 @@ pub(crate) enum TrainerError {
     )]
     SameRecord { first: String, second: String, digest: String },
     #[error(transparent)]
+    Learn(#[from] LearnCommandError),
+    #[error(transparent)]
     Kept(#[from] KeptError),
     #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
     Cases { folder: String, problem: String },
@@ -176,6 +179,7 @@ impl TrainerError {
             | Self::InitOccupied { .. }
             | Self::SameRecord { .. }
             | Self::Kept(_)
+            | Self::Learn(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::NoRig { .. }

@@ -30,6 +30,7 @@ mod init;
 mod input;
 mod interrupt;
 mod known_truth;
+mod learn;
 mod list;
 mod list_runs;
 mod manual;
@@ -115,6 +116,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
+        Some(Command::Predict(arguments)) => learn::predict::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),

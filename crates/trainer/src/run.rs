@@ -10,6 +10,7 @@ use crate::estimate::estimate;
 use crate::fit::SeedFit;
 use crate::input::Input;
 use crate::interrupt;
+use crate::learn::learn;
 use crate::method::Method;
 use crate::predict::predict;
 use crate::resume::{Beginning, Begun, Ledger, begin};
@@ -47,6 +48,7 @@ pub(crate) fn run_until(
     let experiment = match Configured::resolve(&read_config(arguments)?)? {
         Configured::Simulation(plan) => return simulate(arguments, &plan, cancel),
         Configured::Trials(_) => return trials::run(&arguments.into(), cancel),
+        Configured::Learning(study) => return learn(arguments, &study, cancel),
         Configured::Prediction(study) => return predict(arguments, &study, cancel),
         Configured::Experiment(experiment) => experiment,
     };

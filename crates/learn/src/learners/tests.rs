@@ -1,7 +1,7 @@
 //! What each learner reaches on simulated systems whose law is known.
 
 use super::library::Term;
-use crate::baselines::exact;
+use crate::baselines::{exact, recalibrated};
 use crate::judge::{Truth, runs, score};
 use crate::testing::{context, data_set, drag_and_cubic, friction_and_gravity, learner};
 
@@ -64,4 +64,60 @@ fn the_true_coefficients_are_those_of_the_law() {
     let found = truth.coefficients(&Term::ALL).unwrap();
     let of = |term: Term| found.iter().find(|(own, _)| *own == term).map(|(_, value)| *value);
     assert!((of(Term::Cube).unwrap() + 30.0).abs() < 1e-3 && (of(Term::Drag).unwrap() + 0.2).abs() < 1e-6);
+}
+
+/// Trained on what friction and a weight do beside a known spring; the torque is judged where the test records go.
+#[test]
+fn learned_torques_are_within_five_percent_of_the_true_one() {
+    let free = friction_and_gravity();
+    let driven = drag_and_cubic();
+    for (system, data) in [(&free, data_set(&free, false, 1e-3)), (&driven, data_set(&driven, true, 2e-3))] {
+        let truth = Truth::new(system, &data).unwrap().unwrap();
+        let best = recalibrated(&data, &context()).unwrap().model;
+        let linear = score(best.as_ref(), &runs(best.as_ref(), &data), &data).free_run_rmse;
+        for id in ["neural-ode", "gaussian-process"] {
+            let fitted = learner(id, &["samples=1500"]).fit(&data, &context()).unwrap();
+            let model = fitted.model.as_ref();
+            let (error, scores) =
+                (truth.torque_error(model).unwrap(), score(model, &runs(model, &data), &data));
+            assert!(scores.free_run_rmse < 0.5 * linear, "{id}: {scores:?} against {linear}");
+            assert!(error < 0.05, "{id}: torque {error}, {scores:?}");
+        }
+    }
+}
+
+/// What the training does is in the weights: without a step they are the nominal simulator's.
+#[test]
+fn an_untrained_network_is_the_nominal_simulator() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let fitted = learner("neural-ode", &["max_steps=0"]).fit(&data, &context()).unwrap();
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    assert!((truth.torque_error(fitted.model.as_ref()).unwrap() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_model_predicts_the_same_from_its_file() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    for entry in super::LEARNERS {
+        let quick =
+            if entry.fields.iter().any(|field| field.key == "refit") { "refit=false" } else { "max_steps=1" };
+        let fitted = learner(entry.id, &[quick]).fit(&data, &context()).unwrap();
+        let bytes = fitted.model.stored().unwrap().to_bytes().unwrap();
+        let again = (entry.restore)(&crate::Stored::from_bytes(&bytes).unwrap()).unwrap();
+        assert_eq!(runs(again.as_ref(), &data), runs(fitted.model.as_ref(), &data), "{}", entry.id);
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    for entry in super::LEARNERS {
+        let quick =
+            if entry.fields.iter().any(|field| field.key == "refit") { "members=5" } else { "max_steps=2" };
+        let run = || runs(learner(entry.id, &[quick]).fit(&data, &context()).unwrap().model.as_ref(), &data);
+        assert_eq!(run(), run(), "{}", entry.id);
+    }
 }

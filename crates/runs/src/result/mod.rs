@@ -8,6 +8,7 @@ mod batch;
 mod calibration;
 mod comparison;
 mod diagnosis;
+mod learning;
 mod prediction;
 mod rigs;
 mod simulation;
@@ -22,6 +23,10 @@ pub use diagnosis::{
     DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,
     Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
     RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+};
+pub use learning::{
+    LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTest,
+    LearnTorqueRow, LearnTraceRow,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

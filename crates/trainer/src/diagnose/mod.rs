@@ -21,6 +21,7 @@ use dynamics::Nominal;
 use experiment::StatedNominal;
 use export::Repaired;
 pub(crate) use kept::KeptError;
+pub(crate) use nominal::read as read_nominal;
 use read::Given;
 use record::Quantity;
 use result::{Beside, result, series_rows};

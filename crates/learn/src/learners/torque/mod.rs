@@ -1,0 +1,7 @@
+//! Torques learned as functions: the nominal oscillator, what is linear, dry friction, and a correction of any form.
+
+mod corrected;
+mod progressive;
+
+pub use corrected::{Base, Corrected, Correction};
+pub use progressive::{Progress, progressive};
