@@ -23,6 +23,7 @@ mod model;
 mod stored;
 #[cfg(test)]
 mod testing;
+pub mod training;
 
 pub use error::LearnError;
 pub use learner::{Context, Entry, Fitted, Kind, Learner, Step};

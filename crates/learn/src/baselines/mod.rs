@@ -3,6 +3,8 @@
 mod arx;
 mod persistence;
 mod simulated;
+#[cfg(test)]
+mod tests;
 
 pub use arx::Arx;
 pub use persistence::Persistence;

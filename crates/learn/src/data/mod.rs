@@ -4,6 +4,8 @@ mod period;
 mod set;
 mod smoothing;
 mod split;
+#[cfg(test)]
+mod tests;
 mod trajectory;
 mod windows;
 

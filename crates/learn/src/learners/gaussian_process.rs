@@ -9,7 +9,7 @@
 //! Machine Learning, MIT Press 2006, chapter 5 (evidence).
 
 use super::neural_ode::laplace;
-use super::torque::{Base, Corrected, Correction, Progress, progressive};
+use super::torque::{Base, Corrected, Correction, Progress, pretrained, progressive};
 use crate::data::{DataSet, local_states};
 use crate::flow::{Field, Fit, FlowModel, Penalty, Posterior, Running};
 use crate::judge::validation_error;
@@ -44,7 +44,7 @@ const FIELDS: &[Key] = &[
     Key {
         key: "functions",
         kind: Value::Integer { min: 2, max: 30 },
-        default: Default::Integer(6),
+        default: Default::Integer(8),
         meaning: "Eigenfunctions along position and along velocity; their products are the basis.",
         ..PLAIN
     },
@@ -180,6 +180,8 @@ impl Learner for GaussianProcess {
         let progress = Progress { samples: self.samples, most_steps: self.max_steps };
         let mut kernel = Kernel { amplitude: 1.0, length: 1.0 };
         let (mut weights, mut steps) = (vec![0.0; field.weights()], 0);
+        let start = penalty(&base, &basis, kernel);
+        weights = pretrained(&field, data, &start, weights, context.steps(self.max_steps)).0;
         let mut last = None;
         for _ in 0..2 {
             let penalty = penalty(&base, &basis, kernel);

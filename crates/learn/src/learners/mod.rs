@@ -1,5 +1,6 @@
 //! The learners there are, one line each; one method, one file.
 
+pub mod bayesian;
 pub mod gaussian_process;
 pub mod library;
 pub mod neural_ode;
@@ -11,7 +12,7 @@ use crate::Entry;
 
 /// Every learner, in the order of tables.
 pub static LEARNERS: &[Entry] =
-    &[sindy::ENTRY, weak_sindy::ENTRY, neural_ode::ENTRY, gaussian_process::ENTRY];
+    &[sindy::ENTRY, weak_sindy::ENTRY, neural_ode::ENTRY, gaussian_process::ENTRY, bayesian::ENTRY];
 
 /// The learner with an id.
 #[must_use]

@@ -8,7 +8,7 @@
 //! Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 2018; Rackauckas et al., arXiv:2001.04385 (universal differential
 //! equations); MacKay, Neural Computation 4 (1992) 448 (Laplace's approximation).
 
-use super::torque::{Base, Corrected, Correction, Progress, progressive};
+use super::torque::{Base, Corrected, Correction, Progress, pretrained, progressive};
 use crate::data::DataSet;
 use crate::flow::{Field, Fit, FlowModel, Penalty, Posterior, Running};
 use crate::judge::validation_error;
@@ -71,9 +71,24 @@ const FIELDS: &[Key] = &[
         ..PLAIN
     },
     Key {
+        key: "restarts",
+        kind: Value::Integer { min: 1, max: 1000 },
+        default: Default::Integer(4),
+        meaning: "Networks that are pretrained, each from weights of its own; the best is trained on.",
+        ..PLAIN
+    },
+    Key {
+        key: "pretraining_steps",
+        kind: Value::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(40),
+        unit: "steps",
+        meaning: "Most steps of matching accelerations before any trajectory is run.",
+        ..PLAIN
+    },
+    Key {
         key: "max_steps",
         kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(25),
+        default: Default::Integer(40),
         unit: "steps",
         meaning: "Most steps on pieces of each length.",
         ..PLAIN
@@ -87,6 +102,8 @@ pub struct NeuralOde {
     dry_friction: bool,
     weight_decay: f64,
     samples: usize,
+    restarts: u64,
+    pretraining_steps: u64,
     max_steps: u64,
 }
 
@@ -130,25 +147,42 @@ impl Learner for NeuralOde {
             correction: Network { hidden: self.hidden_units },
         };
         let count = field.weights();
-        let mut generator = context.seed.child("initial weights").generator();
-        let mut start = vec![0.0; count];
-        // Output weights of zero: training begins at the nominal simulator.
-        for unit in start.iter_mut().skip(field.base.weights()).collect::<Vec<_>>().chunks_mut(OF_UNIT) {
-            for weight in unit.iter_mut().take(OF_UNIT - 1) {
-                **weight = StandardNormal.sample(&mut generator);
-            }
-        }
         let penalty = Penalty { mean: vec![0.0; count], precision: vec![self.weight_decay; count] };
         let model = |weights: &[f64], noise: f64| {
             model(&field, weights, Posterior::default(), Running::new(data, noise))
         };
         let validate = |weights: &[f64]| validation_error(&model(weights, data.noise), data);
+        let start = self.first_guess(&field, data, &penalty, context);
         let progress = Progress { samples: self.samples, most_steps: self.max_steps };
         let (fit, steps) = progressive(&field, data, context, (&penalty, progress), start, &validate)?;
         let posterior = laplace(&fit, &penalty, context);
         let reached = if fit.converged { Reached::Converged } else { Reached::BudgetSpent };
         let whole = FlowModel { posterior, ..model(&fit.weights, fit.rms()) };
         Ok(Fitted { model: Box::new(whole), reached, steps })
+    }
+}
+
+impl NeuralOde {
+    /// The best of several pretrained networks; output weights begin at zero, where the model is the nominal simulator.
+    fn first_guess(
+        &self,
+        field: &Corrected<Network>,
+        data: &DataSet,
+        penalty: &Penalty,
+        context: &Context<'_>,
+    ) -> Vec<f64> {
+        let drawn = |restart: u64| {
+            let mut generator = context.seed.child("initial weights").child(&restart.to_string()).generator();
+            let mut start = vec![0.0; field.weights()];
+            let (_, units) = start.split_at_mut(field.base.weights());
+            for unit in units.as_chunks_mut::<OF_UNIT>().0 {
+                let [inputs @ .., _] = unit;
+                inputs.iter_mut().for_each(|weight| *weight = StandardNormal.sample(&mut generator));
+            }
+            pretrained(field, data, penalty, start, context.steps(self.pretraining_steps))
+        };
+        let best = (0..self.restarts).map(drawn).min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map_or_else(|| vec![0.0; field.weights()], |(weights, _)| weights)
     }
 }
 

@@ -79,7 +79,6 @@ pub(crate) const FIELDS: &[Field] = &[
         unit: "share of the acceleration",
         meaning: "Terms that contribute less are left out, again and again.",
         source: "small, since the refit tells true terms from others by their errors",
-        ..PLAIN
     },
     Field {
         key: "members",
@@ -120,7 +119,24 @@ impl SparseSettings {
     /// # Errors
     /// [`SettingsError::UnknownName`] for a term that is not known.
     pub(crate) fn read(resolved: &Resolved, section: &str) -> Result<Self, SettingsError> {
-        let settings: Self = resolved.section(section)?;
+        Self::checked(resolved, section, resolved.section(section)?)
+    }
+
+    /// As [`Self::read`], of a law whose terms are stated and not searched.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub(crate) fn of_terms(
+        resolved: &Resolved,
+        section: &str,
+        library: Vec<String>,
+    ) -> Result<Self, SettingsError> {
+        let settings =
+            Self { library, threshold: 0.0, members: 0, refit: true, refit_samples: 0, max_steps: 0 };
+        Self::checked(resolved, section, settings)
+    }
+
+    fn checked(resolved: &Resolved, section: &str, settings: Self) -> Result<Self, SettingsError> {
         let is_known = |name: &String| Term::ALL.iter().any(|term| term.name() == name);
         if let Some(unknown) = settings.library.iter().find(|name| !is_known(name)) {
             let key = format!("{section}.library");
