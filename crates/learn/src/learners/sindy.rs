@@ -9,6 +9,7 @@
 
 use super::library::{Finishing, Regression, Term, finish, inclusion, restore, thresholded};
 use crate::data::{DataSet, local_states};
+use crate::linear::least_squares;
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Place};
 use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
@@ -148,11 +149,18 @@ impl SparseSettings {
         Ok(settings)
     }
 
-    /// The terms that the data can have.
+    /// The terms that the data can have: no input without one, no sine of a displacement, and no sine where the swings
+    /// are so small that a spring and its cube make the same.
     pub(crate) fn terms(&self, data: &DataSet) -> Vec<Term> {
-        let wanted = |term: &Term| self.library.iter().any(|name| name == term.name());
-        let applies = |term: &Term| *term != Term::Input || data.is_driven();
-        Term::ALL.into_iter().filter(wanted).filter(applies).collect()
+        let has = |term: Term| self.library.iter().any(|name| name == term.name());
+        let same = has(Term::Position) && has(Term::Cube) && sine_is_cubic(data);
+        let applies = |term: &Term| match term {
+            Term::Input => data.is_driven(),
+            Term::Sine => data.unit == "rad" && !same,
+            Term::Cosine => data.unit == "rad",
+            _ => true,
+        };
+        Term::ALL.into_iter().filter(|term| has(*term)).filter(applies).collect()
     }
 
     pub(crate) fn finishing(&self) -> Finishing {
@@ -175,6 +183,21 @@ impl SparseSettings {
         };
         finish(learner, data, context, &self.finishing(), (&regression.terms, &weights, &inclusion))
     }
+}
+
+/// What is left of a sine without its part along θ and θ³, relative to it, below which it is no term of its own.
+const SAME: f64 = 2e-4;
+
+/// Whether sin θ is a sum of θ and θ³ at the positions learned from.
+fn sine_is_cubic(data: &DataSet) -> bool {
+    let stride = (data.training_samples() / 1000).max(1);
+    let positions: Vec<f64> =
+        data.train.iter().flat_map(|part| part.values().iter().copied()).step_by(stride).collect();
+    let rows: Vec<f64> = positions.iter().flat_map(|x| [*x, x * x * x]).collect();
+    let rows = DMatrix::from_row_slice(positions.len(), 2, &rows);
+    let sines = DVector::from_iterator(positions.len(), positions.iter().map(|x| x.sin()));
+    let Some(weights) = least_squares(&rows, &sines) else { return true };
+    (&rows * weights - &sines).norm() < SAME * sines.norm()
 }
 
 /// The learner.

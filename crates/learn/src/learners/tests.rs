@@ -156,3 +156,24 @@ fn quick(entry: &crate::Entry) -> &'static [&'static str] {
         &["samples=600", "max_steps=2"]
     }
 }
+
+/// A meter has no sine, and a small swing none that its cube does not make.
+#[test]
+fn a_sine_is_a_term_only_where_it_can_be_told() {
+    let system = friction_and_gravity();
+    let large = data_set(&system, false, 1e-3);
+    let has_sine = |data: &crate::data::DataSet| {
+        let fitted =
+            learner("sindy", &["refit=false", "members=0", "threshold=0"]).fit(data, &context()).unwrap();
+        fitted.model.coefficients().iter().any(|own| own.name == "sin(theta)")
+    };
+    assert!(has_sine(&large));
+    let displacement = crate::data::DataSet { unit: "m".to_owned(), ..large.clone() };
+    assert!(!has_sine(&displacement));
+    let tenth = |part: &crate::data::Trajectory| {
+        let values = part.values().iter().map(|value| 0.1 * value).collect();
+        crate::data::Trajectory::new(part.name(), part.times_s().to_vec(), values, None).unwrap()
+    };
+    let small = crate::data::DataSet { train: large.train.iter().map(tenth).collect(), ..large };
+    assert!(!has_sine(&small));
+}

@@ -46,7 +46,7 @@ impl Used {
                     }
                 }
             }
-            // What learns dynamics is no estimator: its works stand in `trainer list learners` and the report.
+            // What learns dynamics is no estimator; its works stand with the registry of learners.
             (_, "learn") => {}
             (_, "simulate") => self.effects.extend(ids(result.get("effects"))),
             _ => return Err(refused(format!("{name} is of no task that is known here"))),

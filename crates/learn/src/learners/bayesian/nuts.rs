@@ -48,7 +48,7 @@ struct Tree {
 const LOST: f64 = 1000.0;
 
 /// Doublings of a trajectory at most.
-const MOST_DOUBLINGS: u32 = 8;
+const MOST_DOUBLINGS: u32 = 5;
 
 fn goes_on(back: &Point, ahead: &Point) -> bool {
     let between = &ahead.place - &back.place;
