@@ -10,7 +10,7 @@ use std::process::Command;
 fn layer(name: &str) -> Option<u8> {
     Some(match name {
         "record" | "seed" | "settings" | "dynamics" => 0,
-        "envelope" | "export" | "truth" => 1,
+        "envelope" | "export" | "results" | "truth" => 1,
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,
@@ -18,8 +18,9 @@ fn layer(name: &str) -> Option<u8> {
         "scoring" | "experiment" | "runs" | "identify" => 5,
         "conformance" | "diagnosis" => 3,
         "registry" => 5,
-        "report" | "trials" => 6,
-        "trainer" => 7,
+        "report" | "trials" | "tracking" => 6,
+        "studies" => 7,
+        "trainer" => 8,
         _ => return None,
     })
 }
@@ -129,7 +130,8 @@ fn only_who_makes_or_scores_records_reaches_the_truth() {
     }
     assert!(reaching.contains("simulator"), "{reaching:?}");
     for package in &reaching {
-        let may = ["truth", "simulator", "scoring", "trials", "trainer"].contains(&package.as_str());
+        let may =
+            ["truth", "simulator", "scoring", "trials", "studies", "trainer"].contains(&package.as_str());
         assert!(may, "{package} reaches the truth");
     }
 }

@@ -30,6 +30,7 @@ mod json_schema;
 mod learning;
 mod listing;
 mod measured_records;
+mod modules;
 mod nist;
 mod nominal;
 mod prediction;

@@ -2,6 +2,7 @@
 
 use crate::noise::floor::NoiseFloor;
 use dynamics::{Active, Nominal};
+pub use results::VerdictStatus as Status;
 use serde::Serialize;
 
 /// A number with its 95 % interval.
@@ -11,20 +12,6 @@ pub struct Interval {
     pub value: f64,
     /// Lower and upper end of the 95 % interval.
     pub interval_95: [f64; 2],
-}
-
-/// What a diagnosis comes to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Status {
-    /// Nothing beyond the noise.
-    None,
-    /// Coefficients were off; no effect is missing.
-    Calibration,
-    /// One or more effects of the vocabulary.
-    Effect,
-    /// A gap that no member of the vocabulary explains.
-    Unknown,
 }
 
 /// The verdict.

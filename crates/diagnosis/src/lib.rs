@@ -32,6 +32,8 @@ mod noise;
 #[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod repaired_tests;
 mod search;
+mod settings;
+mod stages;
 #[cfg(test)]
 #[allow(clippy::print_stdout, reason = "what a trial finds is read, not only checked")]
 mod trials;
@@ -42,7 +44,7 @@ pub use answer::{
     RepairedSimulator, Rivalry, Series, SetScore, Stage, Status, Undetermined, Verdict, Where,
 };
 pub use data::observations::Observations;
-pub use diagnose::{Settings, diagnose};
+pub use diagnose::diagnose;
 pub use error::DiagnosisError;
 pub use evidence::conclusion::DISTINCT_DISTANCE;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
@@ -50,3 +52,4 @@ pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;
 pub use model::candidate::{evidence_class, has_fitted_hidden_start, is_flexible};
 pub use noise::floor::NoiseFloor;
+pub use settings::Settings;

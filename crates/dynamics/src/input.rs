@@ -86,6 +86,43 @@ impl Input {
         self.hold
     }
 
+    /// The same input with one sample for every `count`, which keeps its integral where the samples are evenly spaced: the
+    /// mean over so many where it is held, and, where it goes straight on, the mean weighted by the distance from the new
+    /// sample, falling to none at the next. A `count` of 0 or 1 changes nothing.
+    ///
+    /// ```
+    /// use dynamics::{Hold, Input};
+    /// let times = (0..4).map(f64::from).collect();
+    /// let input = Input::new(times, vec![1.0, 3.0, 2.0, 6.0], Hold::Zero)?;
+    /// assert_eq!(input.averaged(2).times(), [0.0, 2.0]);
+    /// assert_eq!(input.averaged(2).values(), [2.0, 4.0]);
+    /// # Ok::<(), dynamics::DynamicsError>(())
+    /// ```
+    #[must_use]
+    pub fn averaged(&self, count: usize) -> Self {
+        let count = count.max(1);
+        let mean = |from: usize| {
+            let before = if self.hold == Hold::Linear { count - 1 } else { 0 };
+            let first = from.saturating_sub(before);
+            let own = self.values.iter().enumerate().skip(first).take(from + count - first);
+            let (mut sum, mut weights) = (0.0, 0.0);
+            for (index, value) in own {
+                let weight = match self.hold {
+                    Hold::Zero => 1.0,
+                    Hold::Linear => 1.0 - index.abs_diff(from) as f64 / count as f64,
+                };
+                sum += weight * value;
+                weights += weight;
+            }
+            sum / weights
+        };
+        Self {
+            times: self.times.iter().copied().step_by(count).collect(),
+            values: (0..self.values.len()).step_by(count).map(mean).collect(),
+            hold: self.hold,
+        }
+    }
+
     /// The piece that begins at sample `index − 1` and ends at sample `index`; 0 is the piece before the first.
     pub(crate) fn piece(&self, index: usize) -> Piece {
         let at = |list: &[f64], index: usize| list.get(index).copied();

@@ -1,6 +1,5 @@
 //! Units of what a system is made of.
 
-use crate::chain::Observed;
 use serde::{Deserialize, Serialize};
 
 /// What the coordinate of a system is.
@@ -12,6 +11,19 @@ pub enum Coordinate {
     Angle,
     /// A displacement in meters (or in a sensor's own unit, which then takes the meter's place).
     Displacement,
+}
+
+/// What the sensor observes of the motion.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Observed {
+    /// The position itself: an encoder.
+    #[default]
+    Position,
+    /// Its first derivative: a gyroscope, a laser vibrometer.
+    Velocity,
+    /// Its second derivative: an accelerometer.
+    Acceleration,
 }
 
 /// The system of units that a system's numbers are written in.

@@ -1,6 +1,7 @@
 //! An oscillator read from the turning points of a free decay.
 
-use crate::{Basis, Estimated, LinearOscillator, order};
+use crate::observed::order;
+use crate::{Basis, Estimated, LinearOscillator};
 use envelope::{Envelope, RecommendedPipeline};
 use record::{Clock, Record};
 use std::f64::consts::PI;

@@ -7,101 +7,16 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod decay;
+mod error;
+mod observed;
+mod oscillator;
 mod weak;
 
-use record::{Clock, Quantity, Record};
-use thiserror::Error;
+pub use error::IdentifyError;
+pub use oscillator::{Basis, Estimated, LinearOscillator};
 
-/// A number with its standard error, in the same unit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Estimated {
-    /// The number.
-    pub value: f64,
-    /// Its standard error.
-    pub std_error: f64,
-}
-
-/// A linear oscillator per unit of inertia.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LinearOscillator {
-    /// Stiffness over inertia, ω₀², in 1/s²; 0 where the record shows no restoring torque.
-    pub stiffness: Estimated,
-    /// Damping over inertia, 2ζω₀, in 1/s; 0 or above.
-    pub damping: Estimated,
-    /// Rest position, in the record's unit; `None` where the sensor observes no position or nothing restores it.
-    pub rest: Option<Estimated>,
-    /// Acceleration per unit of the input; `None` for a record without one.
-    pub input_gain: Option<Estimated>,
-    /// What the numbers were read from.
-    pub basis: Basis,
-}
-
-/// What an oscillator was read from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Basis {
-    /// So many turning points of a free decay.
-    TurningPoints(usize),
-    /// A regression over so many smooth windows.
-    Windows(usize),
-}
-
-impl LinearOscillator {
-    /// Natural frequency ω₀/2π, in Hz; `None` without a restoring torque.
-    #[must_use]
-    pub fn natural_frequency_hz(&self) -> Option<Estimated> {
-        let omega = self.omega()?;
-        // dω = dk/(2ω).
-        let std_error = self.stiffness.std_error / (2.0 * omega);
-        Some(Estimated { value: omega, std_error }.times(1.0 / std::f64::consts::TAU))
-    }
-
-    /// Damping ratio ζ; `None` without a restoring torque.
-    #[must_use]
-    pub fn damping_ratio(&self) -> Option<Estimated> {
-        // The frequency is known far better than the damping, so that its error adds nothing.
-        Some(self.damping.times(0.5 / self.omega()?))
-    }
-
-    fn omega(&self) -> Option<f64> {
-        (self.stiffness.value > 0.0).then(|| self.stiffness.value.sqrt())
-    }
-}
-
-impl Estimated {
-    fn times(self, factor: f64) -> Self {
-        Self { value: self.value * factor, std_error: self.std_error * factor.abs() }
-    }
-}
-
-/// Why a record shows no oscillator.
-#[derive(Debug, Clone, PartialEq, Error)]
-pub enum IdentifyError {
-    /// Nothing moves.
-    #[error("nothing moves in the record: all {samples} values of it are the same")]
-    NoMotion {
-        /// Samples there are.
-        samples: usize,
-    },
-    /// Too short for its own time scale.
-    #[error(
-        "the record is too short to show an oscillator: {windows} windows of {width_s:.3} s fit into it, at least \
-         {needed} are needed; give a longer record"
-    )]
-    TooShort {
-        /// Windows that fit.
-        windows: usize,
-        /// Fewest that determine the coefficients.
-        needed: usize,
-        /// Width of a window, in seconds.
-        width_s: f64,
-    },
-    /// The regression has no solution.
-    #[error(
-        "the record does not tell damping, stiffness and input apart: its motion is too simple; give a record with a \
-         free decay or a richer input"
-    )]
-    Undetermined,
-}
+use observed::input;
+use record::{Clock, Record};
 
 /// Reads the linear oscillator nearest to a record under a clock. Linear in the number of samples.
 ///
@@ -117,20 +32,6 @@ pub fn identify(record: &Record, clock: &Clock) -> Result<LinearOscillator, Iden
     match free {
         Some(oscillator) => Ok(oscillator),
         None => weak::oscillator(record, clock),
-    }
-}
-
-/// The input where it drives anything: one that never changes tells no gain.
-fn input(record: &Record) -> Option<&[f64]> {
-    record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))
-}
-
-/// How often the observed quantity was differentiated.
-fn order(quantity: Quantity) -> usize {
-    match quantity {
-        Quantity::Position => 0,
-        Quantity::Velocity => 1,
-        Quantity::Acceleration => 2,
     }
 }
 

@@ -8,7 +8,8 @@
 //! Each window gives one equation that is linear in the coefficients. A velocity obeys the same equation with u̇ for u,
 //! an acceleration with ü: the derivatives fall on φ again.
 
-use crate::{Basis, Estimated, IdentifyError, LinearOscillator, input, order};
+use crate::observed::{input, order};
+use crate::{Basis, Estimated, IdentifyError, LinearOscillator};
 use nalgebra::{DMatrix, DVector};
 use record::{Clock, Record};
 use std::f64::consts::TAU;

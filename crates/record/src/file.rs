@@ -1,52 +1,15 @@
 //! Reading a file into a record and its source.
 
-use crate::csv_file::{self, CsvColumns};
+use crate::csv_file;
 use crate::error::{Fault, RecordError};
 use crate::host_log;
-use crate::reading::{Coordinate, Reading};
-use crate::record::{Quantity, Record};
+use crate::options::{Format, ReadOptions};
+use crate::reading::Reading;
+use crate::record::Record;
 use crate::statement::Statements;
-use crate::unit::{Dimension, Unit};
-use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 use std::path::Path;
-
-/// Format of a record file.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Format {
-    /// By the first line.
-    #[default]
-    Auto,
-    /// A header with column names, then numbers, with commas, semicolons, tabs or blanks between them; lines that
-    /// start with `#`, `%` or `//` are comments, of which `# origin: …`, `# sample_rate_hz: …` and `# samples: …` are
-    /// statements.
-    Csv,
-    /// Two header lines, then `wall clock, elapsed s, angle deg`.
-    HostLog,
-}
-
-impl Format {
-    /// Every format's name as configurations write it.
-    pub const NAMES: &'static [&'static str] = &["auto", "csv", "host-log"];
-}
-
-/// How to read a file.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct ReadOptions {
-    /// Format of the file.
-    pub format: Format,
-    /// Columns and units of a `csv` file; a `host-log` has its own.
-    pub columns: CsvColumns,
-    /// What the sensor observes; left open, what the column's unit and name say, else a position.
-    pub quantity: Option<Quantity>,
-    /// What moves, where that is known: columns of that dimension are preferred, and what states no unit is in its SI
-    /// unit.
-    pub coordinate: Option<Coordinate>,
-    /// Whether an input is known to drive the system: a command or a voltage is then taken for it too.
-    pub driven: bool,
-}
 
 /// Where a record came from: what is shown to people and kept from estimators and diagnosis.
 #[derive(Debug, Clone, PartialEq)]
@@ -140,57 +103,4 @@ pub(crate) fn bytes_of(path: &Path) -> Result<Vec<u8>, RecordError> {
 
 fn digest(bytes: &[u8]) -> String {
     Sha256::digest(bytes).iter().fold("sha256:".to_owned(), |text, byte| text + &format!("{byte:02x}"))
-}
-
-/// What a reader of one format collects.
-pub(crate) struct Parsed {
-    unit: Unit,
-    stamps_s: Vec<f64>,
-    values: Vec<f64>,
-    input: Vec<f64>,
-    statements: Statements,
-    pub(crate) findings: Vec<String>,
-    pub(crate) reading: Reading,
-}
-
-impl Parsed {
-    pub(crate) fn new(unit: Unit, statements: Statements, reading: Reading) -> Self {
-        Self {
-            unit,
-            stamps_s: Vec::new(),
-            values: Vec::new(),
-            input: Vec::new(),
-            statements,
-            findings: Vec::new(),
-            reading,
-        }
-    }
-
-    /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
-    pub(crate) fn push(&mut self, line: u64, stamp: f64, value: f64) -> Result<(), Fault> {
-        if let Some(&previous) = self.stamps_s.last().filter(|&&previous| stamp < previous) {
-            return Err(Fault::TimeDecreases { line, previous, stamp });
-        }
-        self.stamps_s.push(stamp);
-        self.values.push(value);
-        Ok(())
-    }
-
-    pub(crate) fn push_input(&mut self, value: f64) {
-        self.input.push(value);
-    }
-
-    fn finish(self, options: &ReadOptions) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
-        let input = (!self.input.is_empty()).then_some(self.input);
-        let quantity = options.quantity.unwrap_or(self.reading.quantity);
-        let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
-        let rate_hz = (self.stamps_s.len().max(1) - 1) as f64 / span;
-        let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
-        let coordinate = match self.unit.dimension() {
-            Dimension::Angle => Coordinate::Angle,
-            _ => Coordinate::Displacement,
-        };
-        let reading = Reading { quantity, coordinate, ..self.reading }.worded(rate_hz);
-        Ok((record, self.statements, self.findings, reading))
-    }
 }

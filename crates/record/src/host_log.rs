@@ -1,7 +1,7 @@
 //! The `host-log` format: two header lines, then `wall clock, elapsed s, angle deg`.
 
 use crate::error::Fault;
-use crate::file::Parsed;
+use crate::parsed::Parsed;
 use crate::reading::{ColumnReading, Reading};
 use crate::statement::Statements;
 use crate::unit::Unit;

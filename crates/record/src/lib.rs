@@ -8,6 +8,7 @@
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
 mod clock;
+mod columns;
 mod csv_file;
 mod dialect;
 mod error;
@@ -18,6 +19,8 @@ mod lattice;
 mod line;
 mod look;
 mod lost;
+mod options;
+mod parsed;
 mod reading;
 mod record;
 mod roles;
@@ -31,11 +34,12 @@ mod unit;
 mod words;
 
 pub use clock::{Clock, ClockChoice, ClockKind};
-pub use csv_file::{CsvColumns, Filter, Missing};
+pub use columns::{CsvColumns, Filter, Missing};
 pub use error::{Fault, RecordError};
-pub use file::{Format, ReadOptions, Source, file_digest, read_file, read_text};
+pub use file::{Source, file_digest, read_file, read_text};
 pub use lattice::Lattice;
 pub use look::{ColumnLook, Look, look};
+pub use options::{Format, ReadOptions};
 pub use reading::{ColumnReading, Coordinate, Reading};
 pub use record::{Quantity, Record};
 pub use stamps::StampStatistics;

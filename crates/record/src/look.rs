@@ -3,7 +3,8 @@
 use crate::clock::{Clock, ClockChoice};
 use crate::csv_file::Table;
 use crate::error::RecordError;
-use crate::file::{ReadOptions, Source, bytes_of, read_text, text_of};
+use crate::file::{Source, bytes_of, read_text, text_of};
+use crate::options::ReadOptions;
 use crate::record::Record;
 use crate::roles::Kind;
 use std::path::Path;

@@ -1,6 +1,6 @@
 //! How a file was read: kept in every result, and enough to read it the same way again.
 
-use crate::csv_file::Missing;
+use crate::columns::Missing;
 use crate::record::Quantity;
 use crate::words::counted;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,9 @@
 //! Which column is the time, the observed quantity, the input: by what the options name, else by names and units.
 
-use crate::csv_file::CsvColumns;
+use crate::columns::CsvColumns;
 use crate::error::Fault;
-use crate::file::ReadOptions;
 use crate::heading::Heading;
+use crate::options::ReadOptions;
 use crate::reading::Coordinate;
 use crate::record::Quantity;
 use crate::unit::{Dimension, Unit};

@@ -1,6 +1,6 @@
 //! Classes of effects in words: how sure, which kind, how large. Page, terminal and `diagnosis.json` share these sentences.
 
-use runs::result::{ClassRow, DiagnosisResult, EffectRow, KindRow};
+use results::{ClassRow, DiagnosisResult, EffectRow, KindRow, VerdictStatus};
 
 use crate::format::{
     self, UNDETERMINED, estimate, plain_spaces, quantity, share_with_interval, significant, unit,
@@ -316,10 +316,11 @@ pub fn nameless_share(result: &DiagnosisResult) -> Option<f64> {
     let left = result.left_over?.share_of_gap;
     let [low, high] = result.gap.closure.interval_95;
     let is_divisible = left.is_finite() && high - low < 1.0;
-    if result.verdict.status == "none" || !is_divisible {
+    if result.verdict.status == VerdictStatus::None || !is_divisible {
         return None;
     }
-    let unnamed = effect(result, "unknown").and_then(|row| row.gap_share).map_or(0.0, |share| share.value);
+    let unnamed =
+        result.row(VerdictStatus::Unknown).and_then(|row| row.gap_share).map_or(0.0, |share| share.value);
     Some((left + (1.0 - left) * unnamed).clamp(0.0, 1.0))
 }
 
@@ -328,7 +329,8 @@ pub fn nameless_share(result: &DiagnosisResult) -> Option<f64> {
 #[must_use]
 pub fn is_calibrated_already(result: &DiagnosisResult) -> bool {
     const OF_NO_SIZE: f64 = 1.05;
-    result.verdict.status == "calibration" && result.gap.nominal <= OF_NO_SIZE * result.gap.recalibrated
+    result.verdict.status == VerdictStatus::Calibration
+        && result.gap.nominal <= OF_NO_SIZE * result.gap.recalibrated
 }
 
 /// The verdict in one or two sentences: what is certain, what is likely, what is open, and how much of the gap has no name.
@@ -337,24 +339,24 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
     let floor = floor(result);
     let rest = rest(result);
     let not_fitted = "on parts that were not fitted";
-    let text = match result.verdict.status.as_str() {
-        "none" => format!(
+    let text = match result.verdict.status {
+        VerdictStatus::None => format!(
             "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}{}.",
             remaining(result)
         ),
-        "calibration" if is_calibrated_already(result) => format!(
+        VerdictStatus::Calibration if is_calibrated_already(result) => format!(
             "Nothing is missing: the simulator as given explains what was recorded, down to {floor} {not_fitted}; \
              recalibration moves its coefficients by more than their errors and takes next to nothing off the \
              error{rest}{}.",
             remaining(result)
         ),
-        "calibration" => format!(
+        VerdictStatus::Calibration => format!(
             "Only the coefficients were off: recalibrated, the simulator explains what was recorded down to {floor} \
              {not_fitted}, and no effect is missing{rest}{}.",
             remaining(result)
         ),
-        "effect" => effects(result, &format!("{floor} {not_fitted}{rest}")),
-        _ => format!(
+        VerdictStatus::Effect => effects(result, &format!("{floor} {not_fitted}{rest}")),
+        VerdictStatus::Unknown => format!(
             "Something is missing that no known effect explains{}{}{}.",
             match repeating(result) {
                 Some(torque) => format!(": {torque}; with it the simulator leaves {floor}{rest}"),
@@ -454,7 +456,7 @@ fn nameless(result: &DiagnosisResult) -> Option<String> {
 
 /// The torque along the position that has no name, where there is one.
 fn repeating(result: &DiagnosisResult) -> Option<String> {
-    let row = effect(result, "unknown").filter(|row| row.gap_share.is_some())?;
+    let row = result.row(VerdictStatus::Unknown).filter(|row| row.gap_share.is_some())?;
     let wavenumber = row.parameters.get("wavenumber")?;
     // Of a length it is stated how far apart the waves are.
     let often = if wavenumber.unit == "1" {
@@ -467,6 +469,5 @@ fn repeating(result: &DiagnosisResult) -> Option<String> {
 
 /// Whether the simulator's coefficients are more probably off than right.
 fn is_off(result: &DiagnosisResult) -> bool {
-    let probability = |id: &str| effect(result, id).map_or(0.0, |row| row.probability);
-    probability("calibration") > probability("none")
+    result.probability(VerdictStatus::Calibration) > result.probability(VerdictStatus::None)
 }

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use runs::result::{EnvelopeRow, TraceRow};
+use results::{EnvelopeRow, TraceRow};
 
 use crate::format;
 use crate::parse::Run;

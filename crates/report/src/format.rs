@@ -4,7 +4,7 @@
 //! no break between a number and what belongs to it. Digits follow the uncertainty where one is
 //! known: two significant digits of the standard error, and the value to the same decimal place.
 
-use runs::result::WithInterval;
+use results::WithInterval;
 
 /// Keeps a number and its unit, or the parts of one number, on one line.
 const NO_BREAK: char = '\u{a0}';

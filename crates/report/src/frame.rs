@@ -1,7 +1,7 @@
 //! What every page has: head, origin, verdict, warnings, pipelines, data and files.
 
 use askama::Template;
-use runs::result::{DataSummary, OracleSummary, PipelineRow};
+use results::{DataSummary, OracleSummary, PipelineRow};
 
 use crate::glossary;
 use crate::plot::Hue;

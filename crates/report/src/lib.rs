@@ -30,6 +30,7 @@ mod rigs;
 mod run_table;
 mod scripts;
 mod tables;
+mod texts;
 mod trials;
 mod verdict;
 
@@ -43,31 +44,9 @@ pub use classes::{
 pub use error::ReportError;
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};
+pub use texts::RunTexts;
 pub use trials::class_rows;
 pub use verdict::in_a_sentence;
-
-/// The texts of the files in a run folder.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct RunTexts<'a> {
-    /// Name of the run, as its folder is called.
-    pub name: &'a str,
-    /// `config.toml`: the resolved settings; of a diagnosis `repaired.toml`. Shown as it is; may be empty.
-    pub config: &'a str,
-    /// `result.json`: see [`runs::result::EstimationResult`], [`runs::result::ComparisonResult`] and
-    /// [`runs::result::PredictionResult`]; of a diagnosis `diagnosis.json`: [`runs::result::DiagnosisResult`].
-    pub result: &'a str,
-    /// `trace.csv`: see [`runs::result::TraceRow`]. Empty for a method that takes no steps, and
-    /// for a comparison.
-    pub trace: &'a str,
-    /// `envelope.csv`: see [`runs::result::EnvelopeRow`]. Empty for a study of prediction.
-    pub envelope: &'a str,
-    /// `predictions.csv`: see [`runs::result::PredictionCsvRow`]. Empty but for a study of prediction.
-    pub predictions: &'a str,
-    /// `series.csv`: see [`runs::result::SeriesRow`]. Empty but for a diagnosis.
-    pub series: &'a str,
-    /// `environment.json`: what the run was made with. Shown as it is; may be empty.
-    pub environment: &'a str,
-}
 
 /// The report on a run, whatever it was asked for: a complete HTML page that loads nothing.
 /// Its scripts stand in it.

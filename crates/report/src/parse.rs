@@ -1,6 +1,6 @@
 //! From the texts of a run folder to typed values.
 
-use runs::result::{
+use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, LearnResult,
     LearnSeriesRow, LearnTorqueRow, LearnTraceRow, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
     RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,

@@ -1,6 +1,6 @@
 //! Sentences that a page and the terminal share: one function makes each.
 
-use runs::result::{BarRow, DataSummary, DiagnosisResult, OracleSummary, TruthComparison};
+use results::{BarRow, DataSummary, DiagnosisResult, OracleSummary, TruthComparison, VerdictStatus};
 
 use crate::format;
 
@@ -34,8 +34,7 @@ pub fn noticed(data: &DataSummary) -> Vec<String> {
 /// more probable than not beside the effects.
 #[must_use]
 pub fn is_of_the_chain_only(result: &DiagnosisResult) -> bool {
-    let none = result.effects.iter().find(|row| row.id == "none");
-    result.verdict.status == "effect" && none.is_some_and(|row| row.probability > 0.5)
+    result.verdict.status == VerdictStatus::Effect && result.probability(VerdictStatus::None) > 0.5
 }
 
 /// Rows about the truth of a simulated record and how far the answer is from it: a name and a sentence each.

@@ -1,6 +1,6 @@
 //! A run as it might have been, for the tests.
 
-use runs::result::{
+use results::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary,
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow,
 };

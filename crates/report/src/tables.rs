@@ -1,6 +1,6 @@
 //! The tables of the page: which number stands where, and to how many digits.
 
-use runs::result::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
+use results::{DataSummary, EstimationResult, PipelineOutcome, PipelineRow, SeedRow, TruthComparison};
 
 use crate::format::{count, exact, fixed, interval, percent, quantity, significant, with_uncertainty};
 

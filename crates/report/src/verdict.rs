@@ -1,6 +1,6 @@
 //! What a run came to, in one sentence, and what kind of record it is about.
 
-use runs::result::EstimationResult;
+use results::EstimationResult;
 
 use crate::format;
 

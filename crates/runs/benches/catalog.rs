@@ -7,7 +7,7 @@
 #![allow(missing_docs, clippy::unwrap_used, clippy::disallowed_methods, reason = "a benchmark")]
 
 use divan::{Bencher, black_box};
-use runs::result::RunState;
+use results::RunState;
 use runs::{KeptRun, list_runs};
 use serde_json::{Value, json};
 use std::path::Path;

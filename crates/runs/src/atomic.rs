@@ -5,9 +5,6 @@ use crate::error::RunError;
 use std::path::Path;
 use tempfile::NamedTempFile;
 
-/// Beginning of the names of temporary files. Who is killed while writing leaves one; resuming takes it away.
-pub(crate) const TEMPORARY: &str = ".tmp";
-
 /// Writes a file: temporary file in the same folder, flush to disk, rename, flush of the folder.
 ///
 /// A crash before the rename leaves what was there, and perhaps a file named `.tmp…`; after it, the new

@@ -3,12 +3,12 @@
 use crate::error::RunError;
 use crate::events::{EVENTS, Event, readable};
 use crate::lock::LOCK;
-use crate::result::{
+use crate::sweep::SweepFolder;
+use jiff::Timestamp;
+use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA,
     RIGS_SCHEMA, RigsResult, RunState, RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
 };
-use crate::sweep::SweepFolder;
-use jiff::Timestamp;
 use serde::Deserialize;
 use serde_json::Value;
 use settings::Document;

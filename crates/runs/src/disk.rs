@@ -5,6 +5,9 @@ use std::io::{ErrorKind, Result, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
+/// Beginning of the names of temporary files. Who is killed while writing leaves one; resuming takes it away.
+pub(crate) const TEMPORARY: &str = ".tmp";
+
 /// The disk that runs are kept on.
 ///
 /// The program's own is [`Disk::default`], the system's as it is. With the feature `faults`, which tests alone turn on,
@@ -67,7 +70,7 @@ impl Disk {
     /// A temporary file; it is gone when it is dropped.
     pub(crate) fn temporary_in(&self, folder: &Path) -> Result<NamedTempFile> {
         self.allow()?;
-        tempfile::Builder::new().prefix(crate::atomic::TEMPORARY).tempfile_in(folder)
+        tempfile::Builder::new().prefix(TEMPORARY).tempfile_in(folder)
     }
 
     /// A file to be written from its end on.

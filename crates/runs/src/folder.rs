@@ -1,7 +1,8 @@
 //! The folder of a run.
 
-use crate::atomic::{self, TEMPORARY};
+use crate::atomic;
 use crate::disk::Disk;
+use crate::disk::TEMPORARY;
 use crate::error::RunError;
 use crate::events::{EVENTS, Event, EventLog, readable};
 use crate::lock::{LOCK, Lock};

@@ -25,7 +25,6 @@ mod events;
 pub mod faults;
 mod folder;
 mod lock;
-pub mod result;
 mod scratch;
 mod sealed;
 mod sweep;

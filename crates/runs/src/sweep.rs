@@ -18,7 +18,7 @@ use crate::disk::Disk;
 use crate::error::RunError;
 use crate::folder::RunFolder;
 use crate::lock::Lock;
-use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
+use results::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -239,7 +239,7 @@ fn text_of(manifest: &SweepManifest) -> Result<Vec<u8>, RunError> {
 mod tests {
     use super::{SweepFolder, SweepFolderError};
     use crate::error::RunError;
-    use crate::result::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
+    use results::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
     use std::path::Path;
 
     fn manifest(runs: usize) -> SweepManifest {

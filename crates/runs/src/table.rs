@@ -20,7 +20,7 @@ pub fn to_csv<T: Serialize>(name: &str, rows: &[T]) -> Result<Vec<u8>, RunError>
 #[cfg(test)]
 mod tests {
     use super::to_csv;
-    use crate::result::TraceRow;
+    use results::TraceRow;
 
     #[test]
     fn what_is_read_again_is_what_was_written_to_the_bit() {

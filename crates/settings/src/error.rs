@@ -1,6 +1,6 @@
 //! What can be wrong with a configuration.
 
-use crate::document::Origin;
+use crate::origin::Origin;
 use thiserror::Error;
 
 /// A configuration that cannot be used: where, what was found, what was expected.

@@ -14,11 +14,13 @@ mod document;
 mod error;
 mod field;
 pub mod json_schema;
+mod origin;
 mod resolved;
 
-pub use document::{Document, Leaf, Origin};
+pub use document::{Document, Leaf};
 pub use error::SettingsError;
 pub use field::{Default, Field, Kind, Section};
+pub use origin::Origin;
 pub use resolved::{Resolved, Setting, nearest};
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! A configuration with every key known, typed, in range, and defaults filled in.
 
 use crate::base::simplified;
-use crate::document::{Document, FROM_WORKING_DIRECTORY, Origin, PATHS};
+use crate::document::{Document, FROM_WORKING_DIRECTORY, PATHS};
 use crate::error::SettingsError;
 use crate::field::{Field, Kind, Section};
+use crate::origin::Origin;
 use serde::de::DeserializeOwned;
 use std::path::Path;
 use toml::{Table, Value};

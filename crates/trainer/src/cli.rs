@@ -1,18 +1,19 @@
-//! The arguments.
+//! The command line: every subcommand with its arguments.
 
-use crate::cite::CiteArguments;
+use crate::commands::cite::CiteArguments;
+use crate::commands::compare::arguments::CompareArguments;
+use crate::commands::diagnose::arguments::DiagnoseArguments;
+use crate::commands::explain::ExplainArguments;
+use crate::commands::export::ExportArguments;
+use crate::commands::init::InitArguments;
+use crate::commands::list::Listing;
+use crate::commands::predict::PredictArguments;
+use crate::commands::schema::Purpose;
+use crate::commands::sweep::arguments::SweepArguments;
+use crate::commands::trials::arguments::TrialsArguments;
 use crate::configured::ConfigArguments;
-use crate::diagnose::arguments::DiagnoseArguments;
-use crate::explain::ExplainArguments;
-use crate::init::InitArguments;
-use crate::learn::predict::PredictArguments;
-use crate::schema::Purpose;
-use crate::side_by_side::arguments::CompareArguments;
-use crate::sweep::arguments::SweepArguments;
-use crate::tracking::ExportArguments;
-use crate::trials::arguments::TrialsArguments;
-use clap::{Args, Parser, Subcommand, ValueEnum};
-use runs::Disk;
+use crate::options::{ExperimentArguments, Output};
+use clap::{Parser, Subcommand};
 use std::path::PathBuf;
 
 /// Estimates the damping of oscillators from records, compared with closed-form least squares, and
@@ -62,51 +63,6 @@ pub(crate) struct Arguments {
     /// Running a configuration.
     #[command(flatten)]
     pub(crate) experiment: ExperimentArguments,
-}
-
-/// Running the experiment of a configuration.
-#[derive(Debug, Args)]
-pub(crate) struct ExperimentArguments {
-    /// The experiment: a TOML file
-    pub(crate) config: Option<PathBuf>,
-    /// Values that override the file's, by dotted key: estimator.hidden=[64] seed=3
-    #[arg(value_name = "KEY=VALUE")]
-    pub(crate) overrides: Vec<String>,
-    #[command(flatten)]
-    pub(crate) run: RunOptions,
-    #[command(flatten)]
-    pub(crate) output: Output,
-    /// Where folders are made: the system's disk, and in tests one that fails.
-    #[arg(skip)]
-    pub(crate) disk: Disk,
-}
-
-/// What every command that runs a configuration takes.
-#[derive(Debug, Clone, Default, Args)]
-pub(crate) struct RunOptions {
-    /// Folder for what comes out: new or empty [default: a new one below reports/runs]
-    #[arg(long, value_name = "DIR")]
-    pub(crate) out: Option<PathBuf>,
-    /// Resumes the run in the folder of --out, with the same result to the bit; starts it if the folder is new
-    #[arg(long, requires = "out")]
-    pub(crate) resume: bool,
-    /// Overrides the configuration's seed
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-    /// Threads over seeds, records, cases or runs; results do not depend on it [default: one for each core]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
-}
-
-/// What is printed.
-#[derive(Debug, Clone, Copy, Args)]
-pub(crate) struct Output {
-    /// Prints no progress and no table
-    #[arg(long)]
-    pub(crate) quiet: bool,
-    /// Prints the result alone, as JSON, on standard output
-    #[arg(long)]
-    pub(crate) json: bool,
 }
 
 #[derive(Debug, Subcommand)]
@@ -179,14 +135,4 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Listing {
-    /// The estimators
-    Estimators,
-    /// The effects that a simulator may lack
-    Effects,
-    /// The runs that are kept in a folder, newest first
-    Runs,
 }

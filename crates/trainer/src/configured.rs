@@ -1,9 +1,7 @@
 //! A configuration of any task, read and checked, as the commands need it that do not run one.
 
-use crate::cli::Output;
 use crate::error::TrainerError;
-use crate::simulate::is_simulation;
-use crate::trials::is_trials;
+use crate::options::{ExperimentArguments, Output};
 use ::learn::learners::LEARNERS;
 use clap::Args;
 use experiment::sweep::apply_override;
@@ -108,6 +106,22 @@ pub(crate) fn check_task(
 /// Ids of the classical methods.
 pub(crate) fn classical() -> Vec<&'static str> {
     CLASSICAL.iter().map(|route| route.id).collect()
+}
+
+/// Whether a configuration asks for a simulation.
+pub(crate) fn is_simulation(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("simulate"))
+}
+
+/// Whether a configuration asks for trials.
+pub(crate) fn is_trials(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some("trials"))
+}
+
+/// Reads the configuration that the arguments name, overrides applied.
+pub(crate) fn read_config(arguments: &ExperimentArguments) -> Result<Document, TrainerError> {
+    let path = arguments.config.as_ref().ok_or(TrainerError::NoConfig)?;
+    read_document(path, &arguments.overrides, arguments.run.seed)
 }
 
 /// Reads a configuration file with those that it stands on, and applies overrides in their order, then the seed's.

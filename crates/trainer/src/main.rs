@@ -11,51 +11,29 @@
     )
 )]
 
-mod agreement;
-mod cautions;
-mod check;
-mod cite;
 mod cli;
-mod compare;
+mod commands;
 mod configured;
-mod console;
-mod diagnose;
-mod environment;
 mod error;
-mod estimate;
 mod everywhere;
-mod explain;
-mod fit;
-mod init;
-mod input;
-mod interrupt;
-mod known_truth;
-mod learn;
-mod list;
-mod list_runs;
-mod manual;
-mod method;
+mod fits;
+mod folders;
 mod misplaced;
-mod predict;
-mod progress;
-mod quit;
-mod rerender;
-mod resume;
-mod run;
-mod schema;
-mod side_by_side;
-mod simulate;
-mod summary;
-mod sweep;
-mod tracking;
-mod trials;
-mod verify;
-mod watcher;
+mod options;
+mod outcome;
+mod run_table;
+mod terminal;
 
 use clap::{CommandFactory, FromArgMatches};
 use cli::{Arguments, Command};
+use commands::{
+    check, cite, compare, diagnose, explain, export, init, list, manual, predict, report, run, schema,
+    simulate, sweep, trials, verify,
+};
 use error::TrainerError;
+use outcome::Outcome;
 use std::process::ExitCode;
+use terminal::console;
 
 fn main() -> ExitCode {
     let command = everywhere::everywhere(Arguments::command());
@@ -84,46 +62,25 @@ fn printed(outcome: Outcome) -> Result<Outcome, TrainerError> {
     }
 }
 
-/// How a command that gave a result ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Outcome {
-    /// Done, and every stated check holds.
-    Done,
-    /// Done, but a stated check failed.
-    CheckFailed,
-    /// Stopped on request; the best so far is saved.
-    Interrupted,
-}
-
-impl Outcome {
-    fn exit_code(self) -> u8 {
-        match self {
-            Self::Done => 0,
-            Self::CheckFailed => 1,
-            Self::Interrupted => 130,
-        }
-    }
-}
-
 fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
     match arguments.command {
         Some(Command::List { what, folder, output }) => list::list(what, folder.as_deref(), output),
         Some(Command::Sweep(arguments)) => sweep::command(&arguments),
-        Some(Command::Compare(arguments)) => side_by_side::command(&arguments),
+        Some(Command::Compare(arguments)) => compare::command(&arguments),
         Some(Command::Check(arguments)) => check::command(&arguments),
         Some(Command::Cite(arguments)) => cite::command(&arguments),
         Some(Command::Explain(arguments)) => explain::command(&arguments),
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
-        Some(Command::Predict(arguments)) => learn::predict::command(&arguments),
+        Some(Command::Predict(arguments)) => predict::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
-        Some(Command::Verify { run, threads, output }) => verify::verify(&run, threads, output),
-        Some(Command::Export(arguments)) => tracking::command(&arguments),
-        Some(Command::Completions { shell }) => manual::completions(shell),
-        Some(Command::Man { folder }) => manual::man(folder.as_deref()),
-        Some(Command::Report { run, output }) => rerender::rerender(&run, output),
+        Some(Command::Verify { run, threads, output }) => verify::command(&run, threads, output),
+        Some(Command::Export(arguments)) => export::command(&arguments),
+        Some(Command::Completions { shell }) => manual::completions(Arguments::command(), shell),
+        Some(Command::Man { folder }) => manual::man(Arguments::command(), folder.as_deref()),
+        Some(Command::Report { run, output }) => report::command(&run, output),
         None => run::run(&arguments.experiment),
     }
 }

@@ -62,22 +62,19 @@ impl Data {
         let mut segments = Vec::new();
         let mut numbers = Vec::new();
         for (number, (segment, first)) in self.segments.iter().zip(self.firsts()).enumerate() {
-            let wanted = |sample: usize| keep(first + segment.part_of(sample));
-            if (0..segment.parts.len()).all(|part| !keep(first + part)) {
-                continue;
+            if (0..segment.parts.len()).any(|part| keep(first + part)) {
+                segments.push(segment.keeping(|sample| keep(first + segment.part_of(sample))));
+                numbers.push(number);
             }
-            let kept: Vec<usize> =
-                (0..segment.times.len()).filter(|&sample| sample == 0 || wanted(sample)).collect();
-            let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
-            segments.push(Segment {
-                times: pick(&segment.times),
-                values: pick(&segment.values),
-                parts: vec![0],
-                ..segment.clone()
-            });
-            numbers.push(number);
         }
         (Self { segments, ..self.clone() }, numbers)
+    }
+
+    /// The samples that `keep` names by segment and place, and of every segment its very first one, where its start state
+    /// stands.
+    pub(crate) fn keeping(&self, keep: impl Fn(usize, usize) -> bool) -> Self {
+        let of = |(number, own): (usize, &Segment)| own.keeping(|sample| keep(number, sample));
+        Self { segments: self.segments.iter().enumerate().map(of).collect(), ..self.clone() }
     }
 
     /// Residuals on this horizon by unjoined segment.
@@ -96,6 +93,13 @@ impl Data {
 }
 
 impl Segment {
+    /// Some of the samples, and the very first one.
+    fn keeping(&self, keep: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.times.len()).filter(|&sample| sample == 0 || keep(sample)).collect();
+        let pick = |values: &[f64]| kept.iter().filter_map(|&at| values.get(at).copied()).collect();
+        Self { times: pick(&self.times), values: pick(&self.values), parts: vec![0], ..self.clone() }
+    }
+
     fn part_of(&self, sample: usize) -> usize {
         self.parts.partition_point(|&from| from <= sample).saturating_sub(1)
     }

@@ -3,7 +3,6 @@
 use crate::answer::{Detectability, Interval, Rivalry};
 use crate::data::segments::Data;
 use crate::data::shooting_interval::shortened;
-use crate::diagnose::Settings;
 use crate::error::DiagnosisError;
 use crate::evidence::held_out::{Both, HeldOut};
 use crate::evidence::weights::{ratio, significant};
@@ -16,6 +15,7 @@ use crate::model::matrices::entry;
 use crate::noise::statistics::normal_above;
 use crate::search::archive::Archive;
 use crate::search::refine::without;
+use crate::settings::Settings;
 use rayon::prelude::*;
 
 /// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's

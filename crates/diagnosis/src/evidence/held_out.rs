@@ -1,10 +1,12 @@
 //! How well a hypothesis predicts what it was not fitted to.
 
-use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::data::segments::{Data, Segment};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, residuals};
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;
 use nalgebra::DVector;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
 
 /// Residuals on parts not fitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,8 +16,8 @@ pub(crate) struct HeldOut {
     /// Start values fitted by segment.
     pub(crate) starts: usize,
     /// By segment too, where nothing at all was fitted to the parts held out, not even their start states: what goes on
-    /// from the parts that were. With fitted start states, on the scale that residuals have before these are fitted, where a
-    /// record begins and where segments are not joined.
+    /// from the parts that were. These are segments, or blocks of them where there are few. With fitted start states, on the
+    /// scale that residuals have before these are fitted, where a record begins and where segments are not joined.
     pub(crate) continued: Vec<DVector<f64>>,
 }
 
@@ -31,6 +33,16 @@ fn mean_square(residuals: &[DVector<f64>], starts: usize) -> f64 {
     let freedom: f64 = residuals.iter().map(|e| e.len() as f64 - starts as f64).sum();
     squares / freedom.max(1.0)
 }
+
+/// Parts of the records that take turns at being held out, at least: a law learned from one half of a swing that dies
+/// away would have to foretell amplitudes that it never saw.
+const FEWEST: usize = 8;
+
+/// Periods in a block, at least, and not a multiple of a half: a block is not always the same side of the swing.
+const BLOCK: f64 = 0.75;
+
+/// Turns in which blocks are held out.
+const TURNS: usize = 4;
 
 /// A fit on some horizon, and the same on the segments as they were cut.
 #[derive(Debug, Clone, Copy)]
@@ -92,9 +104,51 @@ impl Both<'_> {
         Ok(parts.filter(|(index, _)| !train(*index)).collect())
     }
 
+    /// For every sample in which turn it is held out, where the segments are too few to take turns.
+    fn turns(&self) -> Option<Vec<Vec<usize>>> {
+        if self.segments.segments.len() >= FEWEST {
+            return None;
+        }
+        let period = TAU / self.longer.facts.frequency;
+        let span: f64 = self.longer.segments.iter().map(Segment::span).sum();
+        let length = (span / FEWEST as f64).max(BLOCK * period);
+        let of = |segment: &Segment| {
+            let first = segment.times.first().copied().unwrap_or_default();
+            segment.times.iter().map(|time| ((time - first) / length) as usize % TURNS).collect()
+        };
+        Some(self.longer.segments.iter().map(of).collect())
+    }
+
+    /// Residuals of the samples that are held out in each turn; what was fitted goes on into them.
+    fn by_turns(&self, turns: &[Vec<usize>], moving: Moving) -> Result<Vec<DVector<f64>>, DynamicsError> {
+        let turn_of = |segment: usize, sample: usize| turns.get(segment).and_then(|own| own.get(sample));
+        let learned: Vec<Vec<DVector<f64>>> = (0..TURNS)
+            .into_par_iter()
+            .map(|turn| {
+                let train = self.longer.keeping(|segment, sample| turn_of(segment, sample) != Some(&turn));
+                let point = self.followed.point.clone();
+                let learned = fit(&train, &self.followed.hypothesis, point, moving, Stopping::HELD_OUT)?;
+                residuals(self.longer, &learned)
+            })
+            .collect::<Result<_, DynamicsError>>()?;
+        let held_out = |segment: usize, sample: usize| {
+            let turn = turn_of(segment, sample).copied().unwrap_or_default();
+            learned.get(turn).and_then(|own| own.get(segment)?.get(sample)).copied().unwrap_or_default()
+        };
+        let lengths = self.longer.segments.iter().map(|segment| segment.times.len()).enumerate();
+        let all: Vec<DVector<f64>> = lengths
+            .map(|(segment, length)| DVector::from_fn(length, |sample, _| held_out(segment, sample)))
+            .collect();
+        Ok(self.longer.by_part(&all))
+    }
+
     /// Interleaved segments, both ways: fitted to the even ones and scored on the odd ones, and the other way round.
     /// With `Moving::Starts` no coefficient is fitted at all.
     pub(crate) fn interleaved(&self, moving: Moving) -> Result<HeldOut, DynamicsError> {
+        if let Some(turns) = self.turns() {
+            let residuals = self.by_turns(&turns, moving)?;
+            return Ok(HeldOut { continued: residuals.clone(), residuals, starts: 0 });
+        }
         let (even, odd) = (|index: usize| index.is_multiple_of(2), |index: usize| !index.is_multiple_of(2));
         let starts = self.fitted.hypothesis.start_length();
         let (first, second) = rayon::join(|| self.scored(&odd, moving), || self.scored(&even, moving));

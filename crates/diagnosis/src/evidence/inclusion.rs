@@ -10,7 +10,7 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood};
-use crate::evidence::probability::probability;
+use crate::evidence::probability::{Doubt, probability};
 use crate::evidence::weights::{Weighed, price, share};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
@@ -45,6 +45,11 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
         }
     }
     asked
+}
+
+/// Whether an effect is one of a class.
+fn is_of(own: Candidate, class: &str) -> bool {
+    own.counts() && own.evidence_class().id() == class
 }
 
 /// Whether a set has an effect of a class.
@@ -115,15 +120,21 @@ impl<'a> Inclusion<'a> {
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
-    pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
+    pub(crate) fn classes(&self, witness: Option<&Witness>, doubt: Doubt, seed: &Seed) -> Vec<EffectClass> {
         let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         EvidenceClass::among(members)
             .into_iter()
-            .filter_map(|class| self.class(class, witness, seed))
+            .filter_map(|class| self.class(class, witness, doubt, seed))
             .collect()
     }
 
-    fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
+    fn class(
+        &self,
+        class: EvidenceClass,
+        witness: Option<&Witness>,
+        doubt: Doubt,
+        seed: &Seed,
+    ) -> Option<EffectClass> {
         let place = |with: bool| self.weighed.iter().position(|w| holds(w.fit, class) == with);
         let (with, without) = (place(true)?, place(false)?);
         let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
@@ -142,7 +153,7 @@ impl<'a> Inclusion<'a> {
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
         };
-        class_row.probability = probability(&class_row);
+        class_row.probability = probability(&class_row, doubt);
         Some(class_row)
     }
 
@@ -152,24 +163,28 @@ impl<'a> Inclusion<'a> {
         self.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
     }
 
-    /// The fit of that set with the classes that it lacks, each with the members and where these are in the best set that
-    /// has the class; none where it lacks nothing.
+    /// A fit of the effects of some classes, all of them, where no set is known that has these and no others: begun at the
+    /// best set that has most of them, without its other members. Where that lacks a class too, it gets the members from the
+    /// best set with the class.
     pub(crate) fn completed(&self, data: &Data, classes: &[&str]) -> Option<Fit> {
-        let base = self.within(classes)?.fit;
-        let is_of = |own: &Candidate, id: &str| own.counts() && own.evidence_class().id() == id;
-        let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(own, id));
+        let has = |fit: &Fit, id: &str| fit.hypothesis.candidates.iter().any(|own| is_of(*own, id));
+        let count = |fit: &Fit| classes.iter().filter(|id| has(fit, id)).count();
+        if self.within(classes).is_some_and(|own| count(own.fit) == classes.len()) {
+            return None;
+        }
+        // The first of the best.
+        let base = self.weighed.iter().rev().max_by_key(|w| count(w.fit))?.fit;
         let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
-        for &id in classes.iter().filter(|id| !has(base, id)) {
+        for id in classes.iter().filter(|id| !has(base, id)) {
             let Some(from) = self.weighed.iter().find(|w| has(w.fit, id)) else { continue };
             let parts = from.fit.hypothesis.parts(&data.facts, &from.fit.point.globals);
             let members = from.fit.hypothesis.candidates.iter().zip(parts);
-            let own = members.filter(|(own, _)| is_of(own, id));
+            let own = members.filter(|(own, _)| is_of(**own, id));
             added.extend(own.map(|(own, part)| (*own, part.to_vec())));
         }
-        if added.is_empty() {
-            return None;
-        }
-        let begun = proposal(data, base, &[], &added);
+        let is_other = |own: &&Candidate| own.counts() && !classes.contains(&own.evidence_class().id());
+        let others: Vec<Candidate> = base.hypothesis.candidates.iter().filter(is_other).copied().collect();
+        let begun = proposal(data, base, &others, &added);
         let ended = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
         (!vanished(data, &ended)).then_some(ended)
     }

@@ -154,6 +154,16 @@ pub(crate) fn squares(data: &Data, hypothesis: &Hypothesis, point: &Point) -> Re
     Ok(at.iter().map(|prediction| prediction.residual.norm_squared()).sum())
 }
 
+/// Residuals of a fit on the same segments with other inputs.
+///
+/// # Errors
+/// What the dynamics refuse there.
+pub(crate) fn residuals(data: &Data, at: &Fit) -> Result<Vec<DVector<f64>>, DynamicsError> {
+    let mut simulator = Simulator::new(data, &at.hypothesis, &at.point.globals, Derivatives::None)?;
+    let predictions = evaluate(&mut simulator, &data.segments, &at.point)?;
+    Ok(predictions.into_iter().map(|prediction| prediction.residual).collect())
+}
+
 /// Lets segments that are behind begin again, at the coefficients of `point`.
 fn begin_again(
     simulator: &mut Simulator<'_>,

@@ -6,7 +6,7 @@ use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fi
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::search::archive::{Archive, vanished};
-use crate::search::proposals::{fit_all, generalized};
+use crate::search::proposals::{fit_all, generalized, proposal};
 use rayon::prelude::*;
 
 /// Sets that are refined in any case.
@@ -61,17 +61,20 @@ pub(crate) fn refine(
         let with = classes.filter_map(|class| waiting.iter().find(|w| !lacks(w, class)));
         let mut chosen: Vec<&Fit> = Vec::new();
         for fit in batch.iter().take(MOST).chain(further).chain(without).chain(with).map(|w| w.fit) {
-            if !chosen.iter().any(|known| known.hypothesis.candidates == fit.hypothesis.candidates) {
+            if !chosen.iter().any(|known| counted(known).eq(counted(fit))) {
                 chosen.push(fit);
             }
         }
         waiting = rest;
+        let beside = uncounted(data, best.fit);
         let again = |found: &Fit| {
-            fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL).ok()
+            let begun = proposal(data, found, &[], &absent(found, &beside));
+            if let Some(known) = refined.find(&begun.hypothesis.candidates) {
+                return Some(known.clone());
+            }
+            fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()
         };
-        let known = |found: &Fit| refined.find(&found.hypothesis.candidates).cloned();
-        let fitted: Vec<Option<Fit>> =
-            chosen.par_iter().map(|found| known(found).or_else(|| again(found))).collect();
+        let fitted: Vec<Option<Fit>> = chosen.par_iter().map(|found| again(found)).collect();
         let (gone, fits): (Vec<Fit>, Vec<Fit>) =
             fitted.into_iter().flatten().partition(|fit| vanished(data, fit));
         rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
@@ -85,6 +88,24 @@ pub(crate) fn refine(
         }
     }
     refined
+}
+
+/// The members of a set that count as effects.
+fn counted(fit: &Fit) -> impl Iterator<Item = &Candidate> {
+    fit.hypothesis.candidates.iter().filter(|own| own.counts())
+}
+
+/// The members of a set that do not count as effects, with their parameters: how the sensor shows the motion is the same
+/// whatever moves it, and sets with and without it are not compared.
+fn uncounted(data: &Data, set: &Fit) -> Vec<(Candidate, Vec<f64>)> {
+    let parts = set.hypothesis.parts(&data.facts, &set.point.globals);
+    let members = set.hypothesis.candidates.iter().zip(parts).filter(|(own, _)| !own.counts());
+    members.map(|(own, part)| (*own, part.to_vec())).collect()
+}
+
+/// Those of some effects that a set has not.
+fn absent(set: &Fit, effects: &[(Candidate, Vec<f64>)]) -> Vec<(Candidate, Vec<f64>)> {
+    effects.iter().filter(|(own, _)| !set.hypothesis.candidates.contains(own)).cloned().collect()
 }
 
 /// The fit of a set with one member left out, and what that costs: begun where the set was.

@@ -1,8 +1,9 @@
 //! A wandering zero.
 
-use super::step::{Observed, Sampled, SampledMotion, Samples, Step};
+use super::step::{Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::law::Values;
+use crate::units::Observed;
 use crate::units::Quantity;
 
 const DESCRIPTION: Description = Description {

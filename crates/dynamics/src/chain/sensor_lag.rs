@@ -1,10 +1,11 @@
 //! A sensor that follows with a lag.
 
 use super::low_pass;
-use super::step::{Extent, Observed, Sampled, SampledMotion, Samples, Step};
+use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
 use crate::law::Values;
+use crate::units::Observed;
 use crate::units::Quantity;
 
 const DESCRIPTION: Description = Description {

@@ -1,9 +1,10 @@
 //! An eccentric encoder.
 
-use super::step::{Extent, Observed, Sampled, SampledMotion, Samples, Step};
+use super::step::{Extent, Sampled, SampledMotion, Samples, Step};
 use crate::description::{Class, Description, Kind, Parameter, Range};
 use crate::error::DynamicsError;
 use crate::law::Values;
+use crate::units::Observed;
 use crate::units::{Coordinate, Quantity};
 
 const DESCRIPTION: Description = Description {

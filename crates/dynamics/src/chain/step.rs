@@ -4,22 +4,8 @@ use crate::description::Description;
 use crate::error::DynamicsError;
 use crate::law::Values;
 use crate::scalar::{Dual, Scalar};
-use crate::units::Coordinate;
+use crate::units::{Coordinate, Observed};
 use rand::Rng;
-use serde::{Deserialize, Serialize};
-
-/// What the sensor observes of the motion.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Observed {
-    /// The position itself: an encoder.
-    #[default]
-    Position,
-    /// Its first derivative: a gyroscope, a laser vibrometer.
-    Velocity,
-    /// Its second derivative: an accelerometer.
-    Acceleration,
-}
 
 /// A number whose plain value decides between two pieces of a step, such as clipped or not.
 pub trait Sampled: Scalar {

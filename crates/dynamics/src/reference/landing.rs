@@ -1,21 +1,11 @@
 //! Where a step meets an edge, and the step cut to end there.
 
-use super::run::{MOST_ITERATIONS, Run};
+use super::run::{Landing, MOST_ITERATIONS, Run};
 use super::step::{Solved, Step, Vector, state};
 use crate::edges::Edge;
 
 /// Part of a step over which a margin's slope is taken: its cube is far below what a visit behind an edge does.
 const SLOPE: f64 = 1e-5;
-
-/// How a step toward an edge ended.
-pub(super) enum Landing {
-    /// On the edge.
-    OnTheEdge,
-    /// The edge lies where the step begins.
-    AtOnce,
-    /// The stage equations were not solved.
-    Failed,
-}
 
 /// A part of a step and the margin of an edge there.
 #[derive(Debug, Clone, Copy)]

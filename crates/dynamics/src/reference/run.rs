@@ -1,11 +1,10 @@
 //! The march from piece to piece.
 
-use super::Tolerance;
 use super::gauss::Gauss;
-use super::landing::Landing;
 use super::motion::{Event, Happening, Motion};
 use super::recorder::Recorder;
 use super::step::{LENGTH, Solved, Step, Vector, state};
+use super::tolerance::Tolerance;
 use crate::edges::Edge;
 use crate::error::DynamicsError;
 use crate::field::{Field, Mode};
@@ -27,6 +26,16 @@ const MOST_EVENTS_AT_ONCE: usize = 64;
 
 /// Iterations of the stage equations beyond which a step counts as too large.
 pub(super) const MOST_ITERATIONS: usize = 30;
+
+/// How a step toward an edge ended.
+pub(super) enum Landing {
+    /// On the edge.
+    OnTheEdge,
+    /// The edge lies where the step begins.
+    AtOnce,
+    /// The stage equations were not solved.
+    Failed,
+}
 
 /// A simulation under way.
 pub(crate) struct Run<'a> {

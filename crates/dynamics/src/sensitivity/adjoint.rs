@@ -1,26 +1,9 @@
 //! Derivatives of a written-down field, by one sweep backward.
 
 use super::expression::Operation;
-use super::graph::{Graph, Node};
-use super::series::{LENGTH, Series, convolve, dot_reversed, first};
-
-/// The derivative series of a result with respect to a node. Coefficients from `length` on are zero.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Adjoint {
-    length: usize,
-    series: Series,
-}
-
-impl Adjoint {
-    pub(crate) const NONE: Self = Self { length: 0, series: [0.0; LENGTH] };
-
-    fn clear(&mut self) {
-        for value in self.series.iter_mut().take(self.length) {
-            *value = 0.0;
-        }
-        self.length = 0;
-    }
-}
+use super::graph::Graph;
+use super::node::Node;
+use super::series::{Adjoint, Series, convolve, dot_reversed, first};
 
 impl Graph {
     /// Derivative series of a node with respect to every other, up to and with `degree`.

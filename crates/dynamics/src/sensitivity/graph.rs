@@ -1,9 +1,9 @@
 //! A field written down: the graph of its operations.
 
-use super::adjoint::Adjoint;
 use super::expression::{Expression, Operation, Recorder};
+use super::node::Node;
 use super::program::Program;
-use super::series::{LENGTH, Series, first};
+use super::series::{Adjoint, LENGTH, Series, first};
 use crate::edges::Edge;
 use crate::field::{Field, Mode, SYSTEM_HIDDEN, State, Term};
 use crate::law::MOST_PARAMETERS;
@@ -23,20 +23,6 @@ pub(crate) const NOMINAL: usize = INPUT + 1;
 /// Parameters of the first effect.
 pub(crate) const EFFECTS: usize = NOMINAL + 5;
 
-/// A node of the graph.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Node {
-    pub(crate) operation: Operation,
-    /// Depends on parameters only.
-    pub(crate) constant: bool,
-    /// Depends on the state, or on a parameter that is free.
-    pub(crate) wanted: bool,
-    /// A result depends on it.
-    used: bool,
-    /// Its series is needed by itself: as a result, in a nonlinear operation, or in a derivative.
-    kept: bool,
-}
-
 /// The field of one mode, written down: rates of the state and margins of the edges.
 #[derive(Debug, Clone)]
 pub(crate) struct Graph {
@@ -49,18 +35,6 @@ pub(crate) struct Graph {
     pub(crate) edges: Vec<(Edge, usize)>,
     pub(super) series: Vec<Series>,
     pub(super) adjoints: Vec<Adjoint>,
-}
-
-impl Node {
-    /// Whether its series has to be computed, once constants are known.
-    pub(crate) fn varies(&self) -> bool {
-        self.used && !self.constant
-    }
-
-    /// Whether its series is needed by itself.
-    pub(crate) fn is_kept(&self) -> bool {
-        self.kept
-    }
 }
 
 impl Graph {

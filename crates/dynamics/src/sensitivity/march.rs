@@ -1,12 +1,12 @@
 //! The march from step to step, by Taylor series.
 
 use super::columns::Coupling;
+use super::expansion::expand;
 use super::free::Place;
 use super::graph::{INPUT, MOST_STATES, STATE, TIME};
 use super::model::Model;
 use super::response::{FullState, Response};
 use super::series::{LENGTH, Series, slope, value};
-use super::step_size::expand;
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
 use crate::input::Input;

@@ -28,12 +28,15 @@
 mod adjoint;
 mod columns;
 mod crossing;
+mod expansion;
 mod expression;
 mod free;
 mod graph;
 mod march;
 mod model;
+mod node;
 mod program;
+mod respond;
 mod response;
 mod saltation;
 mod series;

@@ -3,13 +3,10 @@
 use super::columns::{Columns, Coupling};
 use super::free::{Free, Place, place};
 use super::graph::{EFFECTS, Graph, MOST_STATES, NOMINAL};
-use super::march::March;
-use super::response::{FullState, Response};
 use super::series::LENGTH;
 use crate::description::Range;
 use crate::error::DynamicsError;
 use crate::field::{Field, Mode};
-use crate::input::Input;
 use crate::law::MOST_PARAMETERS;
 use crate::scalar::Rounded;
 use crate::system::System;
@@ -151,44 +148,6 @@ impl Model {
             piece.current = false;
         }
         Ok(())
-    }
-
-    /// The motion at `times` from a start at the first of them, with its sensitivities.
-    ///
-    /// `times` in seconds, never decreasing; they may be uneven and are also the time that drifts, forcing and
-    /// input count in. A column of a start value whose hidden states are relaxed includes their moving along.
-    ///
-    /// # Errors
-    /// [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::Diverged`],
-    /// [`DynamicsError::StepTooSmall`] and [`DynamicsError::TooManySteps`].
-    pub fn run_into(
-        &mut self,
-        start: FullState,
-        input: Option<&Input>,
-        times: &[f64],
-        response: &mut Response,
-    ) -> Result<(), DynamicsError> {
-        crate::times::check(times)?;
-        crate::Start { position: start.position, velocity: start.velocity }.check()?;
-        if let Some(&value) = start.hidden.iter().flatten().find(|value| !value.is_finite()) {
-            return Err(DynamicsError::BadStart { what: "hidden state", value });
-        }
-        March::new(self, start, input, times, response).run()
-    }
-
-    /// As [`Self::run_into`], into new buffers.
-    ///
-    /// # Errors
-    /// As [`Self::run_into`].
-    pub fn run(
-        &mut self,
-        start: FullState,
-        input: Option<&Input>,
-        times: &[f64],
-    ) -> Result<Response, DynamicsError> {
-        let mut response = Response::default();
-        self.run_into(start, input, times, &mut response)?;
-        Ok(response)
     }
 
     fn parameter(&mut self, leaf: usize) -> Option<&mut f64> {

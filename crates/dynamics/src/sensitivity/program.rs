@@ -1,7 +1,7 @@
 //! The operations of a graph, condensed.
 
 use super::expression::Operation;
-use super::graph::Node;
+use super::node::Node;
 use super::series::{Series, convolve, dot_reversed, first};
 
 /// What has to be computed for each coefficient. Chains of sums and of products with constants are one linear

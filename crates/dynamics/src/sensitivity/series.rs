@@ -49,6 +49,24 @@ pub(crate) fn slope(series: &[f64], time: f64) -> f64 {
     terms.fold(0.0, |sum, (power, coefficient)| sum * time + coefficient * power as f64)
 }
 
+/// The derivative series of a result with respect to a node. Coefficients from `length` on are zero.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Adjoint {
+    pub(super) length: usize,
+    pub(super) series: Series,
+}
+
+impl Adjoint {
+    pub(crate) const NONE: Self = Self { length: 0, series: [0.0; LENGTH] };
+
+    pub(super) fn clear(&mut self) {
+        for value in self.series.iter_mut().take(self.length) {
+            *value = 0.0;
+        }
+        self.length = 0;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{LENGTH, convolve, slope, value};

@@ -23,6 +23,8 @@ mod backpropagation;
 mod config;
 mod fit;
 mod network;
+#[cfg(test)]
+mod tests;
 
 pub use amortized::{AMORTIZED_ENTRY, AmortizedLstmConfig};
 pub use config::LstmConfig;

@@ -24,6 +24,8 @@ mod amortized;
 mod config;
 mod fit;
 mod network;
+#[cfg(test)]
+mod tests;
 
 pub use amortized::{AMORTIZED_ENTRY, AmortizedTransformerConfig};
 pub use config::TransformerConfig;

@@ -1,7 +1,7 @@
 //! How far what a network says of its errors is to be believed.
 
 use super::bank::Prior;
-use super::training::Training;
+use super::training::{Calibration, Training};
 use crate::decay::Encoder;
 use burn::tensor::Device;
 use estimator::{FitContext, FitError};
@@ -11,18 +11,6 @@ pub(super) const QUANTILE_975: f64 = 1.959_963_984_540_054;
 
 /// Share of the intervals that are to hold the truth.
 const COVERAGE: f64 = 0.95;
-
-/// Factors on stated standard errors.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Calibration {
-    pub(super) level: f64,
-    pub(super) rate: f64,
-}
-
-impl Calibration {
-    /// What the network says, as it says it.
-    pub(super) const NONE: Self = Self { level: 1.0, rate: 1.0 };
-}
 
 impl Training {
     /// The factors with which 95 % intervals hold the truth in 95 % of simulated envelopes, which the

@@ -2,8 +2,9 @@
 
 use super::bank::Prior;
 use super::calibration::QUANTILE_975;
+use super::mirror::SAID;
 use super::reading::Reading;
-use super::training::{SAID, Skill, Training};
+use super::training::{Skill, Training};
 use crate::decay::Encoder;
 use crate::device::device;
 use crate::flat::{named_parameters, with_parameters};

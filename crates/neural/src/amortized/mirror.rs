@@ -3,9 +3,12 @@
 //! Told backward, an envelope grows as fast as it decays. A network need not learn this: it reads both ways
 //! and says the mean, so that a curve that bends evenly about its middle has no rate to it, exactly.
 
-use super::training::SAID;
 use crate::sequence::Sequence;
 use burn::tensor::Tensor;
+
+/// Numbers a network says of a sequence: level, rate, and the logarithms of their variances times the
+/// number of entries.
+pub(super) const SAID: usize = 4;
 
 /// The sequences, then each of them backward.
 pub(super) fn both_ways<'a>(sequences: impl Iterator<Item = &'a Sequence> + Clone) -> Vec<Sequence> {

@@ -1,8 +1,9 @@
 //! How a trained network reads envelopes.
 
 use super::bank::Standardized;
+use super::mirror::SAID;
 use super::mirror::{agreed, both_ways};
-use super::training::{SAID, Training};
+use super::training::Training;
 use crate::decay::Encoder;
 use crate::device::values;
 use crate::sequence::Sequence;
@@ -143,8 +144,8 @@ fn say<E: Encoder>(
 #[cfg(test)]
 mod tests {
     use crate::amortized::estimator::Skilled;
+    use crate::amortized::mirror::SAID;
     use crate::amortized::tiny::{Tiny, estimator};
-    use crate::amortized::training::SAID;
     use crate::device::device;
     use crate::flat::with_parameters;
     use crate::sequence::Sequence;

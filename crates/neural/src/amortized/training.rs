@@ -1,7 +1,6 @@
 //! Training on simulated envelopes.
 
 use super::bank::{Example, Prior};
-use super::calibration::Calibration;
 use super::mirror::{agreed, both_ways};
 use crate::adam::Adam;
 use crate::decay::{Differentiated, Encoder};
@@ -30,10 +29,6 @@ pub struct Training {
     pub calibration: usize,
 }
 
-/// Numbers a network says of a sequence: level, rate, and the logarithms of their variances times the
-/// number of entries.
-pub(super) const SAID: usize = 4;
-
 /// Largest length of a gradient: longer ones are cut to it (Pascanu, Mikolov, Bengio, ICML 2013).
 const LONGEST_GRADIENT: f64 = 1.0;
 
@@ -42,6 +37,18 @@ const RISE: f64 = 0.05;
 
 /// Words that the generator of examples has: 16 to a block, blocks counted by 64 bits.
 const WORDS: u128 = 1 << 68;
+
+/// Factors on stated standard errors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Calibration {
+    pub(super) level: f64,
+    pub(super) rate: f64,
+}
+
+impl Calibration {
+    /// What the network says, as it says it.
+    pub(super) const NONE: Self = Self { level: 1.0, rate: 1.0 };
+}
 
 /// What a training gives.
 #[derive(Debug, Clone, PartialEq)]
@@ -203,9 +210,10 @@ fn negative_log_likelihood(said: Tensor<2>, targets: Tensor<2>, entries: usize) 
 
 #[cfg(test)]
 mod tests {
-    use super::{SAID, State, WORDS, loss_and_gradient, negative_log_likelihood};
+    use super::{State, WORDS, loss_and_gradient, negative_log_likelihood};
     use crate::adam::Adam;
     use crate::amortized::estimator::Skilled;
+    use crate::amortized::mirror::SAID;
     use crate::amortized::tiny::{estimator, prior};
     use crate::device::{device, tensor, values};
     use crate::kept::Kept;

@@ -1,8 +1,8 @@
 //! Method 6: plain gradient descent.
 
-use super::linear::{UNIT_ROUNDOFF, singular};
+use super::linear::singular;
 use super::local::ROUNDING;
-use super::vectors::{dot, length};
+use super::vectors::{UNIT_ROUNDOFF, dot, length};
 use super::{ClassicalFit, ClassicalRoute, Reached};
 use crate::error::OracleError;
 use envelope::Envelope;

@@ -1,9 +1,8 @@
 //! An envelope's line as a problem for the iterative routes.
 
-use super::linear::UNIT_ROUNDOFF;
 use super::local::ROUNDING;
 use super::problem::{LeastSquaresProblem, LeastSquaresSolution, SmoothFunction};
-use super::vectors::{dot, length, sum};
+use super::vectors::{UNIT_ROUNDOFF, dot, length, sum};
 use super::{ClassicalFit, Reached};
 use envelope::Envelope;
 

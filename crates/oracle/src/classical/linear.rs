@@ -1,15 +1,12 @@
 //! What the linear routes share: scaling, triangles, and the promise of digits.
 
-use super::svd::singular_values;
-use super::vectors::{dot, finite, length};
+use super::jacobi::singular_values;
+use super::vectors::{UNIT_ROUNDOFF, dot, finite, length};
 use super::{ClassicalFit, Reached};
 use crate::FEWEST_DIGITS;
 use crate::certified::check;
 use crate::error::OracleError;
 use envelope::Envelope;
-
-/// Half the distance from 1 to the next double.
-pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
 
 /// Digits of a double.
 const MOST_DIGITS: f64 = 15.65;

@@ -1,10 +1,9 @@
 //! A least-squares problem at one point: residuals, Jacobian, and how orthogonal they are.
 
 use super::Reached;
-use super::linear::UNIT_ROUNDOFF;
 use super::problem::{LeastSquaresProblem, LeastSquaresSolution, Limits};
 use super::qr::{Factor, factorize};
-use super::vectors::{finite, length, times};
+use super::vectors::{UNIT_ROUNDOFF, finite, length, times};
 use crate::error::OracleError;
 
 /// Above this condition number of the unit-column Jacobian, orthogonality says nothing about where the

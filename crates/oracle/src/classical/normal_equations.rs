@@ -1,9 +1,7 @@
 //! Method 3: the normal equations, by Cholesky's factorization.
 
-use super::linear::{
-    LinearSolution, Solved, Stability, Triangle, UNIT_ROUNDOFF, finish, fit_line, scale, singular,
-};
-use super::vectors::dot;
+use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, fit_line, scale, singular};
+use super::vectors::{UNIT_ROUNDOFF, dot};
 use super::{ClassicalFit, ClassicalRoute};
 use crate::error::OracleError;
 use envelope::Envelope;

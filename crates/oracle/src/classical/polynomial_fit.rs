@@ -1,7 +1,7 @@
 //! Method 2: a polynomial fit as `numpy.polyfit` does it.
 
+use super::jacobi::{decompose, transpose};
 use super::linear::{LinearSolution, Solved, Stability, Triangle, finish, line_from, ratio, scale, singular};
-use super::svd::{decompose, transpose};
 use super::vectors::{combine, dot};
 use super::{ClassicalFit, ClassicalRoute};
 use crate::error::OracleError;

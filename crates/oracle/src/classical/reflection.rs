@@ -1,7 +1,7 @@
 //! Steps of the trust-region reflective method: the subproblem in the ball, and what the bounds leave of
 //! its solution.
 
-use super::svd::decompose;
+use super::jacobi::decompose;
 use super::vectors::{add_scaled, combine, dot, length, times};
 
 /// m(s) = ½‖B·s‖² + g·s, with the singular values of B.

@@ -1,5 +1,8 @@
 //! Sums over plain vectors.
 
+/// Half the distance from 1 to the next double.
+pub(super) const UNIT_ROUNDOFF: f64 = f64::EPSILON / 2.0;
+
 /// Terms that are summed one after the other; more are summed by halves.
 const RUN: usize = 64;
 

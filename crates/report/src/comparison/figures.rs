@@ -1,8 +1,8 @@
 //! The plots of a comparison: the paper's Figure 1, a to c.
 
-use runs::result::{EnvelopeRow, MethodRow};
+use results::{EnvelopeRow, MethodRow};
 
-use super::estimate;
+use super::parts::estimate;
 use crate::figures::{Figure, csv, figure, number, oracle, time_axis};
 use crate::format;
 use crate::parse::Comparison;

@@ -1,9 +1,9 @@
 //! The paper's guidelines for choosing a method, Table 6, beside what this run's numbers say.
 
-use runs::result::{ComparisonResult, MethodEstimate, MethodRow};
+use results::{ComparisonResult, MethodEstimate, MethodRow};
 
+use super::parts::{WordTable, estimate, estimates};
 use super::verdict::listed;
-use super::{WordTable, estimate, estimates};
 use crate::format::{count, duration, fixed, percent, significant};
 use crate::tables::whole;
 use crate::verdict::in_a_sentence;
@@ -176,7 +176,7 @@ fn digits(estimate: &MethodEstimate) -> String {
 mod tests {
     use super::*;
     use crate::comparison::sample;
-    use runs::result::MethodOutcome;
+    use results::MethodOutcome;
 
     fn said(result: &ComparisonResult, row: usize) -> String {
         guidelines(result).rows[row][2].replace(['\u{a0}', '\u{202f}'], " ")

@@ -1,9 +1,10 @@
 //! The tables of a comparison as GitHub Markdown.
 
-use runs::result::ComparisonResult;
+use results::ComparisonResult;
 
 use super::methods::{self, MethodTable, MethodView};
-use super::{WordTable, guidelines, oscillation, verdict};
+use super::parts::WordTable;
+use super::{guidelines, oscillation, verdict};
 use crate::remarks::{noticed, warnings};
 use crate::tables::{self, PipelineView};
 use crate::verdict::origin;

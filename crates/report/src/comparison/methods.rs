@@ -1,6 +1,6 @@
 //! A row for each method: the paper's Tables 4 and 5.
 
-use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodOutcome, MethodRow};
 
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::{reached, whole};

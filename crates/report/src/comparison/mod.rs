@@ -5,6 +5,7 @@ mod guidelines;
 pub(crate) mod markdown;
 mod methods;
 mod oscillation;
+mod parts;
 mod verdict;
 
 #[cfg(test)]
@@ -13,7 +14,7 @@ mod sample;
 mod tests;
 
 use askama::Template;
-use runs::result::{Caution, ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
+use results::Caution;
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
@@ -23,19 +24,7 @@ use crate::{ReportError, RunTexts};
 
 pub(crate) use markdown::markdown;
 use methods::MethodTable;
-
-/// A table of three columns: what a row is about, and two things said of it.
-struct WordTable {
-    /// Name of its anchor in the page.
-    id: &'static str,
-    title: String,
-    /// How to read it.
-    note: String,
-    columns: [&'static str; 3],
-    rows: Vec<[String; 3]>,
-    /// Whether the cells hold sentences, which want the whole width of a narrow page.
-    is_prose: bool,
-}
+use parts::WordTable;
 
 #[derive(Template)]
 #[template(path = "comparison.html")]
@@ -71,16 +60,4 @@ pub(crate) fn render(texts: &RunTexts<'_>, comparison: &Comparison) -> Result<St
         cautions: &result.cautions,
     };
     finish(&page)
-}
-
-/// The methods that gave an estimate, with it.
-fn estimates(result: &ComparisonResult) -> impl Iterator<Item = (&MethodRow, &MethodEstimate)> {
-    result.results.iter().filter_map(|row| estimate(row).map(|estimate| (row, estimate)))
-}
-
-fn estimate(row: &MethodRow) -> Option<&MethodEstimate> {
-    match &row.outcome {
-        MethodOutcome::Estimate(estimate) => Some(estimate),
-        MethodOutcome::Failed { .. } => None,
-    }
 }

@@ -1,9 +1,9 @@
 //! What certified least squares says of the oscillation, and what follows from that: the paper's
 //! Table 3 and the derived parameters.
 
-use runs::result::ComparisonResult;
+use results::ComparisonResult;
 
-use super::WordTable;
+use super::parts::WordTable;
 use super::verdict::passed;
 use crate::format::{
     count, duration, exact, fixed, interval, percent, quantity, significant, with_uncertainty,

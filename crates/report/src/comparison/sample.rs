@@ -1,8 +1,6 @@
 //! A comparison as it might have been, for the tests.
 
-use runs::result::{
-    Caution, ComparisonResult, Derived, EnvelopeRow, MethodEstimate, MethodOutcome, MethodRow,
-};
+use results::{Caution, ComparisonResult, Derived, EnvelopeRow, MethodEstimate, MethodOutcome, MethodRow};
 
 use crate::sample::{Sample, table};
 use crate::{ReportError, RunTexts, render};

@@ -1,6 +1,6 @@
 //! Of the whole page.
 
-use runs::result::MethodOutcome;
+use results::MethodOutcome;
 
 use super::sample::{self, Folder};
 use crate::plot::Hue;

@@ -1,8 +1,8 @@
 //! What a comparison came to, in a sentence or two.
 
-use runs::result::{ComparisonResult, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodOutcome, MethodRow};
 
-use super::{estimate, estimates};
+use super::parts::{estimate, estimates};
 use crate::format;
 use crate::verdict::{Tone, Verdict, in_a_sentence};
 

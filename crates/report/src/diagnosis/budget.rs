@@ -1,6 +1,6 @@
 //! The gap budget as one stacked bar.
 
-use runs::result::BudgetShares;
+use results::BudgetShares;
 
 use crate::format;
 use crate::plot::Hue;

@@ -1,6 +1,6 @@
 //! The first screen: classes of effects as bars, the surest first, and what has no name.
 
-use runs::result::DiagnosisResult;
+use results::DiagnosisResult;
 
 use crate::classes::{
     ClassStatement, Standing, capitalized, class_statements, class_title, kind_title, nameless_share,

@@ -1,6 +1,6 @@
 //! Where the gap lies: over time, amplitude, the phase plane and frequency.
 
-use runs::result::{DiagnosisResult, MapCell};
+use results::{DiagnosisResult, MapCell};
 
 use super::figures::{Simulator, framed};
 use crate::figures::{Figure, csv, number};

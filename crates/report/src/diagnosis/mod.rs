@@ -11,7 +11,7 @@ mod tables;
 mod tests;
 
 use askama::Template;
-use runs::result::DiagnosisResult;
+use results::{DiagnosisResult, VerdictStatus};
 
 use crate::classes::{effect_title, is_calibrated_already, unlikely_classes};
 use crate::figures::Figure;
@@ -105,14 +105,15 @@ fn headline(result: &DiagnosisResult) -> Verdict {
     // Beyond √2 floors more than half of what is left, by its square, is something else than noise.
     let [ratio, _] = result.gap.ratio_to_floor_interval_95;
     let explained = if ratio.powi(2) > 2.0 { Tone::Caution } else { Tone::Good };
-    let (tone, label) = match result.verdict.status.as_str() {
-        "none" => (explained, "Nothing is missing"),
-        "calibration" if is_calibrated_already(result) => (explained, "Nothing is missing"),
-        "calibration" => (explained, "Only calibration"),
-        "effect" if is_of_the_chain_only(result) => (explained, "Nothing is missing in the motion"),
-        "effect" => (explained, "Missing effect"),
-        "unknown" => (Tone::Caution, "Unknown: a gap without a name"),
-        _ => (Tone::Caution, "Verdict not known to this report"),
+    let (tone, label) = match result.verdict.status {
+        VerdictStatus::None => (explained, "Nothing is missing"),
+        VerdictStatus::Calibration if is_calibrated_already(result) => (explained, "Nothing is missing"),
+        VerdictStatus::Calibration => (explained, "Only calibration"),
+        VerdictStatus::Effect if is_of_the_chain_only(result) => {
+            (explained, "Nothing is missing in the motion")
+        }
+        VerdictStatus::Effect => (explained, "Missing effect"),
+        VerdictStatus::Unknown => (Tone::Caution, "Unknown: a gap without a name"),
     };
     Verdict { tone, label, sentence: result.verdict.summary.clone() }
 }
@@ -146,7 +147,7 @@ fn next(result: &DiagnosisResult) -> Vec<String> {
     if !result.next_experiment.text.is_empty() {
         steps.push(format!("Next experiment: {}", result.next_experiment.text));
     }
-    if matches!(result.verdict.status.as_str(), "calibration" | "effect") {
+    if matches!(result.verdict.status, VerdictStatus::Calibration | VerdictStatus::Effect) {
         steps.push(
             "The repaired simulator stands beside this page: “trainer simulate repaired.toml” runs it, and the section \
              on it below names the files for SciPy, Modelica, MuJoCo and URDF."

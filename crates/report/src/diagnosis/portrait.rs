@@ -1,6 +1,6 @@
 //! Backbone curves and the restoring-force surface.
 
-use runs::result::{BackbonePoint, DiagnosisResult, SurfaceCell};
+use results::{BackbonePoint, DiagnosisResult, SurfaceCell};
 
 use super::figures::{Simulator, framed, recorded};
 use crate::figures::{Figure, csv, number};

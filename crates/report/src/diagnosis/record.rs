@@ -1,6 +1,6 @@
 //! The record against the simulators, and what each leaves over.
 
-use runs::result::{DiagnosisResult, SeriesRow};
+use results::{DiagnosisResult, SeriesRow};
 
 use super::figures::{Simulator, framed, recorded};
 use crate::figures::{Figure, csv, number};

@@ -1,6 +1,6 @@
 //! The tables of a diagnosis: which number stands where, and to how many digits.
 
-use runs::result::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, WithInterval};
+use results::{CalibratedRow, DISTINCT_DISTANCE, DiagnosisResult, RecordRow, VerdictStatus, WithInterval};
 
 use crate::classes::effect_title;
 use crate::format::{
@@ -25,7 +25,7 @@ const LEAST_SPAN: f64 = 0.1;
 
 pub(super) fn gap(result: &DiagnosisResult) -> Vec<GapView> {
     let gap = &result.gap;
-    let unnamed = result.effects.iter().any(|row| row.id == "unknown" && row.gap_share.is_some());
+    let unnamed = result.row(VerdictStatus::Unknown).is_some_and(|row| row.gap_share.is_some());
     let with =
         if unnamed { "with the named effects, and what has no name" } else { "with the named effects" };
     let rows = [
@@ -67,8 +67,8 @@ pub(super) fn gap_notes(result: &DiagnosisResult) -> Vec<String> {
         share_with_interval(&gap.closure),
         share_with_interval(&gap.closure_of_recalibrated)
     );
-    let mut notes = match result.verdict.status.as_str() {
-        "none" => vec!["There is no gap to close.".to_owned()],
+    let mut notes = match result.verdict.status {
+        VerdictStatus::None => vec!["There is no gap to close.".to_owned()],
         _ => vec![closed],
     };
     let [recalibrated, repaired] = gap.last_third;

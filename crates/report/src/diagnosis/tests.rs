@@ -1,6 +1,6 @@
 //! Of the page's verdicts, shares and series.
 
-use runs::result::{BudgetShares, DiagnosisResult, SeriesRow};
+use results::{BudgetShares, DiagnosisResult, SeriesRow};
 use serde_json::{Value, json};
 
 use crate::{RunTexts, render, render_run};

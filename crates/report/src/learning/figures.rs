@@ -1,6 +1,6 @@
 //! The plots of a data set: free runs against the record, learned torques against the true ones, errors by method.
 
-use runs::result::{LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
+use results::{LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
 
 use crate::figures::{Figure, csv, figure, number};
 use crate::parse::Learning;

@@ -5,7 +5,7 @@ mod figures;
 mod tests;
 
 use askama::Template;
-use runs::result::{LearnProblem, LearnResult, LearnRow};
+use results::{LearnProblem, LearnResult, LearnRow};
 
 use crate::figures::Figure;
 use crate::format::{fixed, quantity, significant};
@@ -149,7 +149,7 @@ fn row_view(row: &LearnRow) -> RowView<'_> {
 }
 
 fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {
-    let one = |(name, own): (&String, &runs::result::LearnCoefficient)| {
+    let one = |(name, own): (&String, &results::LearnCoefficient)| {
         let interval = own.interval_95.map_or_else(String::new, |[low, high]| {
             format!("{} to {}", significant(low, 4), significant(high, 4))
         });

@@ -1,7 +1,5 @@
 use crate::{RunTexts, render};
-use runs::result::{
-    LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnTest, RESULT_SCHEMA,
-};
+use results::{LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnTest, RESULT_SCHEMA};
 use std::collections::BTreeMap;
 
 fn row(id: &str, kind: &str, error: Option<f64>) -> LearnRow {

@@ -3,7 +3,8 @@
 use std::fmt::Write;
 
 use super::axis::Ticks;
-use super::{Hue, Mark, Plot, Run, Series};
+use super::parts::Run;
+use super::{Hue, Mark, Plot, Series};
 
 /// The canvas, in SVG units that are CSS pixels where the page shows it full size.
 pub(super) struct Canvas {

@@ -1,9 +1,9 @@
 //! The plots of a problem.
 
-use runs::result::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
+use results::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
 
-use super::scored;
 use super::scores::error;
+use super::study::scored;
 use crate::figures::{Figure, csv, figure, number, time_axis};
 use crate::plot::{Axis, DotRow, DotRows, Hue, Mark, Plot, Series};
 

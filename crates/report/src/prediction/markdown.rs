@@ -1,9 +1,10 @@
 //! The tables of a study of held-out prediction as GitHub Markdown.
 
-use runs::result::{PredictionResult, ProblemOutcome, ProblemRow};
+use results::{PredictionResult, ProblemOutcome, ProblemRow};
 
+use super::scores;
 use super::scores::{READING, ScoreTable};
-use super::{facts, headline, held_out, laws, origin, scores};
+use super::study::{facts, headline, held_out, laws, origin};
 use crate::comparison::markdown::{escape, grid, list};
 use crate::verdict;
 

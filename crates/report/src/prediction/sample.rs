@@ -1,6 +1,6 @@
 //! A study of held-out prediction as it might have been, for the tests.
 
-use runs::result::{
+use results::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
     RESULT_SCHEMA, SplitSummary,

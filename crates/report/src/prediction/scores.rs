@@ -1,6 +1,6 @@
 //! The table of a problem: a row for each method.
 
-use runs::result::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+use results::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::whole;
@@ -73,7 +73,7 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
 
 /// What rows stand in the order of.
 pub(super) fn error(row: &PredictionRow) -> f64 {
-    let score = super::scored(row).and_then(|scores| scores.extrapolation.as_ref());
+    let score = super::study::scored(row).and_then(|scores| scores.extrapolation.as_ref());
     // Without a score, or with one that is not finite, a row stands last.
     score.map(|score| score.rms_log_error).filter(|error| !error.is_nan()).unwrap_or(f64::INFINITY)
 }

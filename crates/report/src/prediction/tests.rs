@@ -1,6 +1,6 @@
 //! Of the whole page and its tables.
 
-use runs::result::{PredictionOutcome, ProblemOutcome, ProblemStudy};
+use results::{PredictionOutcome, ProblemOutcome, ProblemStudy};
 
 use super::sample::Folder;
 use crate::plot::Hue;

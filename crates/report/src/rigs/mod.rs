@@ -4,7 +4,7 @@
 mod tests;
 
 use askama::Template;
-use runs::result::{FailedCase, RigRow, RigsResult, SharedCoefficientRow};
+use results::{FailedCase, RigRow, RigsResult, SharedCoefficientRow};
 
 use crate::classes::{Standing, capitalized, class_title};
 use crate::format::{self, estimate, significant, unit};
@@ -181,7 +181,7 @@ fn encoded(name: &str) -> String {
 }
 
 fn classes(result: &RigsResult) -> Vec<ClassView<'_>> {
-    let view = |class: &runs::result::SharedClassRow| {
+    let view = |class: &results::SharedClassRow| {
         let own = |rig: &RigRow| rig.classes.iter().find(|own| own.id == class.id).map(|own| own.probability);
         ClassView {
             title: capitalized(&class_title(&class.id)),

@@ -1,6 +1,6 @@
 //! What stands in which column.
 
-use runs::result::{RunState, RunTable, RunTableRow};
+use results::{RunState, RunTable, RunTableRow};
 use serde_json::Value;
 
 use crate::format::{count, duration, interval, significant};

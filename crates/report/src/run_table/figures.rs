@@ -1,6 +1,6 @@
 //! The plots of many runs: distance from the reference by setting, damping ratio by run.
 
-use runs::result::{RunTable, RunTableRow};
+use results::{RunTable, RunTableRow};
 
 use super::cells::{setting, short_name};
 use crate::figures::{Figure, csv, number};
@@ -187,7 +187,7 @@ fn figure(
 #[cfg(test)]
 mod tests {
     use super::{label, median, short_label};
-    use runs::result::{RunState, RunTable, RunTableRow};
+    use results::{RunState, RunTable, RunTableRow};
 
     #[test]
     fn of_a_long_value_its_end_is_shown() {

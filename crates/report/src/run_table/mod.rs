@@ -2,20 +2,21 @@
 
 mod cells;
 mod figures;
+mod headline;
 #[cfg(test)]
 mod tests;
 mod text;
 
 use askama::Template;
-use runs::result::{RunState, RunTable, SweepAxis};
+use results::{RunState, RunTable, SweepAxis};
 
 use crate::figures::Figure;
-use crate::format::count;
 use crate::frame::{Frame, finish};
 use crate::plot::Hue;
-use crate::verdict::{self, Origin, Tone, Verdict};
+use crate::verdict::{self, Origin};
 use crate::{ReportError, RunTexts};
 use cells::{Column, RowView};
+use headline::{READING, headline, whole};
 
 pub use text::{csv, markdown, text_cells};
 
@@ -23,11 +24,6 @@ pub use text::{csv, markdown, text_cells};
 const MOST_ROWS: usize = 2_000;
 /// Longest result, in bytes, that the page holds in full.
 const MOST_TEXT: usize = 300_000;
-
-/// How to read the table.
-const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
-     envelope; the worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
-     residuals. A run passes where every seed is within its stated tolerance.";
 
 #[derive(Template)]
 #[template(path = "run_table.html")]
@@ -83,28 +79,6 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
     finish(&page)
 }
 
-fn headline(table: &RunTable) -> Verdict {
-    let missed = table.rows.iter().filter(|row| !row.state.is_bad() && row.pass == Some(false)).count();
-    let (tone, label) = match (table.failed, table.open, missed) {
-        (0, 0, 0) => (Tone::Good, "Every run within its tolerance"),
-        (0, 0, _) => (Tone::Bad, "Not every run within its tolerance"),
-        (0, ..) => (Tone::Caution, "Not finished"),
-        _ => (Tone::Bad, "Some runs gave no result"),
-    };
-    let rows = if missed == 1 { "row is" } else { "rows are" };
-    Verdict {
-        tone,
-        label,
-        sentence: format!(
-            "Of {} runs {} are done, {} failed and {} are still open; {missed} {rows} outside the stated tolerance.",
-            whole(table.done + table.failed + table.open),
-            whole(table.done),
-            whole(table.failed),
-            whole(table.open),
-        ),
-    }
-}
-
 /// That of the record, where all runs share it.
 fn origin(table: &RunTable) -> Origin {
     let mut stated: Vec<&str> =
@@ -131,8 +105,4 @@ fn warnings(table: &RunTable) -> Vec<String> {
         "{} of the rows are of interrupted runs: what they had reached is no result.",
         whole(unfinished)
     )]
-}
-
-fn whole(value: usize) -> String {
-    count(value as u64)
 }

@@ -1,6 +1,6 @@
 //! Of the page and the texts on many runs.
 
-use runs::result::{RunState, RunTable, RunTableRow, SweepAxis};
+use results::{RunState, RunTable, RunTableRow, SweepAxis};
 use serde_json::{Value, json};
 
 use super::{csv, markdown, text_cells};

@@ -1,9 +1,9 @@
 //! The table of runs as CSV, as Markdown, and as cells for a terminal.
 
-use runs::result::{RunTable, RunTableRow};
+use results::{RunTable, RunTableRow};
 
 use super::cells::{self, setting};
-use super::headline;
+use super::headline::{READING, headline};
 use crate::comparison::markdown::{escape, grid};
 use crate::figures::number;
 
@@ -83,7 +83,7 @@ pub fn markdown(table: &RunTable) -> String {
         format!("# {}", escape(name)),
         format!("**{}.** {}", verdict.label, escape(&verdict.sentence)),
         grid(&titles, rows),
-        escape(super::READING),
+        escape(READING),
     ];
     blocks.join("\n\n") + "\n"
 }

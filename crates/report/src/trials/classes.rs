@@ -1,9 +1,9 @@
 //! Scores by effect and by class where several effects act.
 
-use runs::result::{ClassScores, InclusionRow, Proportion, TrialsResult};
+use results::{ClassScores, InclusionRow, Proportion, TrialsResult};
 
+use super::grid::{Grid, GridCell, GridRow, Section};
 use super::grids::{plain, share};
-use super::{Grid, GridCell, GridRow, Section};
 use crate::format::fixed;
 
 /// A score of one group.

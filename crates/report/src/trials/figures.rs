@@ -1,6 +1,6 @@
 //! The plots of the page on trials.
 
-use runs::result::{Reliability, ReliabilityBin, TrialsResult};
+use results::{Reliability, ReliabilityBin, TrialsResult};
 
 use crate::figures::{Figure, csv, figure, number};
 use crate::plot::{Axis, Hue, Mark, Plot, Series};

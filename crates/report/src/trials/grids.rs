@@ -1,8 +1,8 @@
 //! The tables of the page on trials.
 
-use runs::result::{Confusion, Proportion, SizeRow, TrialsResult};
+use results::{Confusion, Proportion, SizeRow, TrialsResult};
 
-use super::{Grid, GridCell, GridRow, Section, percent, percents};
+use super::grid::{Grid, GridCell, GridRow, Section, percent, percents};
 use crate::format::{count, fixed, interval, quantity, significant};
 
 /// Shading of a cell with everything in it, in percent: text stays readable on it.

@@ -2,17 +2,18 @@
 
 mod classes;
 mod figures;
+mod grid;
 mod grids;
 mod probabilities;
 #[cfg(test)]
 mod tests;
 
 pub use classes::class_rows;
+use grid::{Section, percent, percents};
 
 use askama::Template;
-use runs::result::{BarRow, FailureRow, TrialsResult};
+use results::{BarRow, FailureRow, TrialsResult};
 
-use crate::figures::Figure;
 use crate::format::{count, fixed, interval, quantity, significant};
 use crate::frame::{Frame, finish};
 use crate::plot::Hue;
@@ -33,36 +34,6 @@ struct TrialsPage<'a> {
     sections: Vec<Section>,
     failure_note: String,
     failures: Vec<FailureView<'a>>,
-}
-
-/// A section of tables and plots.
-struct Section {
-    id: &'static str,
-    title: &'static str,
-    sentences: Vec<String>,
-    grids: Vec<Grid>,
-    figures: Vec<Figure>,
-}
-
-/// A table whose cells may be shaded by what they hold.
-struct Grid {
-    title: String,
-    corner: &'static str,
-    columns: Vec<String>,
-    rows: Vec<GridRow>,
-}
-
-struct GridRow {
-    name: String,
-    cells: Vec<GridCell>,
-}
-
-/// A cell: a number, what stands small below it, and how deep it is shaded, in percent.
-#[derive(Default)]
-struct GridCell {
-    text: String,
-    aside: String,
-    shade: Option<String>,
 }
 
 struct BarView<'a> {
@@ -131,17 +102,6 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
         failures: result.failures.iter().take(shown).map(failure).collect(),
     };
     finish(&page)
-}
-
-/// A share in percent.
-fn percent(share: f64) -> String {
-    if share.is_finite() { quantity(&fixed(100.0 * share, 1), "%") } else { "–".to_owned() }
-}
-
-/// An interval of shares in percent, without its unit.
-fn percents(ends: [f64; 2]) -> String {
-    let [low, high] = ends.map(|end| fixed(100.0 * end, 1));
-    format!("[{low}, {high}]")
 }
 
 fn bar(row: &BarRow) -> BarView<'_> {

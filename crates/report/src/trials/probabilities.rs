@@ -1,10 +1,10 @@
 //! Probabilities held against what was so.
 
-use runs::result::{Reliability, TrialsResult};
+use results::{Reliability, TrialsResult};
 
 use super::figures;
+use super::grid::{Grid, GridRow, Section};
 use super::grids::{plain, size};
-use super::{Grid, GridRow, Section};
 use crate::format::{count, fixed, interval};
 
 pub(super) fn section(result: &TrialsResult) -> Section {

@@ -1,7 +1,7 @@
 use super::{KeptRun, list_runs, read_run};
 use crate::folder::RunFolder;
-use crate::result::{RunState, SWEEP_SCHEMA, SweepEnd, SweepState};
 use crate::sweep::SweepFolder;
+use results::{RunState, SWEEP_SCHEMA, SweepEnd, SweepState};
 use serde_json::{Value, json};
 use std::path::Path;
 

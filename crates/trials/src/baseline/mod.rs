@@ -6,7 +6,7 @@ pub use weak_form::{WEAK_FORM, WEAK_FORM_METHOD, weak_form};
 
 use crate::hidden::{Asked, Bank};
 use crate::score::{AnsweredCase, Judgment, accuracy, proportion};
-use runs::result::{BaselineRow, SizeRow};
+use results::{BaselineRow, SizeRow};
 use std::collections::BTreeMap;
 
 /// What a simpler diagnoser said of every case.

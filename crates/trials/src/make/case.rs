@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::error::TrialError;
-use super::hiding::{DRIVEN, LEFT_OUT, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
+use super::hiding::{INPUTS, PAIRS, RELEASES, SINGLE, UNNAMED, needs_input};
 use super::plan::TrialPlan;
 use super::recalibration::{Absorbed, left_over};
 use super::shape::{RANDOM, Shape, random_effect};
@@ -164,7 +164,7 @@ impl Job {
             let (at, wanted) = plan.turn(self.number, ids.len());
             (ids.get(at).copied().unwrap_or_default(), wanted)
         };
-        let with_input = |id: &str| if NEEDS_INPUT.contains(&id) { Motions::Driven } else { free };
+        let with_input = |id: &str| if needs_input(id) { Motions::Driven } else { free };
         let subject = |(id, wanted): (&'static str, f64), motions: Motions| Subject {
             ids: vec![id],
             wanted,
@@ -173,15 +173,15 @@ impl Job {
         };
         match self.bank {
             Bank::Single => {
-                let chosen = one_of(SINGLE);
+                let chosen = one_of(&SINGLE);
                 subject(chosen, with_input(chosen.0))
             }
             Bank::LeftOut => {
-                let chosen = one_of(LEFT_OUT);
+                let chosen = one_of(&UNNAMED);
                 subject(chosen, with_input(chosen.0))
             }
-            Bank::Releases => subject(one_of(RELEASES), Motions::Releases),
-            Bank::Driven => subject(one_of(DRIVEN), Motions::Driven),
+            Bank::Releases => subject(one_of(&RELEASES), Motions::Releases),
+            Bank::Driven => subject(one_of(&INPUTS), Motions::Driven),
             Bank::Pair => {
                 let (at, wanted) = plan.turn(self.number, PAIRS.len());
                 let (one, other, place) = PAIRS.get(at).copied().unwrap_or_default();

@@ -1,37 +1,83 @@
 //! What the banks hide: which effects, which pairs.
 
-/// Every effect of the vocabulary that acts in a free decay, and the three that take a measured input.
-pub(crate) const SINGLE: &[&str] = &[
-    "coulomb_friction",
-    "stribeck_friction",
-    "quadratic_drag",
-    "cubic_stiffness",
-    "asymmetric_stiffness",
-    "gravity",
-    "constant_torque",
-    "backlash",
-    "hysteresis",
-    "end_stop",
-    "stiffness_drift",
-    "damping_drift",
-    "periodic_forcing",
-    "flexible_coupling",
-    "input_delay",
-    "input_saturation",
-    "sensor_lag",
-    "sensor_nonlinearity",
-    "sensor_drift",
-    "sensor_saturation",
-    "sensor_quantization",
-    "outliers",
-    "dropouts",
-    "clock_drift",
-    "timestamp_jitter",
-    "timestamp_batching",
+use std::sync::LazyLock;
+
+/// Hidden alone only.
+const ALONE: u8 = 0;
+
+/// A measured input shows it, and nothing else does.
+const NEEDS_INPUT: u8 = 1;
+
+/// Nothing else in the vocabulary is nearly the same thing: with it left out `unknown` is the right answer. Without this
+/// are gravity and cubic stiffness, which replace one another, the dry frictions and hysteresis, stiffness drift and clock
+/// drift, a preload and a calibrated rest angle, and what scatters values or stamps and is noise to whoever knows no better.
+const LEFT_OUT: u8 = 2;
+
+/// A second release tells something about it.
+const RELEASED: u8 = 4;
+
+/// It is laid under residuals of measured records, whose stamps are their own.
+const MEASURED: u8 = 8;
+
+/// It acts in driven records, wherever its place of action is no release.
+const DRIVEN: u8 = 16;
+
+/// Every effect of the vocabulary, and the banks beside those of one effect alone that hide it.
+const HIDDEN: &[(&str, u8)] = &[
+    ("coulomb_friction", RELEASED | MEASURED | DRIVEN),
+    ("stribeck_friction", RELEASED | MEASURED | DRIVEN),
+    ("quadratic_drag", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("cubic_stiffness", RELEASED | MEASURED | DRIVEN),
+    ("asymmetric_stiffness", RELEASED | MEASURED | DRIVEN),
+    ("gravity", RELEASED | MEASURED | DRIVEN),
+    ("constant_torque", ALONE),
+    ("backlash", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("hysteresis", RELEASED | MEASURED | DRIVEN),
+    ("end_stop", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("stiffness_drift", RELEASED | MEASURED | DRIVEN),
+    ("damping_drift", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("periodic_forcing", LEFT_OUT | DRIVEN),
+    ("flexible_coupling", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("input_delay", NEEDS_INPUT),
+    ("input_saturation", NEEDS_INPUT | LEFT_OUT),
+    ("sensor_lag", NEEDS_INPUT),
+    ("sensor_nonlinearity", LEFT_OUT | RELEASED | MEASURED | DRIVEN),
+    ("sensor_drift", LEFT_OUT | DRIVEN),
+    ("sensor_saturation", LEFT_OUT),
+    ("sensor_quantization", ALONE),
+    ("outliers", ALONE),
+    ("dropouts", ALONE),
+    ("clock_drift", RELEASED),
+    ("timestamp_jitter", ALONE),
+    ("timestamp_batching", ALONE),
 ];
 
-/// Effects that only a measured input shows.
-pub(crate) const NEEDS_INPUT: &[&str] = &["input_delay", "input_saturation", "sensor_lag"];
+/// Effects that a bank hides, in the order of the vocabulary.
+type Effects = LazyLock<Vec<&'static str>>;
+
+fn with(bank: u8) -> impl Iterator<Item = &'static str> {
+    HIDDEN.iter().filter(move |(_, banks)| banks & bank != 0).map(|(id, _)| *id)
+}
+
+/// Every effect of the vocabulary.
+pub(crate) static SINGLE: Effects = LazyLock::new(|| HIDDEN.iter().map(|(id, _)| *id).collect());
+
+/// Effects that are left out of what the diagnosis considers.
+pub(crate) static UNNAMED: Effects = LazyLock::new(|| with(LEFT_OUT).collect());
+
+/// Effects hidden in records with several releases.
+pub(crate) static RELEASES: Effects = LazyLock::new(|| with(RELEASED).collect());
+
+/// Effects laid under residuals of measured records.
+pub(crate) static RESIDUALS: Effects = LazyLock::new(|| with(MEASURED).collect());
+
+/// Effects hidden in driven records, those of the input first.
+pub(crate) static INPUTS: Effects = LazyLock::new(|| with(NEEDS_INPUT).chain(with(DRIVEN)).collect());
+
+/// Whether only a measured input shows an effect.
+pub(crate) fn needs_input(id: &str) -> bool {
+    with(NEEDS_INPUT).any(|other| other == id)
+}
 
 /// Two effects that occur together, and where.
 pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
@@ -55,100 +101,18 @@ pub(crate) const PAIRS: &[(&str, &str, &str)] = &[
     ("periodic_forcing", "sensor_drift", "a strain gauge beside a machine"),
 ];
 
-/// Effects for which nothing else in the vocabulary is nearly the same thing: with one of these left out
-/// `unknown` is the right answer. Left out of this list are those with a stand-in: gravity and cubic
-/// stiffness for one another, the dry frictions and hysteresis, stiffness drift and clock drift, a preload
-/// and a calibrated rest angle, and what scatters values or stamps and is noise to whoever knows no better.
-pub(crate) const LEFT_OUT: &[&str] = &[
-    "quadratic_drag",
-    "backlash",
-    "end_stop",
-    "damping_drift",
-    "periodic_forcing",
-    "flexible_coupling",
-    "input_saturation",
-    "sensor_nonlinearity",
-    "sensor_drift",
-    "sensor_saturation",
-];
-
-/// Effects that a second release tells something about.
-pub(crate) const RELEASES: &[&str] = &[
-    "coulomb_friction",
-    "stribeck_friction",
-    "quadratic_drag",
-    "cubic_stiffness",
-    "asymmetric_stiffness",
-    "gravity",
-    "backlash",
-    "hysteresis",
-    "end_stop",
-    "stiffness_drift",
-    "damping_drift",
-    "flexible_coupling",
-    "sensor_nonlinearity",
-    "clock_drift",
-];
-
-/// Effects laid under residuals of measured records: those of a release, but for a drifting clock, as the
-/// stamps are the measured record's own.
-pub(crate) const MEASURED: &[&str] = &[
-    "coulomb_friction",
-    "stribeck_friction",
-    "quadratic_drag",
-    "cubic_stiffness",
-    "asymmetric_stiffness",
-    "gravity",
-    "backlash",
-    "hysteresis",
-    "end_stop",
-    "stiffness_drift",
-    "damping_drift",
-    "flexible_coupling",
-    "sensor_nonlinearity",
-];
-
-/// Effects hidden in driven records: all that act in one record of any kind, but for those whose place of
-/// action is a release.
-pub(crate) const DRIVEN: &[&str] = &[
-    "input_delay",
-    "input_saturation",
-    "sensor_lag",
-    "coulomb_friction",
-    "stribeck_friction",
-    "quadratic_drag",
-    "cubic_stiffness",
-    "asymmetric_stiffness",
-    "gravity",
-    "backlash",
-    "hysteresis",
-    "end_stop",
-    "stiffness_drift",
-    "damping_drift",
-    "periodic_forcing",
-    "flexible_coupling",
-    "sensor_nonlinearity",
-    "sensor_drift",
-];
-
 #[cfg(test)]
 mod tests {
-    use super::{DRIVEN, LEFT_OUT, MEASURED, NEEDS_INPUT, PAIRS, RELEASES, SINGLE};
+    use super::{PAIRS, SINGLE};
     use dynamics::{Effect, REGISTRY};
 
     #[test]
     fn every_effect_of_the_vocabulary_is_hidden_alone() {
-        assert_eq!(SINGLE, REGISTRY.iter().map(|effect| effect.id()).collect::<Vec<_>>());
+        assert_eq!(*SINGLE, REGISTRY.iter().map(|effect| effect.id()).collect::<Vec<_>>());
     }
 
     #[test]
-    fn lists_name_effects_once() {
-        for list in [LEFT_OUT, RELEASES, MEASURED, DRIVEN, NEEDS_INPUT] {
-            for (number, id) in list.iter().enumerate() {
-                Effect::find(id).unwrap();
-                assert!(!list[..number].contains(id), "{id}");
-            }
-        }
+    fn pairs_are_of_two_effects_and_listed_once() {
         for (number, (one, other, _)) in PAIRS.iter().enumerate() {
             Effect::find(one).unwrap();
             Effect::find(other).unwrap();

@@ -26,6 +26,7 @@ mod laws;
 mod outside;
 mod own_record;
 mod plan;
+mod ranges;
 mod recalibration;
 mod rigs;
 mod schema;

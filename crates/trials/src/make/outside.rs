@@ -2,7 +2,7 @@
 
 use super::case::{ATTEMPTS, Case, Job, Setup, described, hide};
 use super::error::TrialError;
-use super::hiding::MEASURED;
+use super::hiding::RESIDUALS;
 use super::plan::TrialPlan;
 use super::situation::{Motions, Nuisances, Situation};
 use crate::{Bank, HIDDEN_SCHEMA, Hidden};
@@ -118,8 +118,8 @@ impl Residual {
 /// Noise, rounding and stamps are the residual's: nothing is drawn of them. Its size is in units of the
 /// residual's white part, from second differences. The samples are taken at a uniform rate, by their index.
 pub(crate) fn measured_case(plan: &TrialPlan, job: Job, id: String) -> Result<Case, TrialError> {
-    let (at, wanted) = plan.turn(job.number, MEASURED.len());
-    let effect = MEASURED.get(at).copied().unwrap_or_default();
+    let (at, wanted) = plan.turn(job.number, RESIDUALS.len());
+    let effect = RESIDUALS.get(at).copied().unwrap_or_default();
     let path = plan.residuals.get(job.number % plan.residuals.len().max(1));
     let Some(path) = path else {
         return Err(TrialError::NoSuchCase { index: job.number, cases: 0 });

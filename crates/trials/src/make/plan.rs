@@ -3,8 +3,9 @@
 use super::case::{Case, Job};
 use super::draws::Draws;
 use super::error::TrialError;
-use super::hiding::{DRIVEN, LEFT_OUT, MEASURED, PAIRS, RELEASES, SINGLE};
+use super::hiding::{INPUTS, PAIRS, RELEASES, RESIDUALS, SINGLE, UNNAMED};
 use super::outside::{self, EngineCase, ResidualFile};
+use super::ranges::Ranges;
 use super::rigs::{self, RigCase};
 use super::schema::SECTIONS;
 use super::{foreign, stressed};
@@ -44,15 +45,6 @@ pub struct LeftOutBank {
     pub cases: usize,
     /// Why it is left out, and what to do.
     pub reason: String,
-}
-
-/// Ends of what systems, starts and sensors are drawn from.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Ranges {
-    pub(crate) frequency_hz: [f64; 2],
-    pub(crate) damping_ratio: [f64; 2],
-    pub(crate) release_deg: [f64; 2],
-    pub(crate) noise: [f64; 2],
 }
 
 #[derive(Deserialize)]
@@ -123,38 +115,7 @@ impl TrialPlan {
         let record: RecordKeys = resolved.section("record")?;
         let system: SystemKeys = resolved.section("system")?;
         let sensor: SensorKeys = resolved.section("sensor")?;
-        let ordered = |low: (&str, f64), high: (&str, f64)| {
-            if low.1 <= high.1 {
-                return Ok([low.1, high.1]);
-            }
-            let origin = |key: &str| document.get(key).map(|leaf| leaf.origin.clone());
-            let origin = origin(low.0).or_else(|| origin(high.0)).unwrap_or(settings::Origin::Default);
-            Err(SettingsError::BadValue {
-                origin,
-                key: low.0.to_owned(),
-                found: low.1.to_string(),
-                expected: format!("at most {}, which is {}", high.0, high.1),
-                unit: String::new(),
-            })
-        };
-        let ranges = Ranges {
-            frequency_hz: ordered(
-                ("system.lowest_frequency_hz", system.lowest_frequency_hz),
-                ("system.highest_frequency_hz", system.highest_frequency_hz),
-            )?,
-            damping_ratio: ordered(
-                ("system.smallest_damping_ratio", system.smallest_damping_ratio),
-                ("system.largest_damping_ratio", system.largest_damping_ratio),
-            )?,
-            release_deg: ordered(
-                ("record.smallest_release_deg", record.smallest_release_deg),
-                ("record.largest_release_deg", record.largest_release_deg),
-            )?,
-            noise: ordered(
-                ("sensor.smallest_noise", sensor.smallest_noise),
-                ("sensor.largest_noise", sensor.largest_noise),
-            )?,
-        };
+        let ranges = ranges(document, &record, &system, &sensor)?;
         let sampling = Sampling {
             rate_hz: record.rate_hz,
             samples: (record.rate_hz * record.seconds).round() as usize,
@@ -269,14 +230,55 @@ impl TrialPlan {
             Bank::None | Bank::Calibration | Bank::Engine | Bank::Composite | Bank::Rigs => 1,
             Bank::Single => SINGLE.len(),
             Bank::Pair => PAIRS.len(),
-            Bank::LeftOut => LEFT_OUT.len(),
+            Bank::LeftOut => UNNAMED.len(),
             Bank::Foreign => foreign::KINDS.len(),
             Bank::Releases => RELEASES.len(),
-            Bank::Measured => MEASURED.len(),
-            Bank::Driven => DRIVEN.len(),
+            Bank::Measured => RESIDUALS.len(),
+            Bank::Driven => INPUTS.len(),
             Bank::Stressed => stressed::EFFECTS.len(),
         }
     }
+}
+
+/// The ranges that systems are drawn from, each with its ends in order.
+fn ranges(
+    document: &Document,
+    record: &RecordKeys,
+    system: &SystemKeys,
+    sensor: &SensorKeys,
+) -> Result<Ranges, SettingsError> {
+    let ordered = |low: (&str, f64), high: (&str, f64)| {
+        if low.1 <= high.1 {
+            return Ok([low.1, high.1]);
+        }
+        let origin = |key: &str| document.get(key).map(|leaf| leaf.origin.clone());
+        let origin = origin(low.0).or_else(|| origin(high.0)).unwrap_or(settings::Origin::Default);
+        Err(SettingsError::BadValue {
+            origin,
+            key: low.0.to_owned(),
+            found: low.1.to_string(),
+            expected: format!("at most {}, which is {}", high.0, high.1),
+            unit: String::new(),
+        })
+    };
+    Ok(Ranges {
+        frequency_hz: ordered(
+            ("system.lowest_frequency_hz", system.lowest_frequency_hz),
+            ("system.highest_frequency_hz", system.highest_frequency_hz),
+        )?,
+        damping_ratio: ordered(
+            ("system.smallest_damping_ratio", system.smallest_damping_ratio),
+            ("system.largest_damping_ratio", system.largest_damping_ratio),
+        )?,
+        release_deg: ordered(
+            ("record.smallest_release_deg", record.smallest_release_deg),
+            ("record.largest_release_deg", record.largest_release_deg),
+        )?,
+        noise: ordered(
+            ("sensor.smallest_noise", sensor.smallest_noise),
+            ("sensor.largest_noise", sensor.largest_noise),
+        )?,
+    })
 }
 
 /// The name of a case's folder. Numbers are dealt to banks by a shuffle: they betray nothing.

@@ -2,7 +2,7 @@
 
 use super::draws::Draws;
 use super::error::TrialError;
-use super::plan::Ranges;
+use super::ranges::Ranges;
 use dynamics::chain::{SampledMotion, Samples};
 use dynamics::sensitivity::{FullState, Model, Settings};
 use dynamics::{Active, Coefficients, Hold, Input, Nominal, Start, System};

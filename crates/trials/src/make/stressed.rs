@@ -90,7 +90,7 @@ pub(crate) fn drawn<L: TorqueLaw + 'static>(
 pub(crate) fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
     let nominal = situation.nominal;
     let (inertia, stiffness, rest) = (nominal.inertia(), nominal.stiffness(), nominal.rest_angle());
-    let (omega, swing, duration) = (situation.omega(), situation.amplitude, situation.duration());
+    let (omega, swing) = (situation.omega(), situation.amplitude);
     let (torque, speed) = (stiffness * swing, omega * swing);
     match effect {
         "coulomb_friction" | "stribeck_friction" => {
@@ -162,38 +162,48 @@ pub(crate) fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Dr
                 "power 3/2".to_owned(),
             )
         }
-        "stiffness_drift" | "damping_drift" => {
-            // One that settles as fast as the amplitude decays is what a cubic spring or another friction does.
-            let settling = draws.uniform(1.5, 5.0) * duration;
-            let damping = nominal.damping();
-            let of_stiffness = effect == "stiffness_drift";
-            let sign = if of_stiffness { draws.sign() } else { 1.0 };
-            let rate = move |size: f64| sign * size / duration;
-            let law = move |size: f64| ExponentialDrift {
-                of: if of_stiffness { Drifting::Stiffness(stiffness) } else { Drifting::Damping(damping) },
-                rate: rate(size),
-                settling,
-            };
-            let (guess, most) = if of_stiffness { (1e-4, 0.5) } else { (1e-2, 40.0) };
-            drawn(guess, most, law, move |size| vec![rate(size)], format!("settles in {settling:.2} s"))
-        }
-        _ => {
-            let below = draws.chance(0.5);
-            let ratio = if below { draws.uniform(0.3, 0.8) } else { draws.uniform(1.25, 4.0) };
-            let (frequency, phase) = (ratio * omega, draws.uniform(-PI, PI));
-            let wander = draws.uniform(0.1, 0.6);
-            let wander_frequency = draws.uniform(1.0, 6.0) * PI / duration;
-            let law = move |size: f64| WanderingForcing {
-                torque: size * torque,
-                frequency,
-                phase,
-                wander,
-                wander_frequency,
-            };
-            let parameters = move |size: f64| vec![size * torque, frequency, phase];
-            drawn(1e-3, 1.0, law, parameters, format!("phase wanders by {wander:.2} rad"))
-        }
+        "stiffness_drift" | "damping_drift" => drift(effect, situation, draws),
+        _ => forcing(situation, draws),
     }
+}
+
+/// A drift that settles, in stiffness or damping.
+fn drift(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
+    let nominal = situation.nominal;
+    let (stiffness, duration) = (nominal.stiffness(), situation.duration());
+    // One that settles as fast as the amplitude decays is what a cubic spring or another friction does.
+    let settling = draws.uniform(1.5, 5.0) * duration;
+    let damping = nominal.damping();
+    let of_stiffness = effect == "stiffness_drift";
+    let sign = if of_stiffness { draws.sign() } else { 1.0 };
+    let rate = move |size: f64| sign * size / duration;
+    let law = move |size: f64| ExponentialDrift {
+        of: if of_stiffness { Drifting::Stiffness(stiffness) } else { Drifting::Damping(damping) },
+        rate: rate(size),
+        settling,
+    };
+    let (guess, most) = if of_stiffness { (1e-4, 0.5) } else { (1e-2, 40.0) };
+    drawn(guess, most, law, move |size| vec![rate(size)], format!("settles in {settling:.2} s"))
+}
+
+/// A periodic torque whose frequency wanders.
+fn forcing(situation: &Situation, draws: &mut Draws) -> Drawn {
+    let (omega, duration) = (situation.omega(), situation.duration());
+    let torque = situation.nominal.stiffness() * situation.amplitude;
+    let below = draws.chance(0.5);
+    let ratio = if below { draws.uniform(0.3, 0.8) } else { draws.uniform(1.25, 4.0) };
+    let (frequency, phase) = (ratio * omega, draws.uniform(-PI, PI));
+    let wander = draws.uniform(0.1, 0.6);
+    let wander_frequency = draws.uniform(1.0, 6.0) * PI / duration;
+    let law = move |size: f64| WanderingForcing {
+        torque: size * torque,
+        frequency,
+        phase,
+        wander,
+        wander_frequency,
+    };
+    let parameters = move |size: f64| vec![size * torque, frequency, phase];
+    drawn(1e-3, 1.0, law, parameters, format!("phase wanders by {wander:.2} rad"))
 }
 
 /// A first-order autoregressive sequence of unit variance at the samples, with a correlation time in seconds.

@@ -3,7 +3,7 @@
 use super::judgment::{BANKS, Judgment, KINDS, Said};
 use super::statistics::proportion;
 use crate::hidden::{Asked, Bank};
-use runs::result::{BankRow, Confusion, NuisanceRow, Proportion, SizeRow};
+use results::{BankRow, Confusion, NuisanceRow, Proportion, SizeRow};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Sizes in noise units that stand for ranges; a range reaches to the geometric mean with the next.

@@ -4,7 +4,7 @@ use super::accuracy::{kind_right, range, within};
 use super::judgment::Judgment;
 use super::statistics::{NO_NUMBER, proportion};
 use crate::hidden::{Asked, Bank};
-use runs::result::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
+use results::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
 /// Size in noise units at which an effect is told from its closest rival in 19 of 20 records, with one, two and three
 /// releases; from the linearized law of a decay of 3.5 Hz with a damping ratio of 0.006, released at 40° (and

@@ -1,35 +1,11 @@
 //! Scores by effect and by class where several effects act: what is named of what acts, and whether probabilities hold.
 
+use super::class::{CLASSES, class_of};
 use super::judgment::{Judgment, Said};
 use super::reliability::Statements;
 use super::statistics::{proportion, quantiles};
 use crate::hidden::{Asked, Bank, HiddenEffect};
-use runs::result::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
-
-/// Effects that explain alike, by class; and ids of classes themselves.
-const CLASSES: [(&str, &[&str]); 11] = [
-    ("friction", &["coulomb_friction", "stribeck_friction", "hysteresis"]),
-    ("restoring", &["cubic_stiffness", "asymmetric_stiffness", "gravity"]),
-    ("damping", &["quadratic_drag", "damping_drift"]),
-    ("play", &["backlash", "end_stop"]),
-    ("drift", &["stiffness_drift", "clock_drift"]),
-    ("second_body", &["flexible_coupling"]),
-    ("forcing", &["periodic_forcing"]),
-    ("preload", &["constant_torque"]),
-    ("actuator", &["input_delay", "input_saturation"]),
-    (
-        "sensor",
-        &[
-            "sensor_quantization",
-            "sensor_saturation",
-            "sensor_lag",
-            "sensor_nonlinearity",
-            "sensor_drift",
-            "outliers",
-        ],
-    ),
-    ("stamps", &["timestamp_batching", "timestamp_jitter", "dropouts"]),
-];
+use results::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
 
 /// Ranges of sizes, × noise, whose recall is stated; the last has no end.
 const FLOORS: [f64; 5] = [1.0, 4.0, 10.0, 30.0, f64::INFINITY];
@@ -39,11 +15,6 @@ const SURE: f64 = 0.9;
 
 /// Probability below which an answer does not list an effect.
 const LISTED: f64 = 0.01;
-
-/// The class of an effect; of an id that is none, that id.
-pub(crate) fn class_of(id: &str) -> &str {
-    CLASSES.iter().find(|(_, effects)| effects.contains(&id)).map_or(id, |(class, _)| class)
-}
 
 /// Probability of a class: the sum of those of its effects, at most 1, nuisances struck.
 fn probability(answer: &DiagnosisResult, class: &str, nuisances: &[String]) -> f64 {

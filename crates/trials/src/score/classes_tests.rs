@@ -1,11 +1,12 @@
 //! Scores by class on answers whose scores can be counted by hand.
 
 use super::AnsweredCase;
-use super::classes::{class_of, statements, study};
+use super::class::class_of;
+use super::classes::{statements, study};
 use super::judgment::Judgment;
 use super::sample::{answered, case};
 use crate::hidden::{Bank, Foreign, Unlisted};
-use runs::result::{ClassScores, WithInterval};
+use results::{ClassScores, WithInterval};
 
 /// A composite case: effects with sizes × noise, and a law outside the vocabulary of a class.
 fn composite(hidden: &[(&str, f64)], class: Option<&str>, named: &[&str]) -> AnsweredCase {

@@ -7,7 +7,7 @@ use dynamics::chain::Observed;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use dynamics::{Active, DynamicsError, Effect, Hold, Input, Nominal, SYSTEM_HIDDEN, System};
 use nalgebra::{DMatrix, DVector};
-use runs::result::{CalibratedRow, ClosureStudy, DiagnosisResult};
+use results::{CalibratedRow, ClosureStudy, DiagnosisResult};
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 use truth::Truth;
@@ -264,7 +264,7 @@ mod tests {
     use crate::score::sample::{answered, case};
     use dynamics::Start;
     use dynamics::chain::Chain;
-    use runs::result::{EffectRow, ParameterRow, WithInterval};
+    use results::{EffectRow, ParameterRow, WithInterval};
     use truth::{Draws, Sampling, TRUTH_SCHEMA};
 
     fn exactly(value: f64) -> WithInterval {

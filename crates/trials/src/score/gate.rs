@@ -5,7 +5,7 @@ use super::classes::{false_alarms, is_composite, leading_named, leading_sure, pr
 use super::judgment::Judgment;
 use super::statistics::NO_NUMBER;
 use crate::make::SECTIONS;
-use runs::result::{BarRow, Reliability, TrialsResult};
+use results::{BarRow, Reliability, TrialsResult};
 use serde::Deserialize;
 use settings::{Document, Resolved, SettingsError};
 

@@ -1,6 +1,6 @@
 //! A rising map from stated to found probabilities.
 
-use runs::result::ProbabilityMap;
+use results::ProbabilityMap;
 
 /// Fewest cases that a map is fitted to: a block's mean scatters by 0.2 with fewer than six, and there is
 /// more than one.

@@ -1,9 +1,9 @@
 //! One answer beside one truth.
 
-use super::classes::class_of;
+use super::class::class_of;
 use crate::hidden::{Asked, Bank, Hidden};
 use dynamics::{Class, Effect};
-use runs::result::DiagnosisResult;
+use results::{DiagnosisResult, VerdictStatus};
 
 /// A case with its opened truth and what the diagnosis said of it.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,10 +38,10 @@ pub(crate) const KINDS: [&str; 7] =
 impl Said {
     pub(crate) fn name(self) -> &'static str {
         match self {
-            Self::None => "none",
-            Self::Calibration => "calibration",
-            Self::Effect => "effect",
-            Self::Unknown => "unknown",
+            Self::None => VerdictStatus::None.name(),
+            Self::Calibration => VerdictStatus::Calibration.name(),
+            Self::Effect => VerdictStatus::Effect.name(),
+            Self::Unknown => VerdictStatus::Unknown.name(),
             Self::Nothing => "no answer",
         }
     }
@@ -99,7 +99,7 @@ impl<'a> Judgment<'a> {
         let is_hidden = |id: &str| hidden.effects.iter().any(|effect| effect.id == id);
         let first = named_here.first().copied();
         // A preload and a rest position that is off are one class on one record.
-        let said_first = first.or((said == Said::Calibration).then_some("calibration"));
+        let said_first = first.or((said == Said::Calibration).then_some(VerdictStatus::Calibration.name()));
         let alike = |id: &str| {
             let classes = case.answer.iter().flat_map(|answer| &answer.verdict.equivalent);
             let mut of_first =
@@ -118,7 +118,7 @@ impl<'a> Judgment<'a> {
             }
             Asked::Nothing => {
                 let right = matches!(said, Said::None | Said::Calibration);
-                (right, right, right || named_here.len() == 1 && alike("calibration"))
+                (right, right, right || named_here.len() == 1 && alike(VerdictStatus::Calibration.name()))
             }
             Asked::Effects => {
                 let every = hidden.effects.iter().all(|effect| named_here.contains(&effect.id.as_str()));
@@ -191,17 +191,17 @@ impl<'a> Judgment<'a> {
     /// The kind that was hidden: of two effects that of the first.
     pub(crate) fn hidden_kind(&self) -> &'static str {
         match self.bank() {
-            Bank::None => "none",
-            Bank::Calibration => "calibration",
-            _ if self.asked() == Asked::Unknown => "unknown",
-            _ => self.case.hidden.effects.first().map_or("none", |effect| kind(&effect.id)),
+            Bank::None => Said::None.name(),
+            Bank::Calibration => Said::Calibration.name(),
+            _ if self.asked() == Asked::Unknown => Said::Unknown.name(),
+            _ => self.case.hidden.effects.first().map_or(Said::None.name(), |effect| kind(&effect.id)),
         }
     }
 
     /// The kind that was said: that of the first name.
     pub(crate) fn said_kind(&self) -> &'static str {
         match self.said {
-            Said::Effect => self.named.first().map_or("none", |id| kind(id)),
+            Said::Effect => self.named.first().map_or(Said::None.name(), |id| kind(id)),
             said => said.name(),
         }
     }
@@ -220,15 +220,17 @@ impl<'a> Judgment<'a> {
 fn said<'a>(answer: &'a DiagnosisResult, nuisances: &[String]) -> (Said, Vec<&'a str>) {
     let named: Vec<&str> =
         answer.verdict.effects.iter().filter(|id| !nuisances.contains(id)).map(String::as_str).collect();
-    let probability =
-        |id: &str| answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability);
-    let said = match answer.verdict.status.as_str() {
-        "none" => Said::None,
-        "calibration" => Said::Calibration,
-        "unknown" => Said::Unknown,
-        _ if !named.is_empty() => Said::Effect,
-        _ if probability("none") > probability("calibration") => Said::None,
-        _ => Said::Calibration,
+    let said = match answer.verdict.status {
+        VerdictStatus::None => Said::None,
+        VerdictStatus::Calibration => Said::Calibration,
+        VerdictStatus::Unknown => Said::Unknown,
+        VerdictStatus::Effect if !named.is_empty() => Said::Effect,
+        VerdictStatus::Effect
+            if answer.probability(VerdictStatus::None) > answer.probability(VerdictStatus::Calibration) =>
+        {
+            Said::None
+        }
+        VerdictStatus::Effect => Said::Calibration,
     };
     (said, named)
 }

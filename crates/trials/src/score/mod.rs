@@ -2,6 +2,7 @@
 
 pub(crate) mod accuracy;
 mod bars;
+mod class;
 mod classes;
 #[cfg(test)]
 mod classes_tests;
@@ -28,8 +29,9 @@ use crate::baseline::{Baseline, row};
 use crate::hidden::Bank;
 use judgment::{RIGHT_MEANS, Said};
 use reliability::{Statements, is_own, mapped, of_confidence, of_effects, reliability};
-use runs::result::{
+use results::{
     FailureRow, LeftOutBank, ProbabilityMap, Reliability, TRIALS_SCHEMA, TrialCaseRow, TrialsResult,
+    VerdictStatus,
 };
 use seed::Seed;
 
@@ -181,7 +183,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
         status: judgment.said.name().to_owned(),
         named: judgment.named.join("+"),
         confidence: finite(answer.map(|answer| answer.verdict.confidence)),
-        unknown: judgment.probability("unknown"),
+        unknown: judgment.probability(VerdictStatus::Unknown.name()),
         right: judgment.right,
         top_1: judgment.top_1,
         class: judgment.class,

@@ -5,7 +5,7 @@ use super::judgment::Judgment;
 use super::statistics::{proportion, quantile};
 use crate::hidden::{Asked, Bank};
 use rand::RngExt;
-use runs::result::{ProbabilityMap, Reliability, ReliabilityBin, WithInterval};
+use results::{ProbabilityMap, Reliability, ReliabilityBin, VerdictStatus, WithInterval};
 use seed::Seed;
 
 /// Bins of equal count.
@@ -28,13 +28,14 @@ pub(crate) fn of_effects<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
     judged
         .filter_map(|judgment| {
             let hidden = &judgment.case.hidden;
-            let is_so = |id: &str| match id {
-                "unknown" => judgment.asked() == Asked::Unknown,
-                id => hidden.effects.iter().any(|effect| effect.id == id),
+            let is_so = |id: &str| match VerdictStatus::of_row(id) {
+                Some(VerdictStatus::Unknown) => judgment.asked() == Asked::Unknown,
+                _ => hidden.effects.iter().any(|effect| effect.id == id),
             };
             let rows = judgment.answer()?.effects.iter();
             let counted = rows.filter(|row| {
-                !hidden.nuisances.contains(&row.id) && !matches!(row.id.as_str(), "none" | "calibration")
+                !hidden.nuisances.contains(&row.id)
+                    && matches!(VerdictStatus::of_row(&row.id), None | Some(VerdictStatus::Unknown))
             });
             Some(counted.map(|row| (row.probability, is_so(&row.id))).collect())
         })

@@ -2,7 +2,7 @@
 
 use super::AnsweredCase;
 use crate::hidden::{Bank, Foreign, HIDDEN_SCHEMA, Hidden, HiddenEffect};
-use runs::result::DiagnosisResult;
+use results::DiagnosisResult;
 use serde_json::json;
 
 /// An answer with a status, names and a confidence; everything else plain.

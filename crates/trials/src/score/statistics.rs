@@ -1,6 +1,6 @@
 //! Shares, quantiles and areas with their intervals.
 
-use runs::result::{Proportion, Quantiles, WithInterval};
+use results::{Proportion, Quantiles, WithInterval};
 use scoring::binomial_interval;
 use statrs::distribution::{Binomial, DiscreteCDF};
 

@@ -4,7 +4,7 @@ use super::sample::{answered, case};
 use super::{AnsweredCase, Gate, Trials, case_rows, misses_a_bar, misses_the_gate, score};
 use crate::baseline::most_common;
 use crate::hidden::Bank;
-use runs::result::LeftOutBank;
+use results::LeftOutBank;
 
 fn trials() -> Trials {
     Trials {
@@ -70,7 +70,7 @@ fn a_score_survives_its_file_and_is_the_same_again() {
     let cases = cases();
     let found = score(&trials(), &cases, &[]);
     let text = serde_json::to_string(&found).unwrap();
-    let read: runs::result::TrialsResult = serde_json::from_str(&text).unwrap();
+    let read: results::TrialsResult = serde_json::from_str(&text).unwrap();
     assert_eq!(serde_json::to_string(&read).unwrap(), text);
     assert_eq!(serde_json::to_string(&score(&trials(), &cases, &[])).unwrap(), text);
 }

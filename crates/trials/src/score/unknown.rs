@@ -4,7 +4,7 @@ use super::accuracy::{SIZES, range, within};
 use super::judgment::Judgment;
 use super::statistics::area;
 use crate::hidden::{Asked, Bank};
-use runs::result::{AreaRow, UnknownStudy};
+use results::{AreaRow, UnknownStudy, VerdictStatus};
 
 /// Points of the curve that are kept.
 const MOST_POINTS: usize = 200;
@@ -12,7 +12,7 @@ const MOST_POINTS: usize = 200;
 /// Areas under the curve of the stated probability of `unknown`: cases whose effect was not to be considered or lies
 /// outside the vocabulary against those with named effects or none.
 pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
-    let score = |judgment: &Judgment<'_>| judgment.probability("unknown");
+    let score = |judgment: &Judgment<'_>| judgment.probability(VerdictStatus::Unknown.name());
     let is_negative = |bank: Bank| matches!(bank, Bank::None | Bank::Calibration | Bank::Single | Bank::Pair);
     let negatives: Vec<f64> =
         judged.iter().filter(|judgment| is_negative(judgment.bank())).filter_map(score).collect();

@@ -1,0 +1,73 @@
+//! What is said of the measurement chain as a whole.
+
+use crate::answer::{Finding, MeasuringChain};
+use crate::data::observations::Observations;
+use crate::data::segments::Data;
+use crate::fit::levenberg_marquardt::Fit;
+use crate::measurement::signatures;
+use crate::model::candidate::Candidate;
+use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
+use record::{ClockKind, Quantity};
+
+/// The nominal oscillator with the sensor's step, also where the simulator states that as an effect.
+fn seen(simulator: &NominalSimulator) -> Result<Nominal, DynamicsError> {
+    let nominal = *simulator.nominal();
+    let steps = simulator.effects().iter().filter(|known| known.active.id() == "sensor_quantization");
+    match steps.filter_map(|known| known.active.value("step")).next() {
+        Some(step) if nominal.sensor_resolution().is_none() => nominal.with_sensor_resolution(step),
+        _ => Ok(nominal),
+    }
+}
+
+/// Words on effects of the nominal simulator that no fit follows.
+pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> Vec<Finding> {
+    let followed = |known: &&KnownEffect| {
+        Candidate::of(&known.active).is_some_and(|(own, _)| own.is_observed_in(quantity))
+    };
+    let others = simulator.effects().iter().filter(|known| !followed(known));
+    others
+        .map(|known| Finding {
+            effect: None,
+            text: format!(
+                "the nominal simulator has {}: it is taken as known, and shows in stamps and values as they are",
+                known.active.id()
+            ),
+        })
+        .collect()
+}
+
+/// What is said of the chain: clock, rate, resolution, noise, and what stamps and values show. `kept` tells which samples of
+/// each record are no outliers.
+///
+/// # Errors
+/// A sensor's step that is no step.
+pub(crate) fn chain(
+    records: &[Observations],
+    kept: &[Vec<bool>],
+    simulator: &NominalSimulator,
+    data: &Data,
+    repaired: &Fit,
+    noise: f64,
+) -> Result<MeasuringChain, DynamicsError> {
+    let nominal = &seen(simulator)?;
+    let mut findings: Vec<Finding> = records
+        .iter()
+        .zip(kept)
+        .flat_map(|(record, kept)| signatures::findings(record, kept, nominal))
+        .collect();
+    findings.extend(signatures::quantization(data, noise, nominal));
+    findings.extend(signatures::frequencies(records));
+    let host = records.iter().any(|record| record.clock == ClockKind::Host);
+    let known = findings.iter().any(|finding| finding.effect == Some("timestamp_jitter"));
+    if host && !known {
+        findings.extend(signatures::noise_with_speed(data, repaired));
+    }
+    let first = records.first();
+    Ok(MeasuringChain {
+        clock: first.map_or("host", |record| record.clock.name()),
+        sample_rate_hz: first.map_or(0.0, |record| record.sample_rate_hz),
+        resolution: data.resolution,
+        noise,
+        findings,
+    })
+}

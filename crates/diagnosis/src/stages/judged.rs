@@ -1,0 +1,66 @@
+//! Which classes of effects the records speak for, and the set that stands for them.
+
+use super::{Measured, Refined, Request};
+use crate::answer::EffectClass;
+use crate::error::DiagnosisError;
+use crate::evidence::conclusion::likely;
+use crate::evidence::context::{Context, Held, Shift};
+use crate::evidence::half_swings::half_swings;
+use crate::evidence::inclusion::{Inclusion, asked};
+use crate::evidence::left_over::unexplained;
+use crate::evidence::probability::Doubt;
+use crate::evidence::weights::acts;
+use crate::fit::levenberg_marquardt::Fit;
+use std::cell::OnceCell;
+
+/// Log evidence by which the set of all likely classes may predict worse than the best set of some of them.
+const WORSE: f64 = 3.0;
+
+/// Classes with their probabilities, and the repaired simulator.
+pub(crate) struct Judged<'a> {
+    pub(crate) inclusion: Inclusion<'a>,
+    pub(crate) classes: Vec<EffectClass>,
+    pub(crate) held: Held<'a>,
+    /// A constant torque that does what recalibration does.
+    pub(crate) shift: Option<Shift>,
+}
+
+impl<'a> Judged<'a> {
+    /// `completed` has room for a set that no search has tried: that of all likely classes.
+    pub(crate) fn of(
+        request: &Request<'a>,
+        measured: &Measured,
+        refined: &'a Refined,
+        work: &Context<'a>,
+        completed: &'a OnceCell<Fit>,
+    ) -> Result<Self, DiagnosisError> {
+        let segments = &refined.segments;
+        let mut predictions = work.predictions(&asked(&refined.weighed()))?;
+        let bare = refined.archive.find(&[]).unwrap_or(&refined.base.calibrated);
+        let inclusion = Inclusion::of(segments, &predictions, bare, refined.candidates.len());
+        let frequency = request.simulator.angular_frequency();
+        let swings = half_swings(request.records, &measured.free, frequency);
+        let witness = swings.as_ref().map(|own| &own.witness);
+        let best = inclusion.weighed.first().map_or(bare, |w| w.fit);
+        let doubt = Doubt {
+            left_over: acts(unexplained(&refined.data, best)?.evidence),
+            odds: request.settings.false_alarm,
+        };
+        let classes = inclusion.classes(witness, doubt, &request.settings.seed);
+        let names = likely(&classes);
+        let within = inclusion.within(&names);
+        let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
+        if let Some(fit) = inclusion.completed(&refined.data, &names) {
+            let least = within.map_or(0.0, |w| w.evidence) - WORSE;
+            let set = work.predicted(completed.get_or_init(|| fit));
+            if let Some(set) = set.filter(|set| inclusion.evidence(segments, set) > least) {
+                chosen.clone_from(&set.followed.hypothesis.candidates);
+                predictions.sets.push(set);
+            }
+        }
+        let held = work.held_out(predictions, &chosen)?;
+        let considers = request.settings.considers("constant_torque");
+        let shift = if considers { work.shift(held.repaired) } else { None };
+        Ok(Self { inclusion, classes, held, shift })
+    }
+}

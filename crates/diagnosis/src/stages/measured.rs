@@ -1,0 +1,48 @@
+//! What the records hold: samples to believe, segments, findings on the measurement chain.
+
+use super::Request;
+use crate::answer::Finding;
+use crate::data::observations::Observations;
+use crate::data::release;
+use crate::data::segments::{Data, MOST_SEARCHED, cut};
+use crate::error::DiagnosisError;
+use crate::measurement::signatures;
+
+/// Records, cut into segments.
+pub(crate) struct Measured {
+    /// Which samples of each record are no outliers, and which of these come after its release.
+    pub(crate) kept: Vec<Vec<bool>>,
+    pub(crate) free: Vec<Vec<bool>>,
+    pub(crate) data: Data,
+    /// Whether no segment was left out.
+    pub(crate) is_whole: bool,
+    /// Share of the samples that is looked at.
+    pub(crate) samples_used: f64,
+    pub(crate) findings: Vec<Finding>,
+}
+
+impl Measured {
+    pub(crate) fn of(request: &Request<'_>) -> Result<Self, DiagnosisError> {
+        let records = request.records;
+        let kept: Vec<Vec<bool>> = records.iter().map(signatures::kept).collect();
+        let (free, mut findings) = free(records, &kept);
+        let all = cut(records, &free, request.simulator)?;
+        findings.extend(signatures::without_motion(&free, all.samples()));
+        let sparser = all.sparser(MOST_SEARCHED);
+        let data = sparser.thinned(MOST_SEARCHED);
+        let is_whole = data.samples() == sparser.samples();
+        let samples_used = data.samples() as f64 / all.samples().max(1) as f64;
+        Ok(Self { kept, free, data, is_whole, samples_used, findings })
+    }
+}
+
+/// The samples that are kept of each record, less those before its release; and what is said of these.
+fn free(records: &[Observations], kept: &[Vec<bool>]) -> (Vec<Vec<bool>>, Vec<Finding>) {
+    let mut findings = Vec::new();
+    let free = records.iter().zip(kept).map(|(record, kept)| {
+        let Some(until) = release::held_until(record) else { return kept.clone() };
+        findings.push(release::finding(until));
+        record.times_s.iter().zip(kept).map(|(time, kept)| *kept && *time >= until).collect()
+    });
+    (free.collect(), findings)
+}

@@ -1,0 +1,42 @@
+//! What could be missing, and the samples on which it is searched.
+
+use super::{Measured, Request};
+use crate::data::segments::Data;
+use crate::error::DiagnosisError;
+use crate::fit::calibrate::{Baseline, better_hold};
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::Dictionary;
+use crate::noise::floor;
+use crate::search::null;
+
+/// The calibrated simulator and the effects that it may lack.
+pub(crate) struct Question {
+    pub(crate) data: Data,
+    pub(crate) base: Baseline,
+    pub(crate) candidates: Vec<Candidate>,
+    /// Fewer samples and fewer knots of the input, and the calibrated simulator on them.
+    pub(crate) coarse: Data,
+    pub(crate) coarse_base: Fit,
+    /// Increase of a score that a further effect has to bring on the coarse samples.
+    pub(crate) enough: f64,
+}
+
+impl Question {
+    pub(crate) fn of(request: &Request<'_>, measured: &Measured) -> Result<Self, DiagnosisError> {
+        let (simulator, settings) = (request.simulator, request.settings);
+        let (data, base) = better_hold(&measured.data, simulator)?;
+        let data = data.for_noise(floor::floor(&data, &base.calibrated.residuals).value);
+        let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
+        candidates.retain(|candidate| settings.considers(candidate.id()));
+        let coarse = data.averaged(data.spare_knots(&base.calibrated)).strided();
+        let known = &base.calibrated;
+        let coarse_base = fit(&coarse, &known.hypothesis, known.point.clone(), Moving::All, Stopping::FINAL)?;
+        let dictionary = Dictionary::at(&coarse, &coarse_base, &candidates)?;
+        let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
+        // On fewer samples a gain is so many times smaller; the search must not stop on that account.
+        let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
+        let enough = 0.5 * threshold / finer;
+        Ok(Self { data, base, candidates, coarse, coarse_base, enough })
+    }
+}

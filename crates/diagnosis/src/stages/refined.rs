@@ -1,0 +1,96 @@
+//! The best sets on every sample, fitted to convergence.
+
+use super::{Question, Request, Searched};
+use crate::data::segments::Data;
+use crate::data::shooting_interval::ShootingInterval;
+use crate::error::DiagnosisError;
+use crate::evidence::context::{Context, Thin, Unjoined};
+use crate::evidence::weights::{Weighed, Weighing};
+use crate::fit::calibrate::Baseline;
+use crate::fit::levenberg_marquardt::{Moving, Point, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::search::alternatives::alternatives;
+use crate::search::archive::Archive;
+use crate::search::beam::search;
+use crate::search::refine::refine;
+
+/// Everything fitted, on the segments as they were cut and on the shooting interval that the best sets follow.
+pub(crate) struct Refined {
+    pub(crate) candidates: Vec<Candidate>,
+    /// The segments as they were cut.
+    pub(crate) segments: Data,
+    segments_base: Baseline,
+    /// The same joined.
+    pub(crate) data: Data,
+    pub(crate) base: Baseline,
+    /// The coarse samples, joined too, with the sets that were found on them.
+    pub(crate) coarse: ShootingInterval,
+    found: Archive,
+    /// Sets on every sample.
+    pub(crate) archive: Archive,
+    /// Autocorrelation time of what the best of them leaves, in samples.
+    pub(crate) time: f64,
+}
+
+impl Refined {
+    pub(crate) fn of(question: Question, searched: Searched) -> Result<Self, DiagnosisError> {
+        let Question { data, base: segments_base, candidates, enough, .. } = question;
+        let Searched { interval: coarse, mut found, breadth } = searched;
+        let closest = found.ranked(found.autocorrelation_time());
+        let closest = closest.first().map_or(&coarse.calibrated, |best| *best);
+        let segments = data.averaged(data.joined(coarse.by).spare_knots(closest));
+        let data = segments.joined(coarse.by);
+        let base = followed(&data, &Unjoined { data: &segments, base: &segments_base }, &coarse)?;
+        let vocabulary = candidates.len();
+        alternatives(&coarse.data, &coarse.calibrated, &mut found, &candidates, vocabulary);
+        let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
+        let known = Archive::of(&base.calibrated);
+        let mut archive = refine(&data, &known, &weighing.weigh(&found), &found.rejected, &candidates);
+        if let Some((known, others)) = found.misled(&archive, &candidates) {
+            found = search(&coarse.data, &coarse.calibrated, known, &others, &breadth, enough);
+            let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
+            archive = refine(&data, &archive, &weighing.weigh(&found), &found.rejected, &others);
+        }
+        let time = archive.autocorrelation_time();
+        Ok(Self { candidates, segments, segments_base, data, base, coarse, found, archive, time })
+    }
+
+    /// What the later stages share.
+    pub(crate) fn context<'a>(&'a self, request: &Request<'a>) -> Context<'a> {
+        let (data, calibrated) = (&self.coarse.data, &self.coarse.calibrated);
+        Context {
+            data: &self.data,
+            base: &self.base,
+            segments: Unjoined { data: &self.segments, base: &self.segments_base },
+            pool: &self.archive,
+            thin: Thin { data, calibrated, pool: &self.found },
+            time: self.time,
+            settings: request.settings,
+        }
+    }
+
+    /// The sets by their evidence on what they were fitted to, best first.
+    pub(crate) fn weighed(&self) -> Vec<Weighed<'_>> {
+        let weighing = Weighing::of(&self.data, &self.base.calibrated, &self.archive, self.candidates.len());
+        weighing.weigh(&self.archive)
+    }
+}
+
+/// The given and the recalibrated simulator on every sample of a shooting interval.
+fn followed(
+    data: &Data,
+    segments: &Unjoined<'_>,
+    horizon: &ShootingInterval,
+) -> Result<Baseline, DiagnosisError> {
+    if horizon.by == 1 {
+        return Ok(segments.base.clone());
+    }
+    let hypothesis = &segments.base.nominal.hypothesis;
+    let firsts = data.firsts();
+    let starts = firsts.iter().filter_map(|&first| segments.base.nominal.point.starts.get(first).cloned());
+    let point = Point { globals: hypothesis.nominal_point(), starts: starts.collect() };
+    let nominal = fit(data, hypothesis, point, Moving::Starts, Stopping::FINAL)?;
+    let point = horizon.calibrated.point.clone();
+    let calibrated = fit(data, hypothesis, point, Moving::All, Stopping::FINAL)?;
+    Ok(Baseline { nominal, calibrated })
+}

@@ -1,0 +1,113 @@
+//! What the named effects leave: a torque without a name, noise, and what is neither.
+
+use super::{Judged, Refined};
+use crate::answer::{Gap, LeftOver};
+use crate::error::DiagnosisError;
+use crate::evidence::context::Context;
+use crate::evidence::discrepancy;
+use crate::evidence::held_out::HeldOut;
+use crate::evidence::left_over::unexplained;
+use crate::evidence::weights::{acts, unknown};
+use crate::explain::gap::{Stages, gap};
+use crate::explain::position_torque::{Unnamed, unnamed};
+use crate::fit::levenberg_marquardt::Fit;
+use crate::model::tangent::Path;
+use crate::noise::floor;
+
+/// Error over the white noise floor beyond which what is left is no noise. An autoregressive noise of first
+/// order stays below it up to a correlation of 0.84 from sample to sample.
+const FAR_ABOVE: f64 = 3.0;
+
+/// What is left, and how large the gap is before and after.
+pub(crate) struct Remaining {
+    pub(crate) unnamed: Option<Unnamed>,
+    /// Standard deviation of the noise.
+    pub(crate) noise: f64,
+    /// The motion along the segments.
+    pub(crate) paths: Vec<Path>,
+    pub(crate) gap: Gap,
+    /// Mean square that recalibration leaves beside the noise.
+    pub(crate) excess: f64,
+    /// Probability that all that is missing has no name, and that anything is left beside the named effects.
+    pub(crate) nameless: f64,
+    pub(crate) left_over: f64,
+}
+
+impl Remaining {
+    pub(crate) fn of(
+        work: &Context<'_>,
+        refined: &Refined,
+        judged: &Judged<'_>,
+        unit: &'static str,
+    ) -> Result<Self, DiagnosisError> {
+        let held = &judged.held;
+        let (data, segments) = (&refined.data, &refined.segments);
+        let unnamed = unnamed(work, held)?;
+        let (fitted, after, later) = match &unnamed {
+            Some(torque) => (&torque.fitted, &torque.after, torque.last_third),
+            None => (&held.fitted, &held.after, held.last_third[1]),
+        };
+        let floors = floor::squares(segments, &fitted.residuals);
+        let noise = floor::of_squares(&floors);
+        let paths = Path::of(segments, fitted)?;
+        let ceiling = discrepancy::ceiling(segments, fitted, &paths)?;
+        let stages = Stages {
+            nominal: &held.nominal,
+            recalibrated: &held.recalibrated,
+            repaired: after,
+            ceiling: &ceiling,
+        };
+        let gap = gap(&stages, (noise, &floors), [held.last_third[0], later], unit);
+        let noise_square = noise.value * noise.value;
+        let excess = gap.recalibrated.powi(2) - noise_square;
+        let left = unexplained(data, held.repaired)?;
+        let gained = (refined.base.calibrated.squares - held.repaired.squares).max(0.0);
+        let mut share = left.squares / (left.squares + gained).max(f64::MIN_POSITIVE);
+        let mut evidence = left.evidence;
+        if let Some(torque) = &unnamed {
+            share = share.max(torque.share.value);
+            evidence = evidence.max(torque.evidence);
+        }
+        let with_names = held.after.mean_square();
+        if with_names > (FAR_ABOVE * noise.value).powi(2) {
+            // No noise is so smooth: whatever its spectrum is, it is a part of the gap.
+            share = share.max((with_names - noise_square) / excess.max(f64::MIN_POSITIVE));
+            evidence = f64::INFINITY;
+        }
+        let left_over = acts(evidence);
+        let nameless = unknown(left_over, share.min(1.0));
+        Ok(Self { unnamed, noise: noise.value, paths, gap, excess, nameless, left_over })
+    }
+
+    /// Residuals on held-out parts, with the torque without a name where there is one.
+    pub(crate) fn after<'b>(&'b self, judged: &'b Judged<'_>) -> &'b HeldOut {
+        self.unnamed.as_ref().map_or(&judged.held.after, |torque| &torque.after)
+    }
+
+    /// The fit with everything that was found, on the shooting interval.
+    pub(crate) fn complete<'b>(&'b self, judged: &'b Judged<'_>) -> &'b Fit {
+        self.unnamed.as_ref().map_or(judged.held.repaired, |torque| &torque.followed)
+    }
+
+    /// The same on the segments as they were cut.
+    pub(crate) fn fitted<'b>(&'b self, judged: &'b Judged<'_>) -> &'b Fit {
+        self.unnamed.as_ref().map_or(&judged.held.fitted, |torque| &torque.fitted)
+    }
+
+    /// What is left beside the noise, in words of the gap.
+    pub(crate) fn summary(&self) -> LeftOver {
+        LeftOver { share_of_gap: 1.0 - self.gap.closure.value, over_noise: self.gap.ratio_to_floor.value }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::FAR_ABOVE;
+
+    /// Second differences of an autoregressive noise of unit variance have the variance 6 − 8ρ + 2ρ².
+    #[test]
+    fn colored_noise_stays_below_what_is_no_noise() {
+        let over_floor = |rho: f64| (6.0 / (6.0 - 8.0 * rho + 2.0 * rho * rho)).sqrt();
+        assert!(over_floor(0.84) < FAR_ABOVE && over_floor(0.85) > FAR_ABOVE);
+    }
+}

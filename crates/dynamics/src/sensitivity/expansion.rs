@@ -1,0 +1,41 @@
+//! A state expanded into its Taylor series.
+
+use super::graph::{Graph, MOST_STATES};
+use super::series::Series;
+
+/// Expands the state into its series. Where the step cannot be long (`room`), a lower degree may do: it
+/// returns the degree used.
+pub(super) fn expand(
+    graph: &mut Graph,
+    series: &mut [Series; MOST_STATES],
+    states: usize,
+    most: usize,
+    room: f64,
+    scale: &[f64; MOST_STATES],
+    tolerance: f64,
+) -> usize {
+    let mut small = 0;
+    let mut power = 1.0;
+    for degree in 0..most {
+        graph.extend(degree);
+        let divisor = 1.0 / (degree + 1) as f64;
+        power *= room;
+        let mut negligible = true;
+        for (variable, (series, scale)) in series.iter_mut().zip(scale).enumerate().take(states) {
+            let rate = graph.rates.get(variable).copied();
+            let coefficient = rate.map_or(0.0, |node| graph.coefficient(node, degree)) * divisor;
+            graph.set_state(variable, degree + 1, coefficient);
+            if let Some(slot) = series.get_mut(degree + 1) {
+                *slot = coefficient;
+            }
+            negligible &= coefficient.abs() * power <= 0.1 * tolerance * scale;
+        }
+        small = if negligible { small + 1 } else { 0 };
+        if small >= 2 && degree >= 3 {
+            graph.extend(degree + 1);
+            return degree + 1;
+        }
+    }
+    graph.extend(most);
+    most
+}

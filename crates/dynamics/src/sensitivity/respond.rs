@@ -1,0 +1,47 @@
+//! Running a model: its motion with sensitivities.
+
+use super::march::March;
+use super::model::Model;
+use super::response::{FullState, Response};
+use crate::error::DynamicsError;
+use crate::input::Input;
+
+impl Model {
+    /// The motion at `times` from a start at the first of them, with its sensitivities.
+    ///
+    /// `times` in seconds, never decreasing; they may be uneven and are also the time that drifts, forcing and
+    /// input count in. A column of a start value whose hidden states are relaxed includes their moving along.
+    ///
+    /// # Errors
+    /// [`DynamicsError::BadTimes`], [`DynamicsError::BadStart`], [`DynamicsError::Diverged`],
+    /// [`DynamicsError::StepTooSmall`] and [`DynamicsError::TooManySteps`].
+    pub fn run_into(
+        &mut self,
+        start: FullState,
+        input: Option<&Input>,
+        times: &[f64],
+        response: &mut Response,
+    ) -> Result<(), DynamicsError> {
+        crate::times::check(times)?;
+        crate::Start { position: start.position, velocity: start.velocity }.check()?;
+        if let Some(&value) = start.hidden.iter().flatten().find(|value| !value.is_finite()) {
+            return Err(DynamicsError::BadStart { what: "hidden state", value });
+        }
+        March::new(self, start, input, times, response).run()
+    }
+
+    /// As [`Self::run_into`], into new buffers.
+    ///
+    /// # Errors
+    /// As [`Self::run_into`].
+    pub fn run(
+        &mut self,
+        start: FullState,
+        input: Option<&Input>,
+        times: &[f64],
+    ) -> Result<Response, DynamicsError> {
+        let mut response = Response::default();
+        self.run_into(start, input, times, &mut response)?;
+        Ok(response)
+    }
+}

@@ -1,0 +1,78 @@
+//! Singular values and vectors by one-sided Jacobi rotations.
+
+use super::vectors::{UNIT_ROUNDOFF, diagonal, dot, length};
+
+/// Sweeps over all pairs of columns; convergence is quadratic, so that six to ten are usual.
+const MOST_SWEEPS: usize = 60;
+
+/// A = U·Σ·Vᵀ, the singular values in no order.
+pub(super) struct Decomposition {
+    /// Columns of U, of length one; zero where the value is zero.
+    pub(super) left: Vec<Vec<f64>>,
+    pub(super) values: Vec<f64>,
+    /// Columns of V.
+    pub(super) right: Vec<Vec<f64>>,
+}
+
+/// Decomposes a matrix given by columns.
+pub(super) fn decompose(mut columns: Vec<Vec<f64>>) -> Decomposition {
+    let mut right: Vec<Vec<f64>> = diagonal(&vec![1.0; columns.len()]).collect();
+    let rows = columns.first().map_or(0, Vec::len);
+    let tolerance = (rows as f64).sqrt() * UNIT_ROUNDOFF;
+    for _ in 0..MOST_SWEEPS {
+        let mut rotated = false;
+        for second in 1..columns.len() {
+            let (heads, tails) = columns.split_at_mut(second);
+            let (right_heads, right_tails) = right.split_at_mut(second);
+            let (Some(b), Some(right_b)) = (tails.first_mut(), right_tails.first_mut()) else { break };
+            for (a, right_a) in heads.iter_mut().zip(right_heads) {
+                if let Some((cosine, sine)) = rotation(a, b, tolerance) {
+                    rotate(a, b, cosine, sine);
+                    rotate(right_a, right_b, cosine, sine);
+                    rotated = true;
+                }
+            }
+        }
+        if !rotated {
+            break;
+        }
+    }
+    let values: Vec<f64> = columns.iter().map(|column| length(column)).collect();
+    for (column, value) in columns.iter_mut().zip(&values) {
+        if *value > 0.0 {
+            column.iter_mut().for_each(|x| *x /= value);
+        }
+    }
+    Decomposition { left: columns, values, right }
+}
+
+/// Singular values of a matrix given by columns.
+pub(super) fn singular_values(columns: Vec<Vec<f64>>) -> Vec<f64> {
+    decompose(columns).values
+}
+
+/// Cosine and sine of the rotation that makes two columns orthogonal; `None` where they are.
+fn rotation(a: &[f64], b: &[f64], tolerance: f64) -> Option<(f64, f64)> {
+    let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
+    // Not a comparison of products alone: it has to fail for what is no number.
+    let crossed = ab.abs() > tolerance * (aa * bb).sqrt() && ab != 0.0;
+    if !crossed {
+        return None;
+    }
+    let zeta = (bb - aa) / (2.0 * ab);
+    let tangent = zeta.signum() / (zeta.abs() + zeta.hypot(1.0));
+    let cosine = 1.0 / tangent.hypot(1.0);
+    Some((cosine, cosine * tangent))
+}
+
+fn rotate(a: &mut [f64], b: &mut [f64], cosine: f64, sine: f64) {
+    for (x, y) in a.iter_mut().zip(b) {
+        (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
+    }
+}
+
+/// Rows of a square matrix given by columns.
+pub(super) fn transpose(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let rows = columns.first().map_or(0, Vec::len);
+    (0..rows).map(|row| columns.iter().filter_map(|column| column.get(row).copied()).collect()).collect()
+}

@@ -1,0 +1,64 @@
+//! What a reader made of a file's text, on its way to a record.
+
+use crate::error::Fault;
+use crate::options::ReadOptions;
+use crate::reading::{Coordinate, Reading};
+use crate::record::Record;
+use crate::statement::Statements;
+use crate::unit::{Dimension, Unit};
+
+/// What a reader of one format collects.
+pub(crate) struct Parsed {
+    unit: Unit,
+    stamps_s: Vec<f64>,
+    values: Vec<f64>,
+    input: Vec<f64>,
+    statements: Statements,
+    pub(crate) findings: Vec<String>,
+    pub(crate) reading: Reading,
+}
+
+impl Parsed {
+    pub(crate) fn new(unit: Unit, statements: Statements, reading: Reading) -> Self {
+        Self {
+            unit,
+            stamps_s: Vec::new(),
+            values: Vec::new(),
+            input: Vec::new(),
+            statements,
+            findings: Vec::new(),
+            reading,
+        }
+    }
+
+    /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
+    pub(crate) fn push(&mut self, line: u64, stamp: f64, value: f64) -> Result<(), Fault> {
+        if let Some(&previous) = self.stamps_s.last().filter(|&&previous| stamp < previous) {
+            return Err(Fault::TimeDecreases { line, previous, stamp });
+        }
+        self.stamps_s.push(stamp);
+        self.values.push(value);
+        Ok(())
+    }
+
+    pub(crate) fn push_input(&mut self, value: f64) {
+        self.input.push(value);
+    }
+
+    pub(crate) fn finish(
+        self,
+        options: &ReadOptions,
+    ) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
+        let input = (!self.input.is_empty()).then_some(self.input);
+        let quantity = options.quantity.unwrap_or(self.reading.quantity);
+        let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
+        let rate_hz = (self.stamps_s.len().max(1) - 1) as f64 / span;
+        let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
+        let coordinate = match self.unit.dimension() {
+            Dimension::Angle => Coordinate::Angle,
+            _ => Coordinate::Displacement,
+        };
+        let reading = Reading { quantity, coordinate, ..self.reading }.worded(rate_hz);
+        Ok((record, self.statements, self.findings, reading))
+    }
+}

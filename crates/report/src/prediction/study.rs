@@ -1,0 +1,128 @@
+//! What a study says in words, on the page and in Markdown.
+
+use crate::format;
+use crate::tables::{Fact, fact, whole};
+use crate::verdict::{self, Origin, Tone, Verdict};
+use results::{
+    MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
+    ProblemStudy, SplitSummary,
+};
+
+/// What the problem is, in symbols or by its file.
+pub(super) fn facts(study: &ProblemStudy) -> Vec<Fact> {
+    let mut facts = Vec::new();
+    if let Some(law) = &study.law {
+        facts.extend([
+            fact("Law", law.equation.clone()),
+            fact("Parameters", law.parameters.clone()),
+            fact("Closed form", law.exactness.clone()),
+            fact("Scatter", law.scatter.clone()),
+            fact("λ of the viscous part", format::quantity(&format::significant(law.viscous_rate, 6), "1/s")),
+            fact(
+                "Projected slope of the noise-free ln A",
+                format::quantity(&format::significant(law.projected_slope, 6), "1/s"),
+            ),
+            fact(
+                "Draws",
+                format!(
+                    "{}, for methods with random numbers of their own the first {}; errors and densities are of \
+                     the first {1} for all, coverage and sign tests of all that a method has",
+                    law.draws[0], law.draws[1]
+                ),
+            ),
+        ]);
+    }
+    if let Some(data) = &study.data {
+        facts.extend([
+            fact("File", data.path.clone()),
+            fact("Clock", format!("{}: {}", data.clock, data.clock_reason)),
+        ]);
+    }
+    facts.extend([
+        fact("Peaks", whole(study.peaks)),
+        fact("From first to last", format::quantity(&format::significant(study.duration_s, 4), "s")),
+    ]);
+    facts
+}
+
+/// The laws that methods discovered, in sentences.
+pub(super) fn laws(study: &ProblemStudy) -> Vec<String> {
+    let law = |row: &PredictionRow| {
+        let scores = scored(row)?;
+        let equation = scores.equation.as_ref()?;
+        let common = match &scores.commonest_form {
+            Some((form, count)) if scores.draws > 1 => {
+                format!(" on the first draw; {count} of {} draws give {form}", scores.draws)
+            }
+            Some((form, count)) if scores.draws == 1 && *count > 1 => {
+                format!(" on the first fold; {count} folds give {form}")
+            }
+            _ => String::new(),
+        };
+        Some(format!("{}: {equation}{common}", row.title))
+    };
+    study.methods.iter().filter_map(law).collect()
+}
+
+pub(super) fn scored(row: &PredictionRow) -> Option<&MethodScores> {
+    match &row.outcome {
+        PredictionOutcome::Scored(scores) => Some(scores),
+        PredictionOutcome::Failed { .. } => None,
+    }
+}
+
+pub(super) fn held_out(splits: &SplitSummary) -> String {
+    format!(
+        "Inside: of every {} blocks of {} successive peaks one is held out, never the first or the last block; a record is \
+         fitted once for each such choice, and each draw of a simulation with the next choice in turn. Beyond: the last \
+         {} % of the peaks are held out.",
+        splits.every,
+        splits.block_peaks,
+        format::fixed(100.0 * splits.last_share, 0)
+    )
+}
+
+pub(super) fn studied(result: &PredictionResult) -> impl Iterator<Item = &ProblemRow> {
+    result.problems.iter().filter(|row| matches!(row.outcome, ProblemOutcome::Studied(_)))
+}
+
+/// The page's verdict counts; what the numbers carry, each problem's own sentences say.
+pub(super) fn headline(result: &PredictionResult) -> Verdict {
+    let of = |origin: &str| studied(result).filter(|row| row.origin == origin).count();
+    let (simulated, measured) = (of("simulated"), of("measured"));
+    let all = studied(result).count();
+    let other = all - simulated - measured;
+    let mut kinds = vec![format!("{simulated} simulated"), format!("{measured} measured")];
+    if other > 0 {
+        kinds.push(format!("{other} of unstated origin"));
+    }
+    let absent = result.problems.len() - all;
+    let (tone, label) = match (all, absent) {
+        (0, _) => (Tone::Bad, "Nothing studied"),
+        (_, 0) => (Tone::Good, "Every problem studied"),
+        _ => (Tone::Caution, "Some records are absent"),
+    };
+    Verdict {
+        tone,
+        label,
+        sentence: format!(
+            "Methods were scored on held-out peaks of {all} problems ({}). Each section states what its numbers \
+             support; agreement with least squares is no merit where the envelope is not exponential.",
+            kinds.join(", ")
+        ),
+    }
+}
+
+pub(super) fn origin(result: &PredictionResult) -> Origin {
+    let mut origins: Vec<&str> = studied(result).map(|row| row.origin.as_str()).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    match origins[..] {
+        [one] => verdict::origin(one),
+        _ => Origin {
+            class: "simulated",
+            label: "Simulated and measured",
+            note: "Each section says which of the two its problem is.",
+        },
+    }
+}

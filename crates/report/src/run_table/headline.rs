@@ -1,0 +1,36 @@
+//! What a table of runs says in words.
+
+use crate::format::count;
+use crate::verdict::{Tone, Verdict};
+use results::RunTable;
+
+/// How to read the table.
+pub(super) const READING: &str = "The distance from the reference is |ζ − ζ₀|/ζ₀, where ζ₀ is that of closed-form least squares on the same \
+     envelope; the worst is the largest over a run’s seeds. ± and the 95 % interval are the method’s own, under independent \
+     residuals. A run passes where every seed is within its stated tolerance.";
+
+pub(super) fn headline(table: &RunTable) -> Verdict {
+    let missed = table.rows.iter().filter(|row| !row.state.is_bad() && row.pass == Some(false)).count();
+    let (tone, label) = match (table.failed, table.open, missed) {
+        (0, 0, 0) => (Tone::Good, "Every run within its tolerance"),
+        (0, 0, _) => (Tone::Bad, "Not every run within its tolerance"),
+        (0, ..) => (Tone::Caution, "Not finished"),
+        _ => (Tone::Bad, "Some runs gave no result"),
+    };
+    let rows = if missed == 1 { "row is" } else { "rows are" };
+    Verdict {
+        tone,
+        label,
+        sentence: format!(
+            "Of {} runs {} are done, {} failed and {} are still open; {missed} {rows} outside the stated tolerance.",
+            whole(table.done + table.failed + table.open),
+            whole(table.done),
+            whole(table.failed),
+            whole(table.open),
+        ),
+    }
+}
+
+pub(super) fn whole(value: usize) -> String {
+    count(value as u64)
+}

@@ -1,0 +1,59 @@
+//! What an answer is: the schemas of `result.json`, `diagnosis.json` and of the tables beside them, as types.
+//!
+//! Every command's answer is written, read again, scored and shown by these types, so that a state is a variant and never a
+//! text to be compared. Field names are part of what the outside world may rely on; growing the schema is fine, renaming
+//! is not.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod batch;
+mod calibration;
+mod comparison;
+mod diagnosis;
+mod estimation;
+mod interval;
+mod learning;
+mod prediction;
+mod rigs;
+mod simulation;
+mod sweep;
+mod trials;
+
+pub use batch::{BatchResult, FailedCase};
+pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
+pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
+pub use diagnosis::{
+    Backbone, BackbonePoint, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow, ClassRow,
+    DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,
+    Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
+    RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
+};
+pub use estimation::{
+    DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, NOT_BEGUN, OracleSummary,
+    PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
+};
+pub use interval::WithInterval;
+pub use learning::{
+    LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTest,
+    LearnTorqueRow, LearnTraceRow,
+};
+pub use prediction::{
+    Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
+    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
+    SplitSummary,
+};
+pub use rigs::{
+    FarthestPair, RIGS_SCHEMA, RigClassRow, RigRow, RigValueRow, RigsResult, SharedClassRow,
+    SharedCoefficientRow,
+};
+pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
+pub use sweep::{
+    RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,
+    SweepRecord, SweepState,
+};
+pub use trials::{
+    AreaRow, BankRow, BarRow, BaselineRow, ClassScores, ClosureStudy, Confusion, FailureRow, InclusionRow,
+    LeftOutBank, NuisanceRow, ProbabilityMap, Proportion, Quantiles, RecallRow, Reliability, ReliabilityBin,
+    SizeRow, TRIALS_MANIFEST_SCHEMA, TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine,
+    TrialsResult, UnknownStudy,
+};

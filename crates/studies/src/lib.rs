@@ -1,0 +1,21 @@
+//! Held-out prediction: problems, splits, and scores of methods on peaks that they did not see.
+//!
+//! [`prepare`] reads or draws a problem; whoever fits methods gives each the envelope that [`seen`] leaves and hands its
+//! [`Trial`]s to [`result`] and [`csv_rows`]. No method is named here.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod error;
+mod problem;
+mod split;
+mod table;
+mod tally;
+mod trial;
+mod verdict;
+
+pub use error::StudyError;
+pub use problem::{Missing, Ready, Truth, prepare};
+pub use split::{Split, SplitKind};
+pub use table::{ProblemTrials, StudiedMethod, best_exponentials, csv_rows, result};
+pub use tally::Placed;
+pub use trial::{Failure, Trial, seen};

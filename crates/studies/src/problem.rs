@@ -1,0 +1,238 @@
+//! The problems of a study, read or drawn.
+
+use crate::error::StudyError;
+
+use crate::split::{Split, SplitKind, splits};
+use envelope::Envelope;
+use experiment::{
+    DataSettings, Law, Pipeline, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
+};
+use oracle::DecayFit;
+use record::{Clock, ClockChoice, read_file};
+use results::{DataSummary, LawSummary};
+use seed::Seed;
+use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
+use std::path::Path;
+
+/// A problem that is ready to be studied.
+pub struct Ready {
+    /// Name in the configuration.
+    pub id: String,
+    /// Title in tables.
+    pub title: String,
+    /// `"measured"`, `"simulated"` or `"unstated"`.
+    pub origin: String,
+    /// Unit of the amplitudes.
+    pub unit: String,
+    /// Summary of the record; `None` of a simulation.
+    pub data: Option<DataSummary>,
+    /// Truth of a simulation; `None` of a record.
+    pub truth: Option<Truth>,
+    /// The draws of a simulation, or the one envelope of a record.
+    pub envelopes: Vec<Envelope>,
+    /// Every way in which peaks are held out.
+    pub splits: Vec<Split>,
+}
+
+/// What is known of a simulated problem and shown to no method.
+pub struct Truth {
+    /// Noise-free ln A of every peak.
+    pub log_amplitudes: Vec<f64>,
+    /// The law of decay.
+    pub law: LawSummary,
+    /// For each split, minus the least-squares slope of the noise-free ln A over the peaks seen, in 1/s.
+    pub projected_slopes: Vec<f64>,
+}
+
+/// A problem whose record is not there.
+pub struct Missing {
+    /// Name in the configuration.
+    pub id: String,
+    /// Title in tables.
+    pub title: String,
+    /// Origin as the configuration states it.
+    pub origin: String,
+    /// Sentence that names the file and where it can be had.
+    pub reason: String,
+}
+
+/// Reads or draws a problem. A record that is absent is no error; one that cannot be used is.
+///
+/// # Errors
+/// [`StudyError`] with the problem or the file that it is about.
+pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Ready, Missing>, StudyError> {
+    match &problem.source {
+        ProblemSource::Simulated(simulated) => draw(study, problem, simulated).map(Ok),
+        ProblemSource::Record { data, pipeline } if Path::new(&data.path).exists() => {
+            read(study, problem, data, *pipeline).map(Ok)
+        }
+        ProblemSource::Record { data, .. } => Ok(Err(Missing {
+            id: problem.id.clone(),
+            title: problem.title.clone(),
+            origin: data.statements().origin.unwrap_or_default().name().to_owned(),
+            reason: missing(&problem.id, data),
+        })),
+    }
+}
+
+/// Why a record's row is left out, and what puts it in.
+fn missing(id: &str, data: &DataSettings) -> String {
+    let path = &data.path;
+    match &data.source {
+        Some(source) => format!(
+            "the record {path} is not there; its row is left out. Get it from {source}, and name it with \
+             problem.{id}.path=FILE"
+        ),
+        None => format!("the record {path} is not there; its row is left out"),
+    }
+}
+
+fn read(
+    study: &PredictionStudy,
+    problem: &Problem,
+    data: &DataSettings,
+    pipeline: Pipeline,
+) -> Result<Ready, StudyError> {
+    let (record, source) = read_file(Path::new(&data.path), &data.read_options())?;
+    let clock_of = |choice| Clock::new(&record, choice).map_err(|fault| fault.in_file(&source.path));
+    let (clock, believed) = (clock_of(data.clock)?, clock_of(ClockChoice::Auto)?);
+    let extraction = study
+        .envelope
+        .extract(pipeline, &record, &clock)
+        .map_err(|error| StudyError::Envelope { file: data.path.clone(), source: error })?;
+    let summary = DataSummary::new(&record, &source, &clock, &believed, data.statements());
+    Ok(Ready {
+        id: problem.id.clone(),
+        title: problem.title.clone(),
+        origin: summary.origin.clone(),
+        unit: summary.unit.clone(),
+        data: Some(summary),
+        truth: None,
+        splits: splits(&problem.id, extraction.envelope.len(), &study.settings)?,
+        envelopes: vec![extraction.envelope],
+    })
+}
+
+fn draw(
+    study: &PredictionStudy,
+    problem: &Problem,
+    simulated: &SimulatedProblem,
+) -> Result<Ready, StudyError> {
+    let refuse = |source| StudyError::Simulation { problem: problem.id.clone(), source };
+    let simulation = simulation(simulated);
+    let truth = simulation.truth().map_err(refuse)?;
+    let seed = Seed::new(study.seed).child("simulated problems").child(&problem.id);
+    let envelopes = (0..study.settings.draws)
+        .map(|number| truth.draw(&seed.child(&number.to_string())))
+        .collect::<Result<Vec<_>, _>>()
+        .map_err(refuse)?;
+    let splits = splits(&problem.id, simulated.peaks, &study.settings)?;
+    let log_amplitudes = truth.log_amplitudes();
+    let slope = |times: Vec<f64>, logs: Vec<f64>| -> Result<f64, StudyError> {
+        let envelope = Envelope::new(times, logs, 1.0).map_err(|error| refuse(error.into()))?;
+        Ok(line(&problem.id, &envelope)?.decay_rate)
+    };
+    let projected_slopes = splits
+        .iter()
+        .map(|split| slope(split.seen_of(truth.times_s()), split.seen_of(&log_amplitudes)))
+        .collect::<Result<_, _>>()?;
+    let whole = slope(truth.times_s().to_vec(), log_amplitudes.clone())?;
+    let draws = [study.settings.draws, study.settings.draws_seeded.min(study.settings.draws)];
+    Ok(Ready {
+        id: problem.id.clone(),
+        title: problem.title.clone(),
+        origin: "simulated".to_owned(),
+        unit: "rad".to_owned(),
+        data: None,
+        truth: Some(Truth {
+            law: law(simulated, &simulation, whole, draws),
+            log_amplitudes,
+            projected_slopes,
+        }),
+        envelopes,
+        splits,
+    })
+}
+
+fn simulation(problem: &SimulatedProblem) -> EnvelopeSimulation {
+    let decay_rate = problem.decay_rate;
+    EnvelopeSimulation {
+        law: match problem.kind {
+            Law::Exponential => DecayLaw::Exponential { decay_rate },
+            Law::CoulombViscous => DecayLaw::CoulombViscous { decay_rate, dead_zone: problem.dead_zone },
+            Law::ViscousQuadratic => {
+                DecayLaw::ViscousQuadratic { decay_rate, quadratic_rate: problem.quadratic_rate }
+            }
+        },
+        initial_amplitude: problem.amplitude,
+        period_s: problem.period_s,
+        peaks: problem.peaks,
+        scatter: match problem.scatter {
+            ScatterKind::Amplitude => Scatter::Amplitude(problem.scatter_size),
+            ScatterKind::Logarithm => Scatter::Logarithm(problem.scatter_size),
+        },
+    }
+}
+
+fn law(
+    problem: &SimulatedProblem,
+    simulation: &EnvelopeSimulation,
+    projected_slope: f64,
+    draws: [usize; 2],
+) -> LawSummary {
+    let mut parameters = vec![
+        format!("A₀ = {} rad", problem.amplitude),
+        format!("T = {} s", problem.period_s),
+        format!("λ = {} 1/s", problem.decay_rate),
+    ];
+    let mut exactness = simulation.law.exactness().to_owned();
+    match simulation.law {
+        DecayLaw::Exponential { .. } => {}
+        DecayLaw::CoulombViscous { dead_zone, .. } => parameters.push(format!("x_c = {dead_zone} rad")),
+        DecayLaw::ViscousQuadratic { quadratic_rate, .. } => {
+            parameters.push(format!("q = {quadratic_rate} 1/(s rad)"));
+        }
+    }
+    if let Some(error) = simulation.law.averaging_error(problem.amplitude, problem.period_s) {
+        exactness.push_str(&format!(", which is {error:.1e}"));
+    }
+    LawSummary {
+        equation: simulation.law.equation().to_owned(),
+        parameters: parameters.join(", "),
+        exactness,
+        viscous_rate: simulation.law.viscous_rate(),
+        projected_slope,
+        scatter: match simulation.scatter {
+            Scatter::Amplitude(size) => {
+                format!("Gaussian, {size} rad on the amplitude, so that ln A scatters more as A falls")
+            }
+            Scatter::Logarithm(size) => format!("Gaussian, {size} on ln A"),
+        },
+        draws,
+    }
+}
+
+/// The best exponential through an envelope.
+///
+/// # Errors
+/// [`StudyError::Oracle`] where no line can be fitted.
+pub(crate) fn line(problem: &str, envelope: &Envelope) -> Result<DecayFit, StudyError> {
+    oracle::decay_rate(envelope)
+        .map_err(|source| StudyError::Oracle { file: format!("problem.{problem}"), source })
+}
+
+impl Ready {
+    /// The splits that a draw is fitted on: every one of a record; of a simulation one fold of
+    /// interpolation, the next one for the next draw, and extrapolation.
+    pub fn splits_of(&self, draw: usize) -> impl Iterator<Item = usize> + '_ {
+        let folds = self.splits.iter().filter(|split| split.kind == SplitKind::Interpolation).count();
+        let is_record = self.truth.is_none();
+        self.splits
+            .iter()
+            .enumerate()
+            .filter(move |(index, split)| {
+                is_record || split.kind == SplitKind::Extrapolation || *index == draw % folds
+            })
+            .map(|(index, _)| index)
+    }
+}

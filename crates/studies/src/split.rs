@@ -1,0 +1,135 @@
+//! Splits of an envelope's peaks into those that a fit sees and those held out.
+
+use crate::error::StudyError;
+use experiment::PredictionSettings;
+
+/// Why peaks are held out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SplitKind {
+    /// Blocks between others.
+    Interpolation,
+    /// The end.
+    Extrapolation,
+}
+
+impl SplitKind {
+    /// Name in tables and files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Interpolation => "interpolation",
+            Self::Extrapolation => "extrapolation",
+        }
+    }
+}
+
+/// One way to hold out peaks: of every peak the number of the block that it is held out with, or `None`
+/// where the fit sees it. The first peak always is seen.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Split {
+    /// Why peaks are held out.
+    pub kind: SplitKind,
+    /// Block of every peak that is held out, in the order of the peaks.
+    pub held_out: Vec<Option<usize>>,
+}
+
+/// Fewest peaks that a fit is given.
+const FEWEST_SEEN: usize = 6;
+
+/// Every split of a problem's peaks: the folds of interpolation first, extrapolation last.
+///
+/// Interpolation cuts the peaks into blocks of `block_peaks`; of `every` successive ones each fold holds out
+/// one, never the first and never the last block, so that held-out peaks lie between others.
+/// Extrapolation holds out the last `last_share` of the peaks, as one block.
+///
+/// # Errors
+/// [`StudyError::Split`] where a fit would see fewer than six peaks, or where there are fewer than three blocks.
+pub(crate) fn splits(
+    problem: &str,
+    peaks: usize,
+    settings: &PredictionSettings,
+) -> Result<Vec<Split>, StudyError> {
+    let refuse = |missing| StudyError::Split { problem: problem.to_owned(), peaks, missing };
+    let blocks = peaks.div_ceil(settings.block_peaks);
+    let inner = blocks.saturating_sub(2);
+    if inner == 0 {
+        return Err(refuse("interpolation needs three blocks"));
+    }
+    let fold = |fold: usize| Split {
+        kind: SplitKind::Interpolation,
+        held_out: (0..peaks)
+            .map(|peak| peak / settings.block_peaks)
+            .map(|block| {
+                let is_held = block > 0 && block <= inner && (block - 1) % settings.every == fold;
+                is_held.then_some(block)
+            })
+            .collect(),
+    };
+    let mut splits: Vec<Split> = (0..settings.every.min(inner)).map(fold).collect();
+    let last = ((peaks as f64 * settings.last_share).round() as usize).max(1);
+    let seen = peaks.saturating_sub(last);
+    splits.push(Split {
+        kind: SplitKind::Extrapolation,
+        held_out: (0..peaks).map(|peak| (peak >= seen).then_some(0)).collect(),
+    });
+    let too_few = splits.iter().any(|split| split.seen().count() < FEWEST_SEEN);
+    if too_few { Err(refuse("a fit needs six peaks")) } else { Ok(splits) }
+}
+
+impl Split {
+    /// Indices of the peaks that the fit sees.
+    pub fn seen(&self) -> impl Iterator<Item = usize> + '_ {
+        self.held_out.iter().enumerate().filter(|(_, block)| block.is_none()).map(|(peak, _)| peak)
+    }
+
+    /// The entries of a list that has one for each peak, those that the fit sees.
+    #[must_use]
+    pub fn seen_of(&self, values: &[f64]) -> Vec<f64> {
+        self.seen().filter_map(|peak| values.get(peak).copied()).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Split, SplitKind, splits};
+    use experiment::{PredictionSettings, resolve_prediction};
+    use settings::Document;
+
+    fn settings(overrides: &str) -> PredictionSettings {
+        let text = format!(
+            "task = \"predict\"\n[predict]\n{overrides}\n[problem.a]\nkind = \"exponential\"\ndecay_rate = 1\n\
+             scatter_size = 0\n"
+        );
+        resolve_prediction(&Document::parse("a.toml", &text).unwrap(), &[], &[]).unwrap().settings
+    }
+
+    #[test]
+    fn every_inner_peak_is_held_out_once_and_the_ends_never() {
+        let all = splits("a", 70, &settings("")).unwrap();
+        let (folds, end): (Vec<&Split>, Vec<&Split>) =
+            all.iter().partition(|split| split.kind == SplitKind::Interpolation);
+        assert_eq!((folds.len(), end.len()), (4, 1));
+        for peak in 0..70 {
+            let times = folds.iter().filter(|fold| fold.held_out[peak].is_some()).count();
+            // Blocks of three: 24 of them, the last of one peak.
+            assert_eq!(times, usize::from((3..69).contains(&peak)), "{peak}");
+        }
+        for fold in folds {
+            for (peak, block) in fold.held_out.iter().enumerate() {
+                assert!(block.is_none_or(|block| block == peak / 3));
+            }
+        }
+        assert_eq!(end[0].held_out.iter().flatten().count(), 23);
+        assert!(end[0].held_out[46].is_none() && end[0].held_out[47].is_some());
+    }
+
+    #[test]
+    fn too_few_peaks_are_refused_with_numbers() {
+        let message =
+            |peaks, settings: &PredictionSettings| splits("a", peaks, settings).unwrap_err().to_string();
+        assert!(
+            message(6, &settings("")).starts_with("problem.a: 6 peaks cannot be split: interpolation needs")
+        );
+        assert!(message(20, &settings("last_share = 0.8")).contains("a fit needs six peaks"));
+    }
+}

@@ -1,0 +1,137 @@
+//! What the scores of a problem come to, in sentences that claim no more than they carry.
+
+use report::format;
+use results::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+
+/// Names in one list, beyond which the rest is counted.
+const MOST_NAMES: usize = 6;
+
+/// Of interpolation and of extrapolation: who predicts better than the best exponential by more than chance,
+/// who worse, and who cannot be told from it. The last stretch of a record is one trial, of which no test
+/// can be made.
+pub(crate) fn verdict(study: &ProblemStudy, significance: f64) -> Vec<String> {
+    let mut sentences = vec![match study.comparisons {
+        0 => "No method differs from the best exponential on any held-out peak.".to_owned(),
+        count => format!(
+            "Sign tests over {}, {count} comparisons adjusted by Holm's method, level {significance}.",
+            if study.law.is_some() { "draws" } else { "blocks of peaks" }
+        ),
+    }];
+    sentences.push(format!(
+        "Between other peaks {}",
+        tested(study, &study.exponential.interpolation, interpolation, significance)
+    ));
+    sentences.push(if study.law.is_some() {
+        format!(
+            "Beyond the last peak seen {}",
+            tested(study, &study.exponential.extrapolation, extrapolation, significance)
+        )
+    } else {
+        single_stretch(study)
+    });
+    sentences
+}
+
+fn interpolation(row: &PredictionRow) -> Option<&HeldOutScore> {
+    match &row.outcome {
+        PredictionOutcome::Scored(scores) => scores.interpolation.as_ref(),
+        PredictionOutcome::Failed { .. } => None,
+    }
+}
+
+fn extrapolation(row: &PredictionRow) -> Option<&HeldOutScore> {
+    match &row.outcome {
+        PredictionOutcome::Scored(scores) => scores.extrapolation.as_ref(),
+        PredictionOutcome::Failed { .. } => None,
+    }
+}
+
+fn tested(
+    study: &ProblemStudy,
+    exponential: &HeldOutScore,
+    score: impl Fn(&PredictionRow) -> Option<&HeldOutScore>,
+    significance: f64,
+) -> String {
+    let (mut better, mut worse, mut open) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut same, mut seen) = (0, 0);
+    for row in &study.methods {
+        let Some(found) = score(row) else { continue };
+        let Some(pair) = &found.against_exponential else { continue };
+        seen += 1;
+        let name = format!(
+            "{} (error {}; better in {}, worse in {} of {})",
+            row.id,
+            format::significant(found.rms_log_error, 2),
+            pair.better,
+            pair.worse,
+            pair.better + pair.worse + pair.equal
+        );
+        if pair.better + pair.worse == 0 {
+            same += 1;
+        } else if pair.adjusted_p_value > significance || pair.adjusted_p_value.is_nan() {
+            open.push(name);
+        } else if pair.better > pair.worse {
+            better.push(name);
+        } else {
+            worse.push(name);
+        }
+    }
+    let reference = format::significant(exponential.rms_log_error, 2);
+    if seen == 0 {
+        return format!("no method predicts; the best exponential misses by {reference}.");
+    }
+    let parts = [
+        Some(match better.len() {
+            0 => format!(
+                "no method is better than the best exponential (error {reference}) by more than chance"
+            ),
+            _ => format!(
+                "better than the best exponential (error {reference}) by more than chance: {}",
+                listed(&better)
+            ),
+        }),
+        (!worse.is_empty()).then(|| format!("worse: {}", listed(&worse))),
+        (!open.is_empty()).then(|| format!("not told from it: {}", listed(&open))),
+        (same > 0).then(|| format!("the same line: {}", methods(same))),
+    ];
+    format!("{}.", parts.into_iter().flatten().collect::<Vec<_>>().join("; "))
+}
+
+/// Of a record: what the last stretch shows, and that it is one stretch.
+fn single_stretch(study: &ProblemStudy) -> String {
+    let reference = study.exponential.extrapolation.rms_log_error;
+    let errors = || study.methods.iter().filter_map(|row| Some((row, extrapolation(row)?.rms_log_error)));
+    if errors().next().is_none() {
+        return format!(
+            "Beyond the last peak seen no method predicts; the best exponential misses by {}.",
+            format::significant(reference, 2)
+        );
+    }
+    let below = errors().filter(|(_, error)| *error < reference * (1.0 - 1e-6)).count();
+    let best = errors().next().map_or_else(String::new, |(row, error)| {
+        format!("; the smallest is {} ({})", format::significant(error, 2), row.id)
+    });
+    format!(
+        "Beyond the last peak seen the best exponential misses by {}, and {} {} by less{best}: one stretch of \
+         one record is a single trial, which no test can tell from chance.",
+        format::significant(reference, 2),
+        methods(below),
+        if below == 1 { "misses" } else { "miss" },
+    )
+}
+
+fn methods(count: usize) -> String {
+    match count {
+        0 => "no methods".to_owned(),
+        1 => "1 method".to_owned(),
+        _ => format!("{count} methods"),
+    }
+}
+
+fn listed(names: &[String]) -> String {
+    let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => shown,
+        rest => format!("{shown} and {rest} more"),
+    }
+}

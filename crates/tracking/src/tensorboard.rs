@@ -1,0 +1,122 @@
+//! TensorBoard's event files: records as TensorFlow frames them, each a protocol buffer of the message `Event`.
+//!
+//! Format: `tensorflow/core/lib/io/record_writer.h` for the frames, `tensorflow/core/util/event.proto` and
+//! `tensorflow/core/framework/summary.proto` for the messages. A scalar is a 32-bit float there: seven digits.
+
+use crate::Finished;
+
+/// The file of a run within its folder. The name has to hold `tfevents` for TensorBoard to find it.
+#[must_use]
+pub fn file_name(run: &Finished) -> String {
+    format!("tensorboard/events.out.tfevents.{}.ringdown", run.began_ms / 1000)
+}
+
+/// The whole file: its version, the curves by step, and the result's numbers at the last step.
+///
+/// No step has a time of its own in a run's folder, so all carry that of the run's begin.
+#[must_use]
+pub fn events(run: &Finished) -> Vec<u8> {
+    let time = run.began_ms as f64 / 1000.0;
+    let mut file = Vec::new();
+    frame(&mut file, &event(time, 0, &bytes(3, b"brain.Event:2")));
+    for curve in &run.curves {
+        for (step, value) in &curve.points {
+            frame(&mut file, &event(time, *step, &scalar(&format!("trace/{}", curve.name), *value)));
+        }
+    }
+    let last = run.curves.iter().filter_map(|curve| curve.points.last()).map(|(step, _)| *step).max();
+    for (name, value) in &run.metrics {
+        let tag = format!("result/{}", name.replace('.', "/"));
+        frame(&mut file, &event(time, last.unwrap_or(0), &scalar(&tag, *value)));
+    }
+    file
+}
+
+/// `Event { wall_time = 1, step = 2 }` and one field more.
+fn event(time: f64, step: i64, content: &[u8]) -> Vec<u8> {
+    let mut message = key(1, 1);
+    message.extend(time.to_le_bytes());
+    message.extend(key(2, 0));
+    message.extend(varint(step as u64));
+    message.extend(content);
+    message
+}
+
+/// `Event.summary = 5` with one `Summary.value = 1 { tag = 1, simple_value = 2 }`.
+fn scalar(tag: &str, value: f64) -> Vec<u8> {
+    let mut inner = bytes(1, tag.as_bytes());
+    inner.extend(key(2, 5));
+    inner.extend((value as f32).to_le_bytes());
+    bytes(5, &bytes(1, &inner))
+}
+
+/// A field with a length: text, bytes or a message.
+fn bytes(field: u8, content: &[u8]) -> Vec<u8> {
+    let mut message = key(field, 2);
+    message.extend(varint(content.len() as u64));
+    message.extend(content);
+    message
+}
+
+fn key(field: u8, wire_type: u8) -> Vec<u8> {
+    varint(u64::from(field) << 3 | u64::from(wire_type))
+}
+
+/// Seven bits a byte, the lowest first; the eighth says that more follow.
+fn varint(mut value: u64) -> Vec<u8> {
+    let mut digits = Vec::new();
+    while value >= 0x80 {
+        digits.push((value & 0x7f) as u8 | 0x80);
+        value >>= 7;
+    }
+    digits.push(value as u8);
+    digits
+}
+
+/// Length, its checksum, content, its checksum.
+fn frame(file: &mut Vec<u8>, content: &[u8]) {
+    let length = (content.len() as u64).to_le_bytes();
+    file.extend(length);
+    file.extend(masked_checksum(&length).to_le_bytes());
+    file.extend(content);
+    file.extend(masked_checksum(content).to_le_bytes());
+}
+
+/// CRC-32C, rotated and shifted, so that a checksum of data that holds checksums is none of these
+/// (`tensorflow/core/lib/hash/crc32c.h`).
+fn masked_checksum(content: &[u8]) -> u32 {
+    checksum(content).rotate_right(15).wrapping_add(0xa282_ead8)
+}
+
+/// CRC-32C (Castagnoli, IEEE Transactions on Communications 41 (1993) 883), bit by bit: a trace has some
+/// hundred kilobytes.
+fn checksum(content: &[u8]) -> u32 {
+    const REFLECTED_POLYNOMIAL: u32 = 0x82f6_3b78;
+    !content.iter().fold(!0, |state, byte| {
+        (0..8).fold(state ^ u32::from(*byte), |state, _| {
+            (state >> 1) ^ (REFLECTED_POLYNOMIAL & (state & 1).wrapping_neg())
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{checksum, varint};
+
+    /// RFC 3720, appendix B.4, and the check value of the Castagnoli polynomial.
+    #[test]
+    fn the_checksum_is_that_of_published_vectors() {
+        assert_eq!(checksum(&[0; 32]), 0x8a91_36aa);
+        assert_eq!(checksum(&[0xff; 32]), 0x62a8_ab43);
+        assert_eq!(checksum(&(0..32).collect::<Vec<u8>>()), 0x46dd_794e);
+        assert_eq!(checksum(b"123456789"), 0xe306_9283);
+    }
+
+    /// The examples of the protocol buffers' documentation.
+    #[test]
+    fn whole_numbers_are_written_seven_bits_a_byte() {
+        assert_eq!(varint(1), [1]);
+        assert_eq!(varint(150), [0x96, 0x01]);
+        assert_eq!(varint(u64::MAX).len(), 10);
+    }
+}

@@ -1,0 +1,173 @@
+//! `trainer cite`: the literature that a run stands on, as BibTeX.
+
+mod cited;
+mod used;
+
+use crate::error::TrainerError;
+use crate::fits::method::Method;
+use crate::options::Output;
+use crate::outcome::Outcome;
+use cited::{CITED, DIAGNOSIS};
+use clap::Args;
+use dynamics::REGISTRY;
+use serde::Serialize;
+use settings::{Origin, SettingsError};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use used::Used;
+
+/// One entry for each work, sorted by key.
+const LITERATURE: &str = include_str!("literature.bib");
+
+/// Citing the literature of runs, or of methods.
+#[derive(Debug, Args)]
+pub(crate) struct CiteArguments {
+    /// Folders of finished runs
+    #[arg(value_name = "RUN", required_unless_present_any = ["estimator", "all"])]
+    runs: Vec<PathBuf>,
+    /// Estimators, learned or classical, by name
+    #[arg(long, value_name = "NAME", value_delimiter = ',')]
+    estimator: Vec<String>,
+    /// Everything there is: estimators, effects, the diagnosis
+    #[arg(long)]
+    all: bool,
+    #[command(flatten)]
+    output: Output,
+}
+
+/// A work and who follows it.
+#[derive(Debug, Serialize)]
+struct Work {
+    key: &'static str,
+    followed_by: Vec<String>,
+    bibtex: &'static str,
+}
+
+/// Prints the entries of what was used, each with who follows it.
+pub(crate) fn command(arguments: &CiteArguments) -> Result<Outcome, TrainerError> {
+    let methods = Method::all()?;
+    let mut used = Used { estimators: arguments.estimator.clone(), ..Used::default() };
+    for run in &arguments.runs {
+        used.add(run)?;
+    }
+    if arguments.all {
+        used.estimators = methods.iter().map(|method| method.id().to_owned()).collect();
+        used.effects = REGISTRY.iter().map(|effect| effect.id().to_owned()).collect();
+        used.diagnosis = true;
+    }
+    let works = works(&methods, &used)?;
+    arguments.output.print(&works, || {
+        let entries: Vec<String> =
+            works.iter().map(|work| format!("% {}\n{}", work.followed_by.join(", "), work.bibtex)).collect();
+        if entries.is_empty() {
+            "% nothing that was used follows a publication".to_owned()
+        } else {
+            entries.join("\n\n")
+        }
+    })?;
+    Ok(Outcome::Done)
+}
+
+fn works(methods: &[Method], used: &Used) -> Result<Vec<Work>, SettingsError> {
+    // By key, so that each work comes once and always at the same place.
+    let mut followers: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    let mut follow = |citation: &str, who: &str| {
+        let found = CITED.iter().find(|(text, _)| *text == citation);
+        for key in found.map_or(&[][..], |(_, keys)| keys) {
+            let followers = followers.entry(key).or_default();
+            if !followers.iter().any(|known| known == who) {
+                followers.push(who.to_owned());
+            }
+        }
+    };
+    for id in &used.estimators {
+        let Some(method) = methods.iter().find(|method| method.id() == id) else {
+            let known = methods.iter().map(|method| method.id().to_owned()).collect();
+            let origin = Origin::Override(format!("--estimator {id}"));
+            return Err(SettingsError::unknown_name(origin, "estimator", id, known));
+        };
+        method.citations().iter().for_each(|citation| follow(citation, id));
+    }
+    for effect in REGISTRY.iter().filter(|effect| used.effects.iter().any(|id| id == effect.id())) {
+        follow(effect.description().reference, effect.id());
+    }
+    if used.diagnosis {
+        for key in DIAGNOSIS {
+            followers.entry(key).or_default().push("diagnosis".to_owned());
+        }
+    }
+    let entries = entries(LITERATURE);
+    let work = |entry: &(&'static str, &'static str)| {
+        let followed_by = followers.get(entry.0)?.clone();
+        Some(Work { key: entry.0, followed_by, bibtex: entry.1 })
+    };
+    Ok(entries.iter().filter_map(work).collect())
+}
+
+/// Keys and entries of a BibTeX file whose entries are parted by blank lines.
+fn entries(text: &'static str) -> Vec<(&'static str, &'static str)> {
+    let key = |entry: &'static str| Some(entry.split_once('{')?.1.split_once(',')?.0);
+    text.split("\n\n").filter_map(|entry| Some((key(entry)?, entry.trim()))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{CITED, DIAGNOSIS, LITERATURE, Method, entries};
+    use dynamics::REGISTRY;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_citation_has_an_entry_and_every_entry_is_cited() {
+        let known: BTreeSet<&str> = entries(LITERATURE).iter().map(|(key, _)| *key).collect();
+        let methods = Method::all().unwrap();
+        let citations: BTreeSet<&str> = methods
+            .iter()
+            .flat_map(|method| method.citations())
+            .copied()
+            .chain(REGISTRY.iter().map(|effect| effect.description().reference))
+            .collect();
+        let mapped: BTreeSet<&str> = CITED.iter().map(|(citation, _)| *citation).collect();
+        assert_eq!(citations, mapped, "left: in the registries, right: in cited.rs");
+        assert_eq!(mapped.len(), CITED.len(), "a citation is there twice");
+        let used: BTreeSet<&str> =
+            CITED.iter().flat_map(|(_, keys)| keys.iter()).chain(DIAGNOSIS).copied().collect();
+        assert_eq!(used, known);
+    }
+
+    /// Names and years of the short citation are those of the entry.
+    #[test]
+    fn an_entry_is_the_work_that_the_citation_names() {
+        let entries = entries(LITERATURE);
+        for (citation, keys) in CITED {
+            let first = keys[0];
+            let entry = plain(entries.iter().find(|(key, _)| *key == first).unwrap().1);
+            let name = citation.split([',', ' ']).next().unwrap();
+            assert!(entry.contains(&plain(name)), "{citation}: {entry}");
+            for number in citation.split(|c: char| !c.is_ascii_digit()).filter(|number| number.len() == 4) {
+                let year = number.starts_with("19") || number.starts_with("20");
+                let is_page =
+                    entry.contains(&format!("{number}--")) || entry.contains(&format!("--{number}"));
+                let second = keys.len() > 1 && entries.iter().any(|(key, _)| key.ends_with(number));
+                assert!(!year || is_page || second || entry.contains(number), "{citation}: {entry}");
+            }
+        }
+    }
+
+    /// Text without accents, in either notation.
+    fn plain(text: &str) -> String {
+        let text = text
+            .replace("{\\AA}", "A")
+            .replace("{\\L}", "L")
+            .replace("\\v s", "s")
+            .replace(['ö', 'ü', 'é', 'ć', 'á'], "?");
+        let mut plain = String::new();
+        let mut rest = text.as_str();
+        while let Some(at) = rest.find("{\\") {
+            plain.push_str(&rest[..at]);
+            plain.push('?');
+            rest = rest[at..].split_once('}').unwrap().1;
+        }
+        plain.push_str(rest);
+        plain.replace(['{', '}'], "")
+    }
+}

@@ -1,0 +1,53 @@
+//! The arguments of `trainer compare`.
+
+use crate::options::Output;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Finished runs in one table.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer compare reports/runs/pinn-A reports/runs/pinn-B
+  trainer compare 'reports/runs/pinn-*' --sort error       a quoted pattern
+  trainer compare SWEEP OTHER                              all runs of sweeps
+  trainer compare reports/runs --sort seconds --reverse    every run in a folder, the slowest first
+  trainer compare SWEEP --format csv > table.csv
+  trainer compare SWEEP --out DIR                          report.html, table.csv, table.md, result.json
+
+Columns are the configuration keys in which the runs differ, the estimate, its standard error, the
+oracle gap (the distance from closed-form least squares on the same envelope), and how it came
+about. A folder that cannot be read is a row with the reason; the others are shown.")]
+pub(crate) struct CompareArguments {
+    /// Run folders, sweep folders, folders of runs, or quoted patterns with * ? [ ]
+    #[arg(value_name = "RUN", required = true)]
+    pub(crate) runs: Vec<String>,
+    /// Sorts by a column: run, method, zeta, error, worst, steps, seconds, state, or a configuration key
+    #[arg(long, value_name = "KEY")]
+    pub(crate) sort: Option<String>,
+    /// With --sort, the largest first
+    #[arg(long, requires = "sort")]
+    pub(crate) reverse: bool,
+    /// What is printed
+    #[arg(long, value_enum, conflicts_with = "json")]
+    pub(crate) format: Option<Format>,
+    /// Writes report.html, table.csv, table.md and result.json to a new or empty folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// How a table is printed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// Aligned columns
+    Text,
+    /// Comma-separated values, every digit
+    Csv,
+    /// GitHub Markdown
+    #[value(alias = "md")]
+    Markdown,
+    /// The page
+    Html,
+}

@@ -1,0 +1,208 @@
+//! The arguments of `trainer diagnose`.
+
+use crate::options::Output;
+use clap::builder::PossibleValuesParser;
+use clap::{Args, ValueEnum};
+use record::{Missing, Quantity, TimeUnit, Unit};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer diagnose record.csv --nominal nominal.toml
+  trainer diagnose near.csv far.csv --nominal nominal.toml --out DIR
+                                   several records of one system, diagnosed together
+  trainer diagnose log.txt --nominal nominal.toml        a host log (wall clock, elapsed s, angle deg)
+  trainer diagnose log.csv --time t --value theta --unit deg --nominal nominal.toml
+  trainer diagnose drive.csv --value qm_m --input vir_V --unit m --nominal drive.toml
+  trainer diagnose box.csv --value output_v --input input_v --unit V --sample-rate 610.35 \\
+      --remove-mean --nominal box.toml                   no time column: laid out at that rate
+  trainer diagnose gyro.csv --value rate --unit deg/s --quantity velocity --nominal nominal.toml
+  trainer diagnose --batch CASES --out ANSWERS --threads 8
+                                   every CASES/<id>/ with record-*.csv and nominal.toml
+  trainer diagnose --rigs A/ B/ C/ --out DIR
+                                   several rigs of one build: what they share, and where they differ
+
+Separator, decimal sign, columns and units are found from the file and printed: names such as time,
+timestamp_ms, angle [deg], theta, displacement_m, position, velocity_rad_s, gyro (deg/s), torque_nm;
+times in s, ms, us, ns, since 1970 or as dates. What is ambiguous is refused with the option to set.
+
+nominal.toml holds inertia, damping, stiffness and rest_angle in SI units, or all divided by the
+inertia with inertia = 1.0; and, where they apply, coordinate = \"displacement\", input_gain (torque
+or force per unit of the input) and sensor_resolution.
+
+Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch, or some rig, gave no answer; 2 wrong input
+or usage; 130 interrupted.")]
+pub(crate) struct DiagnoseArguments {
+    /// Records of one system
+    #[arg(value_name = "RECORD", required_unless_present_any = ["batch", "rigs"], conflicts_with_all = ["batch", "rigs"])]
+    pub(crate) records: Vec<PathBuf>,
+    /// The simulator as it is: a nominal.toml
+    #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "rigs"])]
+    pub(crate) nominal: Option<PathBuf>,
+    /// Diagnoses every folder CASES/<id>/ holding record-*.csv and nominal.toml
+    #[arg(long, value_name = "CASES", requires = "out")]
+    pub(crate) batch: Option<PathBuf>,
+    /// Diagnoses several rigs of one build, each a folder holding record-*.csv and nominal.toml: which classes of effects
+    /// they share, and where their coefficients agree
+    #[arg(long, value_name = "RIG", num_args = 1.., conflicts_with = "batch")]
+    pub(crate) rigs: Vec<PathBuf>,
+    /// Folder for the answer: new or empty [default: a new one below reports/runs]. With --batch, for
+    /// ANSWERS/<id>/diagnosis.json; answers that are there already are left alone
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Resumes an interrupted diagnosis in the folder of --out, or prints its answer again if it is finished. A
+    /// batch always resumes
+    #[arg(long, requires = "out")]
+    pub(crate) resume: bool,
+    #[command(flatten)]
+    pub(crate) reading: Reading,
+    /// Most effects named together, 1 to 5 [default: 3]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
+    pub(crate) most_effects: Option<u8>,
+    /// Effects that are not considered, by id, with commas between (`trainer list effects`)
+    #[arg(long, value_name = "EFFECT", value_delimiter = ',', value_parser = effect)]
+    pub(crate) without: Vec<String>,
+    /// Probability with which an effect is named where there is none
+    #[arg(long, value_name = "P", default_value_t = 0.01, value_parser = false_alarm)]
+    pub(crate) false_alarm: f64,
+    /// Root of the random draws (bootstraps)
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    pub(crate) seed: u64,
+    /// Threads; results do not depend on it [default: one for each core]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+/// How to read record files.
+#[derive(Debug, Clone, Args, Serialize)]
+#[command(next_help_heading = "How to read the records")]
+pub(crate) struct Reading {
+    /// Format of the files
+    #[arg(long, value_enum, default_value_t = FormatChoice::Auto)]
+    pub(crate) format: FormatChoice,
+    /// Clock to believe: the stamps as written, even in the sample index, or what stamps and values speak for
+    #[arg(long, value_name = "CLOCK", default_value = "auto",
+          value_parser = PossibleValuesParser::new(record::ClockChoice::NAMES))]
+    pub(crate) clock: String,
+    /// The time column
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) time: Option<String>,
+    /// The observed column, whatever it holds
+    #[arg(long, value_name = "COLUMN", alias = "angle")]
+    pub(crate) value: Option<String>,
+    /// The column of the measured input
+    #[arg(long, value_name = "COLUMN")]
+    pub(crate) input: Option<String>,
+    /// Unit of the observed column [default: by its name, else of the nominal's coordinate]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::NAMES))]
+    pub(crate) unit: Option<String>,
+    /// Unit of the input [default: by its header]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::INPUT_NAMES))]
+    pub(crate) input_unit: Option<String>,
+    /// Unit of the time column, iso for dates [default: by its header or its numbers, else s]
+    #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(TimeUnit::NAMES))]
+    pub(crate) time_unit: Option<String>,
+    /// Lines to read, where a file holds several series: --where joint=elbow
+    #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
+    pub(crate) filter: Option<String>,
+    /// Cells without a number: leave a gap (segment), close up a file without a time column (drop), or refuse
+    #[arg(long, value_name = "CHOICE", default_value = "segment",
+          value_parser = PossibleValuesParser::new(Missing::NAMES))]
+    pub(crate) missing: String,
+    /// What the sensor observes [default: by the column's name, else position]
+    #[arg(long, value_enum)]
+    pub(crate) quantity: Option<QuantityChoice>,
+    /// Rate at which to lay out a file without a time column
+    #[arg(long, value_name = "HZ", value_parser = rate)]
+    pub(crate) sample_rate: Option<f64>,
+    /// Where the numbers came from, where the files do not say: for the report's headline, not for the diagnosis
+    #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
+    pub(crate) origin: Option<String>,
+    /// Takes the mean of the observed column and of the input away: for channels with an arbitrary zero
+    #[arg(long)]
+    pub(crate) remove_mean: bool,
+}
+
+impl Default for Reading {
+    /// As without options.
+    fn default() -> Self {
+        Self {
+            format: FormatChoice::Auto,
+            clock: "auto".to_owned(),
+            time: None,
+            value: None,
+            input: None,
+            unit: None,
+            input_unit: None,
+            time_unit: None,
+            filter: None,
+            missing: "segment".to_owned(),
+            quantity: None,
+            sample_rate: None,
+            origin: None,
+            remove_mean: false,
+        }
+    }
+}
+
+/// Format of a record file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum FormatChoice {
+    /// By the first line
+    Auto,
+    /// A header with column names, then comma-separated numbers
+    Csv,
+    /// Two header lines, then wall clock, elapsed s, angle deg
+    HostLog,
+}
+
+/// What the sensor observes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum QuantityChoice {
+    /// Angle or displacement
+    Position,
+    /// Its first derivative: a gyroscope, a laser vibrometer
+    Velocity,
+    /// Its second derivative: an accelerometer
+    Acceleration,
+}
+
+impl QuantityChoice {
+    pub(crate) fn quantity(self) -> Quantity {
+        match self {
+            Self::Position => Quantity::Position,
+            Self::Velocity => Quantity::Velocity,
+            Self::Acceleration => Quantity::Acceleration,
+        }
+    }
+}
+
+fn filter(text: &str) -> Result<String, String> {
+    record::Filter::try_from(text.to_owned()).map(String::from)
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let rate: f64 = text.parse().map_err(|_| "expected a number of samples per second".to_owned())?;
+    if rate.is_finite() && rate > 0.0 { Ok(rate) } else { Err("expected a number above 0".to_owned()) }
+}
+
+fn false_alarm(text: &str) -> Result<f64, String> {
+    let level: f64 = text.parse().map_err(|_| "expected a probability".to_owned())?;
+    if (0.001..=0.2).contains(&level) { Ok(level) } else { Err("expected 0.001 to 0.2".to_owned()) }
+}
+
+fn effect(text: &str) -> Result<String, String> {
+    let known = dynamics::REGISTRY.iter().any(|effect| effect.id() == text);
+    if known {
+        Ok(text.to_owned())
+    } else {
+        Err("no effect of the vocabulary: see `trainer list effects`".to_owned())
+    }
+}

@@ -1,0 +1,102 @@
+//! What a folder holds of a diagnosis: for `--resume`, and for the answers of a batch.
+
+use super::arguments::DiagnoseArguments;
+use super::{Question, nominal};
+use crate::error::{KeptError, TrainerError};
+use record::file_digest;
+use results::DiagnosisResult;
+use runs::{RunError, RunFolder};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+
+/// The event that says what was asked, before any other file of a diagnosis is there.
+pub(super) const ASKED: &str = "start";
+/// The event of a diagnosis that is there in full.
+pub(super) const END: &str = "end";
+
+/// All that an answer depends on, but for the program: in digests where it is long.
+pub(super) fn asked(arguments: &DiagnoseArguments, question: &Question) -> Value {
+    let records: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
+    json!({
+        "records": records,
+        "nominal": nominal::digest(&question.stated),
+        "reading": arguments.reading,
+        "most_effects": arguments.most_effects,
+        "without": arguments.without,
+        "false_alarm": arguments.false_alarm,
+        "seed": arguments.seed,
+    })
+}
+
+/// The finished answer to a question that a folder holds; `None` where an interrupted diagnosis left it, or nothing is
+/// there yet.
+///
+/// # Errors
+/// [`RunError::Occupied`] where it holds anything else; [`KeptError`] where it holds another answer.
+pub(super) fn finished(folder: &RunFolder, asked: &Value) -> Result<Option<DiagnosisResult>, TrainerError> {
+    let path = folder.path();
+    let log = folder.events()?;
+    let Some(begun) = log.last(ASKED) else {
+        let left = folder.holds_only(&["nominal.toml", "environment.json", "events.jsonl"])?;
+        return if left { Ok(None) } else { Err(RunError::Occupied { path: path.to_owned() }.into()) };
+    };
+    same(path, &begun.details, asked)?;
+    if log.last(END).is_none() {
+        return Ok(None);
+    }
+    let bytes = folder.read("diagnosis.json")?;
+    let kept = serde_json::from_slice(&bytes).map_err(|error| KeptError::NoDiagnosis {
+        answer: path.join("diagnosis.json").display().to_string(),
+        problem: error.to_string(),
+    })?;
+    Ok(Some(kept))
+}
+
+fn same(folder: &Path, kept: &Value, asked: &Value) -> Result<(), KeptError> {
+    let different = asked.as_object().into_iter().flatten().find(|(key, value)| kept.get(key) != Some(value));
+    let Some((key, value)) = different else { return Ok(()) };
+    Err(KeptError::AnotherQuestion {
+        folder: folder.display().to_string(),
+        what: key.replace('_', " "),
+        kept: kept.get(key).unwrap_or(&Value::Null).to_string(),
+        asked: value.to_string(),
+    })
+}
+
+/// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer
+/// does not name is not compared.
+pub(super) fn check_answer(answer: &Path, records: &[PathBuf], path: &Path) -> Result<(), TrainerError> {
+    let shown = || answer.display().to_string();
+    let unusable = |problem: String| KeptError::NoDiagnosis { answer: shown(), problem };
+    let bytes = std::fs::read(answer).map_err(|error| unusable(error.to_string()))?;
+    let found: Value = serde_json::from_slice(&bytes).map_err(|error| unusable(error.to_string()))?;
+    let kept = found.get("nominal_digest").and_then(Value::as_str).filter(|digest| !digest.is_empty());
+    if let Some(kept) = kept {
+        let found = nominal::digest(&nominal::read(path)?);
+        if found != kept {
+            let (nominal, kept) = (path.display().to_string(), kept.to_owned());
+            return Err(KeptError::AnotherNominal { nominal, answer: shown(), kept, found }.into());
+        }
+    }
+    let Some(rows) = found.get("records").and_then(Value::as_array) else { return Ok(()) };
+    let kept: Vec<&str> = rows.iter().filter_map(|row| row.get("digest")).filter_map(Value::as_str).collect();
+    let none = "none, there was no such record";
+    for (at, record) in records.iter().enumerate() {
+        let (found, kept) = (file_digest(record)?, kept.get(at).copied().unwrap_or(none));
+        if found != kept {
+            let record = record.display().to_string();
+            let kept = kept.to_owned();
+            return Err(KeptError::AnotherRecord { record, answer: shown(), kept, found }.into());
+        }
+    }
+    match kept.get(records.len()) {
+        None => Ok(()),
+        Some(kept) => Err(KeptError::AnotherRecord {
+            record: format!("record {}", records.len() + 1),
+            answer: shown(),
+            kept: (*kept).to_owned(),
+            found: "none, it is gone".to_owned(),
+        }
+        .into()),
+    }
+}

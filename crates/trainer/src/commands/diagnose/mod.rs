@@ -1,0 +1,224 @@
+//! `trainer diagnose`: where the gap between a nominal simulator and records lies, and what closes it.
+
+pub(crate) mod arguments;
+mod batch;
+mod kept;
+mod nominal;
+pub(crate) mod read;
+mod repair;
+mod result;
+mod rigs;
+mod summary;
+
+use crate::error::TrainerError;
+use crate::folders::environment::Environment;
+use crate::folders::page::write_report;
+use crate::outcome::Outcome;
+use crate::terminal::interrupt::{self, Saving};
+use arguments::{DiagnoseArguments, Reading};
+use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use dynamics::Nominal;
+use experiment::StatedNominal;
+use export::Repaired;
+pub(crate) use nominal::read as read_nominal;
+use read::Given;
+use record::Quantity;
+use result::{Beside, result, series_rows};
+use results::DiagnosisResult;
+use runs::{Disk, RunFolder, default_root, to_csv};
+use seed::Seed;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+use trials::BaselineRecord;
+
+/// Diagnoses the records named, or every case of a batch.
+pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
+    match (&arguments.batch, &arguments.out, &arguments.nominal) {
+        (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
+        _ if !arguments.rigs.is_empty() => rigs::rigs(arguments),
+        (_, _, Some(nominal)) => single(arguments, nominal),
+        _ => Err(TrainerError::NoNominal {
+            record: arguments.records.first().map(|path| path.display().to_string()).unwrap_or_default(),
+        }),
+    }
+}
+
+/// What a diagnosis of a case is given, for those who do simpler things with it.
+pub(crate) struct GivenCase {
+    pub(crate) nominal: Nominal,
+    /// What a diagnosis is given.
+    pub(crate) observations: Vec<Observations>,
+    /// Positions only: none where the sensor observes something else.
+    pub(crate) records: Vec<BaselineRecord>,
+}
+
+/// Reads records and their nominal simulator as a batch does.
+pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, TrainerError> {
+    let question = Question::read(records, nominal, &Reading::default())?;
+    let positions = question.given.iter().filter(|given| given.quantity == Quantity::Position);
+    let records = positions.map(|given| BaselineRecord {
+        times_s: given.observations.times_s().to_vec(),
+        values: given.observations.values().to_vec(),
+        input: given.observations.input().map(<[f64]>::to_vec),
+    });
+    let records = records.collect();
+    let nominal = question.stated.nominal;
+    let observations = question.given.into_iter().map(|given| given.observations).collect();
+    Ok(GivenCase { nominal, observations, records })
+}
+
+/// One diagnosis with all that it needs to be shown.
+struct Answer {
+    found: Diagnosis,
+    repaired: Repaired,
+    result: DiagnosisResult,
+}
+
+fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
+    // Better to know before the work than after it; a new folder is made once there is an answer.
+    let begun = match &arguments.out {
+        Some(path) if arguments.resume && path.exists() => {
+            Some(RunFolder::resume_on(&Disk::default(), path)?)
+        }
+        Some(path) => {
+            RunFolder::check_free(path)?;
+            None
+        }
+        None => None,
+    };
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(arguments.threads.map_or(0, usize::from))
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    interrupt::watch_impatiently()?;
+    let question = Question::read(&arguments.records, nominal, &arguments.reading)?;
+    let asked = kept::asked(arguments, &question);
+    if let Some(folder) = &begun
+        && let Some(result) = kept::finished(folder, &asked)?
+    {
+        arguments.output.print(&result, || {
+            let shown = folder.path().display();
+            format!(
+                "{}\n\n{shown}: this diagnosis is finished; nothing was changed",
+                summary::summary(&result, folder.path())
+            )
+        })?;
+        return Ok(Outcome::Done);
+    }
+    let answer = pool.install(|| question.answer(&settings(arguments), arguments.seed))?;
+    let _saving = Saving::begin();
+    let folder = match (begun, &arguments.out) {
+        (Some(folder), _) => folder,
+        (None, Some(path)) => RunFolder::create_at(path)?,
+        (None, None) => RunFolder::create(&default_root(), "diagnosis")?,
+    };
+    keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
+    arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
+    Ok(Outcome::Done)
+}
+
+/// Writes the run folder of an answer, its report last.
+fn keep(
+    folder: &RunFolder,
+    question: &Question,
+    asked: &Value,
+    answer: &Answer,
+    threads: usize,
+) -> Result<(), TrainerError> {
+    folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
+    folder.write("nominal.toml", simulator::nominal_text(&question.stated.simulator).as_bytes())?;
+    folder.record_event(kept::ASKED, asked)?;
+    folder.write_json("diagnosis.json", &answer.result)?;
+    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
+    for (name, text) in export::files(&answer.repaired) {
+        folder.write(name, text.as_bytes())?;
+    }
+    write_report(folder)?;
+    folder.record_event(kept::END, &json!({ "status": answer.result.verdict.status }))?;
+    Ok(())
+}
+
+fn settings(arguments: &DiagnoseArguments) -> Settings {
+    Settings {
+        false_alarm: arguments.false_alarm,
+        most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
+        without: arguments.without.clone(),
+        seed: Seed::new(arguments.seed),
+    }
+}
+
+/// Records of one system and what is believed of it.
+struct Question {
+    stated: StatedNominal,
+    given: Vec<Given>,
+    nominal: PathBuf,
+}
+
+impl Question {
+    fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, TrainerError> {
+        let stated = nominal::read(nominal)?;
+        let given =
+            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<Vec<_>, _>>()?;
+        check_distinct(&given)?;
+        Ok(Self { stated, given, nominal: nominal.to_owned() })
+    }
+
+    /// Digests of the records, with spaces between.
+    fn digests(&self) -> String {
+        let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
+        digests.join(" ")
+    }
+
+    fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, TrainerError> {
+        let start = Instant::now();
+        let observations: Vec<Observations> =
+            self.given.iter().map(|given| given.observations.clone()).collect();
+        let stopwatch = || start.elapsed().as_secs_f64();
+        let found = diagnosis::diagnose(&observations, &self.stated.simulator, settings, &stopwatch)
+            .map_err(|source| self.refused(source))?;
+        let seconds = stopwatch();
+        let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())
+            .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
+        let nominal = self.nominal.display().to_string();
+        let nominal_digest = nominal::digest(&self.stated);
+        let beside = Beside {
+            given: &self.given,
+            nominal: &nominal,
+            nominal_digest: &nominal_digest,
+            seed,
+            seconds,
+            repaired: &repaired,
+        };
+        let result = result(&found, &beside);
+        Ok(Answer { found, repaired, result })
+    }
+
+    /// A refusal with the file that it is about; where there are several records, the core counts them from 1.
+    fn refused(&self, source: DiagnosisError) -> TrainerError {
+        use DiagnosisError as E;
+        let record = match &source {
+            E::TooFewSamples { record, .. }
+            | E::TooFewCycles { record, .. }
+            | E::NoMotion { record, .. }
+            | E::MissingInput { record }
+            | E::AnotherPeriod { record, .. }
+            | E::LooksLikeDegrees { record, .. }
+            | E::MixedQuantities { record } => *record,
+            _ => 1,
+        };
+        let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
+        TrainerError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
+    }
+}
+
+/// That no record is there twice: it would count as two that agree.
+fn check_distinct(given: &[Given]) -> Result<(), TrainerError> {
+    for (at, one) in given.iter().enumerate() {
+        if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
+            let [first, second] = [one, again].map(|given| given.row.path.clone());
+            return Err(TrainerError::SameRecord { first, second, digest: one.row.digest.clone() });
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,388 @@
+//! A diagnosis in the form that files and scripts get.
+
+use super::read::Given;
+use diagnosis::{
+    Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
+    backbone, surface,
+};
+use dynamics::{Effect, Quantity, Units};
+use export::{Repaired, equation_latex, equation_text};
+use results::{
+    Backbone, BackbonePoint, BudgetShares, CalibratedRow, Calibration, ChainFinding, ChainSummary,
+    ClassEvidenceRow, ClassRow, DIAGNOSIS_SCHEMA, DetectabilityRow, DiagnosisResult, DiagnosisVerdict,
+    EffectRow, Equation, GapMaps, GapSummary, KindRow, KnownEffectRow, LeftOverRow, MapCell, NextExperiment,
+    ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
+};
+
+/// What stands beside the diagnosis itself.
+pub(crate) struct Beside<'a> {
+    pub(crate) given: &'a [Given],
+    /// The file of the nominal simulator.
+    pub(crate) nominal: &'a str,
+    pub(crate) nominal_digest: &'a str,
+    pub(crate) seed: u64,
+    pub(crate) seconds: f64,
+    pub(crate) repaired: &'a Repaired,
+}
+
+/// The content of `diagnosis.json`.
+pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult {
+    let first = beside.given.first();
+    let quantity = first.map(|given| given.quantity).unwrap_or_default();
+    let units = beside.repaired.units;
+    let effects = effects(found);
+    let chain = &found.measuring_chain;
+    let mut result = DiagnosisResult {
+        schema: DIAGNOSIS_SCHEMA.to_owned(),
+        verdict: DiagnosisVerdict {
+            status: found.verdict.status,
+            effects: owned(&found.verdict.effects),
+            confidence: found.verdict.confidence,
+            left_over: Some(found.verdict.left_over),
+            equivalent: found.verdict.equivalent.iter().map(|class| owned(class)).collect(),
+            summary: String::new(),
+        },
+        effects,
+        gap: gap(found),
+        place: place(found),
+        measuring_chain: ChainSummary {
+            clock: chain.clock.to_owned(),
+            clock_reason: first.map(|given| given.row.clock_reason.clone()).unwrap_or_default(),
+            sample_rate_hz: chain.sample_rate_hz,
+            resolution: chain.resolution,
+            noise: chain.noise,
+            findings: chain
+                .findings
+                .iter()
+                .map(|finding| ChainFinding {
+                    effect: finding.effect.map(str::to_owned),
+                    text: finding.text.clone(),
+                })
+                .collect(),
+        },
+        calibration: calibration(found, units),
+        next_experiment: next_experiment(found),
+        seconds: beside.seconds,
+        stages: found
+            .stages
+            .iter()
+            .map(|stage| StageRow { name: stage.name.to_owned(), seconds: stage.seconds })
+            .collect(),
+        records: beside.given.iter().map(|given| given.row.clone()).collect(),
+        nominal: beside.nominal.to_owned(),
+        nominal_digest: beside.nominal_digest.to_owned(),
+        seed: beside.seed,
+        quantity: match quantity {
+            record::Quantity::Position => "position",
+            record::Quantity::Velocity => "velocity",
+            record::Quantity::Acceleration => "acceleration",
+        }
+        .to_owned(),
+        samples_used: found.samples_used,
+        rivals: found
+            .rivals
+            .iter()
+            .map(|row| RivalRow {
+                effect: row.effect.to_owned(),
+                rival: row.rival.to_owned(),
+                distance: row.distance,
+            })
+            .collect(),
+        detectability: found
+            .detectability
+            .iter()
+            .map(|row| DetectabilityRow { effect: row.effect.to_owned(), d: row.d })
+            .collect(),
+        classes: found.classes.iter().map(class_row).collect(),
+        left_over: Some(LeftOverRow {
+            share_of_gap: found.left_over.share_of_gap,
+            over_noise: found.left_over.over_noise,
+        }),
+        sets: found
+            .sets
+            .iter()
+            .map(|set| SetRow {
+                effects: owned(&set.effects),
+                probability: set.probability,
+                rms: set.rms,
+                evidence: set.evidence,
+            })
+            .collect(),
+        rejected: found.rejected.iter().map(|set| owned(set)).collect(),
+        equation: Equation { text: equation_text(beside.repaired), latex: equation_latex(beside.repaired) },
+        units: [Quantity::Position, Quantity::Velocity, Quantity::Torque]
+            .map(|quantity| quantity.unit(units).to_owned()),
+        backbone: if beside.repaired.driven { Backbone::default() } else { backbones(&found.series) },
+        surface: surface_cells(found, quantity),
+    };
+    result.verdict.summary = report::verdict_sentence(&result);
+    result
+}
+
+/// Where the gap lies.
+fn place(found: &Diagnosis) -> GapMaps {
+    GapMaps {
+        budget: BudgetShares {
+            dissipative: found.place.budget.dissipative,
+            conservative: found.place.budget.conservative,
+            time_dependent: found.place.budget.time_dependent,
+            sensor: found.place.budget.sensor,
+            clock: found.place.budget.clock,
+        },
+        time: cells(&found.place.time),
+        amplitude: cells(&found.place.amplitude),
+        phase: cells(&found.place.phase),
+        frequency: cells(&found.place.frequency),
+    }
+}
+
+fn owned(ids: &[&'static str]) -> Vec<String> {
+    ids.iter().map(|id| (*id).to_owned()).collect()
+}
+
+/// A class of effects as it is stored.
+fn class_row(class: &EffectClass) -> ClassRow {
+    ClassRow {
+        id: class.id.to_owned(),
+        probability: class.probability,
+        gap_share: class.gap_share.map(with_interval),
+        kinds: class.kinds.iter().map(|kind| KindRow { id: kind.id.to_owned(), share: kind.share }).collect(),
+        kind_is_told: class.kind_is_told,
+        error_without: class.error_without,
+        error_with: class.error_with,
+        stability: class.stability,
+        evidence: ClassEvidenceRow {
+            replacement: class.evidence.replacement,
+            half_swings: class.evidence.half_swings,
+        },
+    }
+}
+
+/// The name of an id in words.
+pub(crate) fn title(id: &str) -> String {
+    match Status::of_row(id) {
+        Some(Status::None) => "nothing is missing",
+        Some(Status::Calibration) => "only the coefficients were off",
+        Some(Status::Unknown) => "something without a name",
+        Some(Status::Effect) | None => Effect::find(id).map_or(id, |effect| effect.description().title),
+    }
+    .to_owned()
+}
+
+fn with_interval(interval: Interval) -> WithInterval {
+    WithInterval { value: interval.value, interval_95: interval.interval_95 }
+}
+
+fn effects(found: &Diagnosis) -> Vec<EffectRow> {
+    let row = |effect: &diagnosis::EffectProbability| EffectRow {
+        id: effect.id.to_owned(),
+        title: match (Status::of_row(effect.id), effect.gap_share) {
+            (Some(Status::Unknown), Some(_)) => {
+                "something without a name: a torque along the position".to_owned()
+            }
+            _ => title(effect.id),
+        },
+        probability: effect.probability,
+        parameters: effect
+            .parameters
+            .iter()
+            .map(|parameter| {
+                let row = ParameterRow {
+                    value: parameter.estimate.value,
+                    unit: parameter.unit.clone(),
+                    interval_95: parameter.estimate.interval_95,
+                    determined: parameter.determined,
+                };
+                (parameter.name.to_owned(), row)
+            })
+            .collect(),
+        gap_share: effect.gap_share.map(with_interval),
+    };
+    found.effects.iter().map(row).collect()
+}
+
+fn gap(found: &Diagnosis) -> GapSummary {
+    let gap = &found.gap;
+    GapSummary {
+        unit: gap.unit.to_owned(),
+        nominal: gap.nominal,
+        recalibrated: gap.recalibrated,
+        repaired: gap.repaired,
+        ceiling: gap.ceiling,
+        noise_floor: gap.noise_floor.value,
+        noise_floor_interval_95: gap.noise_floor.interval_95,
+        closure: with_interval(gap.closure),
+        closure_of_recalibrated: with_interval(gap.closure_of_recalibrated),
+        ratio_to_floor: gap.ratio_to_floor.value,
+        ratio_to_floor_interval_95: gap.ratio_to_floor.interval_95,
+        last_third: gap.last_third,
+        held_out: gap.held_out.clone(),
+    }
+}
+
+fn cells(cells: &[Cell]) -> Vec<MapCell> {
+    cells
+        .iter()
+        .map(|cell| MapCell {
+            bounds: cell.bounds.clone(),
+            value: cell.value,
+            repaired: cell.repaired,
+            band: cell.band,
+            significant: cell.significant,
+            samples: cell.samples,
+        })
+        .collect()
+}
+
+fn calibration(found: &Diagnosis, units: Units) -> Calibration {
+    let row = |name: &str, quantity: Quantity| {
+        let own: Option<&Calibrated> = found.calibration.iter().find(|row| row.name == name);
+        CalibratedRow {
+            nominal: own.map_or(f64::NAN, |row| row.nominal),
+            unit: quantity.unit(units).to_owned(),
+            recalibrated: own.and_then(|row| row.recalibrated).map(with_interval),
+            repaired: own.and_then(|row| row.repaired).map(with_interval),
+            determined: own.and_then(|row| row.determined),
+        }
+    };
+    Calibration {
+        inertia: row("inertia", Quantity::Inertia),
+        damping: row("damping", Quantity::Damping),
+        stiffness: row("stiffness", Quantity::Stiffness),
+        rest_angle: row("rest_angle", Quantity::Position),
+        effects: found.known.iter().map(|known| known_effect(known, units)).collect(),
+    }
+}
+
+fn known_effect(known: &KnownRow, units: Units) -> KnownEffectRow {
+    let stated = known
+        .nominal
+        .into_iter()
+        .flat_map(|active| active.effect().description().parameters.iter().zip(active.values().to_vec()));
+    let parameters = stated.map(|(parameter, nominal)| {
+        let of = |rows: &[ParameterEstimate]| rows.iter().find(|own| own.name == parameter.name).cloned();
+        let repaired = of(&known.repaired);
+        let row = CalibratedRow {
+            nominal,
+            unit: repaired
+                .as_ref()
+                .map_or_else(|| parameter.quantity.unit(units).to_owned(), |own| own.unit.clone()),
+            recalibrated: of(&known.recalibrated).map(|own| with_interval(own.estimate)),
+            repaired: repaired.as_ref().map(|own| with_interval(own.estimate)),
+            determined: repaired.map(|own| own.determined),
+        };
+        (parameter.name.to_owned(), row)
+    });
+    KnownEffectRow {
+        id: known.id.to_owned(),
+        recalibrate: known.recalibrate,
+        parameters: parameters.collect(),
+    }
+}
+
+fn next_experiment(found: &Diagnosis) -> NextExperiment {
+    let finite = |distance: f64| Some(distance).filter(|distance| distance.is_finite());
+    match &found.next_experiment {
+        Some(experiment) => NextExperiment {
+            text: experiment.text.clone(),
+            separates: owned(&experiment.separates),
+            distance: finite(experiment.distance),
+            considered: experiment.considered.iter().map(|(text, d)| (text.clone(), finite(*d))).collect(),
+        },
+        None => NextExperiment {
+            text: no_experiment(found).to_owned(),
+            separates: Vec::new(),
+            distance: None,
+            considered: Vec::new(),
+        },
+    }
+}
+
+/// Why no experiment is proposed.
+fn no_experiment(found: &Diagnosis) -> &'static str {
+    match found.verdict.status {
+        Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
+        Status::Effect => "None: no other effect explains these records as well as what was named.",
+        Status::Unknown => {
+            "None that these data suggest: what is missing has no name yet. A second release from another amplitude \
+             tells whether it depends on amplitude or on time."
+        }
+    }
+}
+
+fn backbones(series: &Series) -> Backbone {
+    let predicted = |residuals: &[f64]| -> Vec<f64> {
+        series.observed.iter().zip(residuals).map(|(observed, residual)| observed - residual).collect()
+    };
+    let points = |values: &[f64]| -> Vec<BackbonePoint> {
+        let point = |swing: Swing| BackbonePoint {
+            amplitude: swing.amplitude,
+            frequency: swing.frequency,
+            decay_rate: Some(swing.decay_rate).filter(|rate| rate.is_finite()),
+        };
+        backbone(series, values).into_iter().map(point).collect()
+    };
+    Backbone {
+        measured: points(&series.observed),
+        nominal: points(&predicted(&series.nominal_residual)),
+        repaired: points(&predicted(&series.repaired_residual)),
+    }
+}
+
+/// What the recalibrated law lacks; a coefficient that these data cannot tell stays as it was.
+fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCell> {
+    let value = |name: &str| {
+        let row = found.calibration.iter().find(|row| row.name == name);
+        row.map_or(0.0, |row| row.recalibrated.map_or(row.nominal, |interval| interval.value))
+    };
+    let coefficients = dynamics::Coefficients {
+        inertia: value("inertia"),
+        damping: value("damping"),
+        stiffness: value("stiffness"),
+        rest_angle: value("rest_angle"),
+        input_gain: 1.0,
+    };
+    surface(&found.series, quantity, &coefficients)
+        .into_iter()
+        .map(|cell| SurfaceCell {
+            bounds: cell.bounds,
+            measured: cell.measured,
+            missing: cell.missing,
+            samples: cell.samples,
+        })
+        .collect()
+}
+
+/// The rows of `series.csv`.
+pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
+    let mut rows = Vec::with_capacity(series.time_s.len());
+    let mut segment = 0;
+    let driven = series.input_torque.iter().any(|torque| *torque != 0.0);
+    for (index, (&time_s, &observed)) in series.time_s.iter().zip(&series.observed).enumerate() {
+        while series.segment_starts.get(segment).is_some_and(|start| *start <= index) {
+            segment += 1;
+        }
+        let less = |residuals: &[f64]| residuals.get(index).map_or(f64::NAN, |residual| observed - residual);
+        let record = segment.checked_sub(1).and_then(|segment| series.segment_records.get(segment));
+        rows.push(SeriesRow {
+            record: record.map_or(1, |record| record + 1),
+            segment,
+            time_s,
+            observed,
+            nominal: less(&series.nominal_residual),
+            recalibrated: less(&series.recalibrated_residual),
+            repaired: less(&series.repaired_residual),
+            input_torque: series.input_torque.get(index).copied().filter(|_| driven),
+        });
+    }
+    rows
+}
+
+#[cfg(test)]
+mod tests {
+    /// The answer's readers and the diagnosis draw the line at the same distance.
+    #[test]
+    fn one_distance_tells_explanations_apart() {
+        assert_eq!(results::DISTINCT_DISTANCE, diagnosis::DISTINCT_DISTANCE);
+    }
+}

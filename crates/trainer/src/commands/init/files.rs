@@ -1,0 +1,179 @@
+//! The files that `trainer init` writes.
+
+use dynamics::Coordinate;
+use identify::{Basis, Estimated, LinearOscillator};
+use std::fmt::Write;
+
+/// A guess of a nominal simulator as a commented `nominal.toml`.
+pub(super) fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordinate) -> String {
+    let (position, inertia, torque) = match coordinate {
+        Coordinate::Angle => ("rad", "kg m^2", "torque"),
+        Coordinate::Displacement => ("m", "kg", "force"),
+    };
+    let mut text = format!(
+        "# The linear oscillator nearest to {log}, as `trainer init` found it. Where you have a simulator, put its numbers\n\
+         # in place of these: a diagnosis says what the simulator in this file lacks.\n\n"
+    );
+    let mut line = |key: &str, value: String, comment: String| {
+        let _ = writeln!(text, "{:<44}# {comment}", format!("{key} = {value}"));
+    };
+    line(
+        "coordinate",
+        format!("\"{}\"", name(coordinate)),
+        "\"angle\" (rad) or \"displacement\" (m)".to_owned(),
+    );
+    match (oscillator.natural_frequency_hz(), oscillator.damping_ratio()) {
+        (Some(frequency), Some(ratio)) => {
+            line("natural_frequency", digits(frequency), format!("Hz, ± {}", error(frequency)));
+            line("damping_ratio", digits(ratio), format!("± {}", error(ratio)));
+        }
+        _ => {
+            line("inertia", "1.0".to_owned(), "everything is per unit of inertia".to_owned());
+            line(
+                "damping",
+                digits(oscillator.damping),
+                format!("1/s, over the inertia, ± {}", error(oscillator.damping)),
+            );
+            line("stiffness", "0.0".to_owned(), format!("the record shows no restoring {torque}"));
+        }
+    }
+    match oscillator.rest {
+        Some(rest) => line("rest_angle", digits(rest), format!("{position}, ± {}", error(rest))),
+        None => line("rest_angle", "0.0".to_owned(), position.to_owned()),
+    }
+    if let Some(gain) = oscillator.input_gain {
+        let comment = format!("{torque} over the inertia, per unit of the input, ± {}", error(gain));
+        line("input_gain", digits(gain), comment);
+    }
+    if oscillator.natural_frequency_hz().is_some() {
+        line(
+            "# inertia",
+            "1.0".to_owned(),
+            format!("{inertia}; left out, everything is per unit of inertia"),
+        );
+    }
+    text
+}
+
+/// A configuration that estimates the damping of the record, with the keys that say how to read it.
+pub(super) fn configuration(path: &str, reading: &[(&str, String)]) -> String {
+    let mut text = format!(
+        "# Estimates the damping ratio of one record.\n\
+         #\n\
+         #   trainer CONFIG                        CONFIG is this file\n\
+         #   trainer CONFIG estimator=pinn         another method: trainer list estimators\n\
+         #\n\
+         # Every key that is not written here has a default; trainer explain CONFIG lists them.\n\n\
+         [data]\n\
+         {:<44}# a relative path starts from this file\n",
+        format!("path = {}", quoted(path))
+    );
+    for (key, value) in reading {
+        let value = if value.parse::<f64>().is_ok() { value.clone() } else { quoted(value) };
+        let _ = writeln!(text, "{key} = {value}");
+    }
+    text.push_str("\n[estimator]\n");
+    let _ = writeln!(text, "{:<44}# ordinary least squares on the logarithms of the peaks", "name = \"ols\"");
+    text
+}
+
+/// A text as TOML writes it.
+fn quoted(text: &str) -> String {
+    toml::Value::String(text.to_owned()).to_string()
+}
+
+/// The coordinate's name in configurations.
+pub(super) fn name(coordinate: Coordinate) -> &'static str {
+    match coordinate {
+        Coordinate::Angle => "angle",
+        Coordinate::Displacement => "displacement",
+    }
+}
+
+/// What the oscillator was read from, in words.
+pub(super) fn basis(oscillator: &LinearOscillator) -> String {
+    match oscillator.basis {
+        Basis::TurningPoints(count) => format!("from {count} turning points of a free decay"),
+        Basis::Windows(count) => format!("by regression over {count} windows of the record"),
+    }
+}
+
+/// A number to the second digit of its standard error, as TOML reads it.
+pub(super) fn digits(estimated: Estimated) -> String {
+    let Estimated { value, std_error } = estimated;
+    // Sixteen digits hold any double; an error of zero, or none, asks for all that are worth reading.
+    let wanted = if std_error > 0.0 && value != 0.0 {
+        (value.abs().log10().floor() - std_error.log10().floor()).clamp(0.0, 9.0) as usize + 1
+    } else {
+        9
+    };
+    let text = format!("{value:.wanted$e}");
+    match text.parse::<f64>() {
+        Ok(number) if (1e-4..1e6).contains(&number.abs()) || number == 0.0 => format!("{number:?}"),
+        _ => text,
+    }
+}
+
+/// A standard error to two digits.
+pub(super) fn error(estimated: Estimated) -> String {
+    crate::terminal::table::two_digits(estimated.std_error)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{configuration, digits, nominal_toml};
+    use dynamics::Coordinate;
+    use identify::{Basis, Estimated, LinearOscillator};
+
+    fn of(value: f64, std_error: f64) -> Estimated {
+        Estimated { value, std_error }
+    }
+
+    #[test]
+    fn digits_follow_the_error() {
+        assert_eq!(digits(of(3.462_345_6, 2.1e-4)), "3.46235");
+        assert_eq!(digits(of(0.009_164_3, 1.2e-4)), "0.00916");
+        assert_eq!(digits(of(12.3, 40.0)), "12.0");
+        assert_eq!(digits(of(1.234_4e-7, 1e-9)), "1.234e-7");
+        assert_eq!(digits(of(0.0, 0.0)), "0.0");
+    }
+
+    #[test]
+    fn a_guess_is_a_nominal_simulator() {
+        let swinging = LinearOscillator {
+            stiffness: of(473.0, 0.1),
+            damping: of(0.4, 0.01),
+            rest: Some(of(0.03, 1e-3)),
+            input_gain: None,
+            basis: Basis::TurningPoints(70),
+        };
+        let drive = LinearOscillator {
+            stiffness: of(0.0, 0.0),
+            rest: None,
+            input_gain: Some(of(0.31, 0.01)),
+            basis: Basis::Windows(99),
+            ..swinging
+        };
+        for (oscillator, coordinate) in [(swinging, Coordinate::Angle), (drive, Coordinate::Displacement)] {
+            let text = nominal_toml("log.csv", &oscillator, coordinate);
+            let document = settings::Document::parse("nominal.toml", &text).unwrap();
+            let stated = experiment::resolve_nominal(&document).unwrap();
+            let coefficients = stated.nominal.coefficients();
+            let found = oscillator.stiffness.value / coefficients.inertia;
+            assert!((coefficients.stiffness - found).abs() <= 1e-3 * found, "{text}");
+            assert_eq!(stated.driven, oscillator.input_gain.is_some());
+        }
+    }
+
+    #[test]
+    fn a_configuration_keeps_how_the_record_is_read() {
+        let text = configuration(
+            "a \"b\".csv",
+            &[("value", "Winkel [deg]".to_owned()), ("sample_rate_hz", "100".to_owned())],
+        );
+        let table: toml::Table = text.parse().unwrap();
+        assert_eq!(table["data"]["path"].as_str(), Some("a \"b\".csv"));
+        assert_eq!(table["data"]["value"].as_str(), Some("Winkel [deg]"));
+        assert_eq!(table["data"]["sample_rate_hz"].as_integer(), Some(100));
+    }
+}

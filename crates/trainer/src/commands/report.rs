@@ -1,0 +1,24 @@
+//! `trainer report`.
+
+use crate::error::TrainerError;
+use crate::folders::page::write_report;
+use crate::options::Output;
+use crate::outcome::Outcome;
+use crate::terminal::console;
+use runs::RunFolder;
+use serde_json::json;
+use std::path::Path;
+
+/// Makes a run's report again and puts it in place of the old one: it is derived from the other files,
+/// so nothing is lost.
+pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerError> {
+    let folder = RunFolder::open(run);
+    write_report(&folder)?;
+    let report = run.join("report.html").display().to_string();
+    if output.json {
+        console::result(&json!({ "report": report }).to_string());
+    } else if !output.quiet {
+        console::result(&format!("report: {report}"));
+    }
+    Ok(Outcome::Done)
+}

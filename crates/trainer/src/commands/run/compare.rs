@@ -1,0 +1,244 @@
+//! `task = "compare"`: many methods, classical and learned, on one envelope.
+
+use super::ready::Run;
+use super::summary;
+use crate::error::TrainerError;
+use crate::fits::agreement::disagreement;
+use crate::fits::cautions::cautions;
+use crate::fits::fit::{FitSetting, SeedFit, seeds};
+use crate::fits::known_truth::{self, Answer};
+use crate::fits::method::{Method, Request};
+use crate::folders::page::write_report;
+use crate::folders::resume::end;
+use crate::outcome::Outcome;
+use crate::terminal::interrupt::Saving;
+use crate::terminal::progress::Progress;
+use experiment::{Claims, Comparison};
+use rayon::prelude::*;
+use report::comparison_markdown;
+use results::{
+    ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN, RESULT_SCHEMA, SeedRow,
+};
+use runs::to_csv;
+use serde_json::json;
+use std::time::Instant;
+
+/// A method's place, and its fit or why there is none.
+type Fitted = (usize, Result<SeedFit, String>);
+
+/// Fits every method on every seed, keeps going where one fails, and puts the table together.
+pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {
+    let methods = choose(comparison)?;
+    let start = Instant::now();
+    let fits = fit_all(run, &methods)?;
+    let _saving = Saving::begin();
+    let interrupted = run.cancel.is_requested() && fits.iter().flatten().any(is_interrupted);
+    let mut result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
+    let answer = Answer { zeta: result.oracle.zeta, zeta_std_error: Some(result.oracle.zeta_std_error) };
+    result.truth = known_truth::compare(&run.input, &answer)?;
+    keep(run, &result, interrupted)?;
+    run.print(&result, || summary::comparison(&result, run.folder.path()))?;
+    Ok(if interrupted {
+        Outcome::Interrupted
+    } else if result.pass {
+        Outcome::Done
+    } else {
+        Outcome::CheckFailed
+    })
+}
+
+/// Whether a fit was stopped before its end, or was not begun.
+fn is_interrupted(fit: &Result<SeedFit, String>) -> bool {
+    fit.as_ref().map_or_else(|reason| reason == NOT_BEGUN, SeedFit::is_interrupted)
+}
+
+/// The methods named, or all that the paper has; in the paper's order.
+fn choose(comparison: &Comparison) -> Result<Vec<Method>, TrainerError> {
+    let mut methods = Method::all()?;
+    methods.retain(|method| match &comparison.methods {
+        Some(names) => names.iter().any(|name| name == method.id()),
+        None => method.number().is_some(),
+    });
+    Ok(methods)
+}
+
+/// The fits of every method, in the methods' order and the seeds' order.
+fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, String>>>, TrainerError> {
+    let seeds = seeds(run.experiment.seed, run.experiment.fit.seeds)?;
+    let jobs: Vec<(usize, u64)> = methods
+        .iter()
+        .enumerate()
+        .flat_map(|(at, method)| {
+            let count = if method.draws() { usize::MAX } else { 1 };
+            seeds.clone().take(count).map(move |seed| (at, seed))
+        })
+        .collect();
+    let progress = Progress::over_fits(jobs.len() as u64, run.is_silent());
+    let setting = FitSetting {
+        envelope: &run.input.extraction.envelope,
+        request: Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel },
+        progress: &progress,
+        ledger: Some(&run.ledger),
+    };
+    let fit_one = |method: &Method, seed: u64| {
+        if run.cancel.is_requested() {
+            return Ok(Err(NOT_BEGUN.to_owned()));
+        }
+        let fit = match setting.fit(method, seed) {
+            // A disk that fails is no fault of the method's.
+            Err(error @ (TrainerError::Run(_) | TrainerError::Resume(_))) => return Err(error),
+            other => other.map_err(|error| error.to_string()),
+        };
+        progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
+        Ok(fit)
+    };
+    let fitted: Result<Vec<Fitted>, TrainerError> = run.pool.install(|| {
+        jobs.into_par_iter()
+            .filter_map(|(at, seed)| Some(fit_one(methods.get(at)?, seed).map(|fit| (at, fit))))
+            .collect()
+    });
+    progress.finish();
+    let mut by_method: Vec<Vec<_>> = methods.iter().map(|_| Vec::new()).collect();
+    for (at, fit) in fitted? {
+        if let Some(fits) = by_method.get_mut(at) {
+            fits.push(fit);
+        }
+    }
+    Ok(by_method)
+}
+
+fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
+    MethodRow {
+        number: method.number(),
+        id: method.id().to_owned(),
+        title: method.title().to_owned(),
+        family: method.family().to_owned(),
+        outcome,
+    }
+}
+
+/// One method's seeds as one outcome. A single seed that failed fails the method: leaving it out would
+/// flatter.
+fn outcome(run: &Run<'_>, fits: Vec<Result<SeedFit, String>>) -> MethodOutcome {
+    let fits: Vec<SeedFit> = match fits.into_iter().collect() {
+        Ok(fits) => fits,
+        Err(reason) => return MethodOutcome::Failed { reason },
+    };
+    let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
+    let (Some(first), Some(row)) = (fits.first(), rows.first()) else {
+        return MethodOutcome::Failed { reason: "no seed was fitted".to_owned() };
+    };
+    let errors = || rows.iter().map(|row| row.error_percent);
+    let worst = scoring::worst(errors());
+    let envelope = &run.input.extraction.envelope;
+    let stated = run.input.scaled(first.estimate.uncertainty, row.decay_rate);
+    MethodOutcome::Estimate(MethodEstimate {
+        decay_rate: row.decay_rate,
+        zeta: row.zeta,
+        zeta_std_error: stated.map(|known| envelope.damping_ratio_error(row.decay_rate, known.std_error)),
+        error_percent: row.error_percent,
+        median_error_percent: scoring::median(errors()),
+        worst_error_percent: worst,
+        digits_of_agreement: scoring::digits_of_agreement(worst),
+        seeds: fits.len() as u64,
+        steps: row.steps,
+        parameters: first.estimate.parameters,
+        seconds: scoring::median(rows.iter().map(|row| row.seconds)),
+        reached: row.reached.clone(),
+        stopped_because: first.estimate.stop.because.clone(),
+        pass: scoring::passes(worst, run.experiment.fit.tolerance_percent),
+    })
+}
+
+fn result(
+    run: &Run<'_>,
+    comparison: &Comparison,
+    methods: &[Method],
+    fits: Vec<Vec<Result<SeedFit, String>>>,
+    seconds: f64,
+) -> ComparisonResult {
+    let (experiment, input) = (run.experiment, &run.input);
+    let results: Vec<MethodRow> =
+        methods.iter().zip(fits).map(|(method, fits)| row(method, outcome(run, fits))).collect();
+    let estimates = || {
+        results.iter().filter_map(|row| match &row.outcome {
+            MethodOutcome::Estimate(estimate) => Some(estimate),
+            MethodOutcome::Failed { .. } => None,
+        })
+    };
+    let max_error_percent = scoring::worst(estimates().map(|row| row.worst_error_percent));
+    let pass = estimates().filter(|row| row.pass).count() == results.len();
+    let derived = derived(run, comparison.inertia_kg_m2);
+    let cautions = match comparison.claims {
+        Claims::None => Vec::new(),
+        Claims::Paper => cautions(
+            input,
+            &input.envelope_summary(experiment),
+            &derived,
+            max_error_percent,
+            &input.pipelines,
+        ),
+    };
+    let envelope = input.envelope_summary(experiment);
+    let pipelines = input.pipelines.clone();
+    ComparisonResult {
+        schema: RESULT_SCHEMA.to_owned(),
+        task: "compare".to_owned(),
+        seed: experiment.seed,
+        seeds: experiment.fit.seeds,
+        data: input.data_summary(experiment),
+        oracle: input.oracle_summary(),
+        derived,
+        results,
+        max_error_percent,
+        tolerance_percent: experiment.fit.tolerance_percent,
+        pass,
+        seconds,
+        cautions,
+        disagreement: disagreement(&pipelines, &input.data_summary(experiment)),
+        truth: None,
+        envelope,
+        pipelines,
+    }
+}
+
+fn derived(run: &Run<'_>, stated: Option<f64>) -> Derived {
+    let inertia = stated.unwrap_or(1.0);
+    let oracle = &run.input.oracle;
+    let omega = run.input.extraction.envelope.omega_rad_s();
+    let period = run.input.extraction.period_s;
+    // Whichever way ζ was defined, λ/ζ is the frequency that belongs to the stiffness.
+    let natural = if oracle.zeta == 0.0 { omega } else { oracle.decay_rate / oracle.zeta };
+    let stiffness = scoring::stiffness(inertia, natural);
+    Derived {
+        period_s: period,
+        frequency_hz: 1.0 / period,
+        inertia_kg_m2: inertia,
+        per_unit_of_inertia: stated.is_none(),
+        stiffness_n_m_per_rad: stiffness,
+        damping_n_m_s_per_rad: scoring::damping_coefficient(inertia, oracle.decay_rate),
+        critical_damping_n_m_s_per_rad: scoring::critical_damping(inertia, stiffness),
+        quality_factor: scoring::quality_factor(oracle.zeta),
+        cycles_to_one_over_e: scoring::cycles_to_one_over_e(oracle.decay_rate / omega),
+        half_life_s: scoring::half_life(oracle.decay_rate),
+        time_constant_s: scoring::time_constant(oracle.decay_rate),
+    }
+}
+
+/// Writes everything that is left to write, the report last.
+fn keep(run: &Run<'_>, result: &ComparisonResult, interrupted: bool) -> Result<(), TrainerError> {
+    if interrupted {
+        run.ledger.flush()?;
+    }
+    let folder = &run.folder;
+    let envelope = &run.input.extraction.envelope;
+    let line: Vec<f64> =
+        envelope.times_s().iter().map(|&time| run.input.oracle.log_amplitude_at(time)).collect();
+    folder.write("envelope.csv", &to_csv("envelope.csv", &run.input.envelope_rows(&line))?)?;
+    folder.write_json("result.json", result)?;
+    let text = serde_json::to_string(result)
+        .map_err(|error| TrainerError::System { what: "the result", problem: error.to_string() })?;
+    folder.write("tables.md", comparison_markdown(&text)?.as_bytes())?;
+    write_report(folder)?;
+    end(folder, interrupted, run.output.quiet, &json!({ "pass": result.pass }))
+}

@@ -1,0 +1,45 @@
+//! An experiment with all that its fits need.
+
+use crate::error::TrainerError;
+use crate::fits::fit::SeedFit;
+use crate::fits::input::Input;
+use crate::folders::resume::Ledger;
+use crate::options::Output;
+use estimator::Cancel;
+use experiment::Experiment;
+use rayon::ThreadPool;
+use results::SeedRow;
+use runs::RunFolder;
+use serde::Serialize;
+
+/// An experiment that is ready to be fitted.
+pub(crate) struct Run<'a> {
+    pub(crate) experiment: &'a Experiment,
+    pub(crate) input: Input,
+    pub(crate) folder: RunFolder,
+    pub(crate) ledger: Ledger,
+    pub(crate) pool: ThreadPool,
+    pub(crate) cancel: &'static Cancel,
+    pub(crate) output: Output,
+}
+
+impl Run<'_> {
+    /// A fit as a row, beside the oracle's decay rate.
+    pub(crate) fn row(&self, fit: &SeedFit) -> SeedRow {
+        fit.row(&self.input.extraction.envelope, self.input.oracle.decay_rate)
+    }
+
+    /// Whether progress is to be kept off the terminal.
+    pub(crate) fn is_silent(&self) -> bool {
+        self.output.quiet || self.output.json
+    }
+
+    /// Prints a result as [`Output::print`].
+    pub(crate) fn print(
+        &self,
+        result: &impl Serialize,
+        text: impl FnOnce() -> String,
+    ) -> Result<(), TrainerError> {
+        self.output.print(result, text)
+    }
+}

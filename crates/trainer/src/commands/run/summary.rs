@@ -1,0 +1,287 @@
+//! The terminal's answer: one short screen.
+
+use crate::terminal::table::{table, two_digits};
+use report::format;
+use results::{
+    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
+    PipelineOutcome, PipelineRow, TruthComparison,
+};
+use std::path::Path;
+
+/// The result as a person wants to read it.
+pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
+    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    parts.extend([headline(result), numbers(result)]);
+    if result.seeds.len() > 1 {
+        parts.push(format!(
+            "{} seeds from {} on: {} % from least squares at worst, slowest {:.2} s",
+            result.seeds.len(),
+            result.seed,
+            two_digits(result.worst_error_percent),
+            result.seeds.iter().map(|row| row.seconds).fold(0.0, f64::max),
+        ));
+    }
+    parts.push(pipelines(&result.pipelines));
+    parts.push(remarks(result).join("\n"));
+    parts.push(ending(folder));
+    parts.join("\n\n")
+}
+
+fn headline(result: &EstimationResult) -> String {
+    let verdict = if result.pass { "solves" } else { "does NOT solve" };
+    format!(
+        "{} on {} ({} record): {verdict} least squares to {} %; its damping ratio is {} % from that of the closed form",
+        result.estimator_title,
+        result.data.path,
+        result.data.origin,
+        result.tolerance_percent,
+        two_digits(result.worst_error_percent),
+    )
+}
+
+fn numbers(result: &EstimationResult) -> String {
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let zeta = match result.estimate.zeta_std_error {
+        Some(error) => format!("{} ± {error:.1e} (standard error)", digits(result.estimate.zeta)),
+        None => digits(result.estimate.zeta),
+    };
+    let mut rows = vec![
+        row("peaks", result.envelope.peaks.to_string()),
+        row("angular frequency ω", format!("{:.9} rad/s", result.envelope.omega_rad_s)),
+        row("decay rate λ", format!("{} 1/s", digits(result.estimate.decay_rate))),
+        row("damping ratio ζ", zeta),
+        row(
+            "ζ by closed-form least squares",
+            format!(
+                "{} ± {:.1e} (standard error), R² {:.6}",
+                digits(result.oracle.zeta),
+                result.oracle.zeta_std_error,
+                result.oracle.r_squared
+            ),
+        ),
+        row("distance from least squares", format!("{} %", two_digits(result.error_percent))),
+        row(
+            "stopped",
+            format!(
+                "{} after {} steps: {}",
+                result.estimate.reached.replace('_', " "),
+                result.steps,
+                result.estimate.stopped_because
+            ),
+        ),
+        row("time", format!("{:.2} s for {} parameters", result.seconds, result.parameters)),
+    ];
+    rows.extend(truth(result.truth.as_ref()));
+    table(&[], rows)
+}
+
+/// The truth of a simulated record, and how far the answer is from it.
+fn truth(known: Option<&TruthComparison>) -> Vec<Vec<String>> {
+    let rows = known.map(report::truth_rows).unwrap_or_default();
+    rows.into_iter().map(|(name, value)| vec![name.to_owned(), value]).collect()
+}
+
+/// A comparison as a person wants to read it: the paper's Tables 3 to 5 in one screen or two.
+pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
+    let mut parts: Vec<String> = result.disagreement.iter().cloned().collect();
+    parts.extend([
+        comparison_headline(result),
+        oscillation(result),
+        methods(result),
+        pipelines(&result.pipelines),
+        comparison_remarks(result),
+        ending(folder),
+    ]);
+    parts.join("\n\n")
+}
+
+fn comparison_headline(result: &ComparisonResult) -> String {
+    let passed = result.results.iter().filter(|row| passes(row)).count();
+    let count = result.results.len();
+    let waiting = waiting(result).len();
+    let verdict = match (result.pass, waiting, passed + waiting < count) {
+        (true, ..) => String::new(),
+        (false, 0, _) => ", THE OTHERS DO NOT".to_owned(),
+        (false, _, true) => format!(", {waiting} WERE NOT BEGUN, THE OTHERS DO NOT"),
+        (false, _, false) => format!(", {waiting} WERE NOT BEGUN"),
+    };
+    format!(
+        "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
+         form, seeds {} to {}, {:.1} s",
+        result.data.path,
+        result.data.origin,
+        result.tolerance_percent,
+        two_digits(result.max_error_percent),
+        result.seed,
+        result.seed + result.seeds.saturating_sub(1),
+        result.seconds,
+    )
+}
+
+/// Methods whose turn had not come when the run was interrupted.
+fn waiting(result: &ComparisonResult) -> Vec<&MethodRow> {
+    result.results.iter().filter(|row| !is_begun(row)).collect()
+}
+
+fn is_begun(row: &MethodRow) -> bool {
+    !matches!(&row.outcome, MethodOutcome::Failed { reason } if reason == NOT_BEGUN)
+}
+
+fn passes(row: &MethodRow) -> bool {
+    matches!(&row.outcome, MethodOutcome::Estimate(estimate) if estimate.pass)
+}
+
+fn oscillation(result: &ComparisonResult) -> String {
+    let (oracle, derived) = (&result.oracle, &result.derived);
+    let row = |name: &str, value: String| vec![name.to_owned(), value];
+    let unit = |with_inertia: &str, without: &str| match derived.per_unit_of_inertia {
+        true => format!("{without} per unit of inertia (compare.inertia_kg_m2 is not given)"),
+        false => with_inertia.to_owned(),
+    };
+    let mut rows = vec![
+        row("peaks", result.envelope.peaks.to_string()),
+        row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
+        row("angular frequency ω", format!("{:.6} rad/s", result.envelope.omega_rad_s)),
+        row("decay rate λ", format!("{} 1/s", digits(oracle.decay_rate))),
+        row("R²", format!("{:.6}", oracle.r_squared)),
+        row(
+            "damping ratio ζ",
+            format!("{} ± {:.1e} (standard error)", digits(oracle.zeta), oracle.zeta_std_error),
+        ),
+        row("stiffness", format!("{:.4} {}", derived.stiffness_n_m_per_rad, unit("N m/rad", "1/s^2"))),
+        row(
+            "damping coefficient",
+            format!("{:.4e} {}", derived.damping_n_m_s_per_rad, unit("N m s/rad", "1/s")),
+        ),
+        row(
+            "critical damping",
+            format!("{:.4e} {}", derived.critical_damping_n_m_s_per_rad, unit("N m s/rad", "1/s")),
+        ),
+        row(
+            "quality factor",
+            format!("{:.2}; to 1/e in {:.2} cycles", derived.quality_factor, derived.cycles_to_one_over_e),
+        ),
+        row(
+            "half-life, time constant",
+            format!("{:.3} s, {:.3} s", derived.half_life_s, derived.time_constant_s),
+        ),
+    ];
+    rows.extend(truth(result.truth.as_ref()));
+    table(&[], rows)
+}
+
+fn methods(result: &ComparisonResult) -> String {
+    let rows = result
+        .results
+        .iter()
+        .filter(|row| is_begun(row))
+        .map(|row| {
+            let number = row.number.map_or_else(|| "-".to_owned(), |number| number.to_string());
+            let mut cells = vec![number, row.id.clone()];
+            match &row.outcome {
+                MethodOutcome::Estimate(found) => cells.extend([
+                    format!("{:.8}", found.zeta),
+                    found.zeta_std_error.map_or_else(|| "-".to_owned(), |error| format!("{error:.1e}")),
+                    format!("{:.1e}", found.error_percent),
+                    format!("{:.1e}", found.worst_error_percent),
+                    format!("{:.1}", found.digits_of_agreement),
+                    found.seeds.to_string(),
+                    found.steps.to_string(),
+                    found.parameters.to_string(),
+                    format!("{:.3}", found.seconds),
+                    format!("{}{}", found.reached.replace('_', " "), if found.pass { "" } else { ", FAILS" }),
+                ]),
+                MethodOutcome::Failed { reason } => {
+                    cells.extend(std::iter::repeat_n(String::new(), 9));
+                    cells.push(format!("FAILED: {reason}"));
+                }
+            }
+            cells
+        })
+        .collect();
+    let header =
+        ["#", "method", "ζ", "±", "error %", "worst %", "digits", "seeds", "steps", "par.", "s", "state"];
+    let waiting: Vec<&str> = waiting(result).iter().map(|row| row.id.as_str()).collect();
+    match waiting.as_slice() {
+        [] => table(&header, rows),
+        ids => format!("{}\ninterrupted before these were fitted: {}", table(&header, rows), ids.join(", ")),
+    }
+}
+
+fn comparison_remarks(result: &ComparisonResult) -> String {
+    let cautions = result
+        .cautions
+        .iter()
+        .map(|caution| format!("not borne out: \u{201c}{}\u{201d}. {}", caution.statement, caution.finding));
+    clock(&result.data)
+        .into_iter()
+        .chain(warned(&result.oracle))
+        .chain(cautions)
+        .collect::<Vec<_>>()
+        .join("\n")
+}
+
+/// Ten significant digits.
+fn digits(value: f64) -> String {
+    format::significant(value, 10)
+}
+
+fn pipelines(pipelines: &[PipelineRow]) -> String {
+    let mark = |in_force: bool| if in_force { "*" } else { "" }.to_owned();
+    let rows = pipelines
+        .iter()
+        .map(|row| {
+            let mut cells = vec![mark(row.in_force), row.pipeline.clone(), row.clock.clone()];
+            match &row.outcome {
+                PipelineOutcome::Fit { peaks, omega_rad_s, decay_rate, zeta, r_squared, .. } => {
+                    cells.extend([
+                        peaks.to_string(),
+                        format!("{omega_rad_s:.6}"),
+                        format!("{decay_rate:.8}"),
+                        format!("{zeta:.8}"),
+                        format!("{r_squared:.5}"),
+                    ]);
+                }
+                PipelineOutcome::Failed { .. } => cells.push("none".to_owned()),
+            }
+            cells
+        })
+        .collect();
+    let header = ["", "pipeline", "clock", "peaks", "ω rad/s", "λ 1/s", "ζ", "R²"];
+    let mut text =
+        format!("the record by closed-form least squares, each way (* in force):\n{}", table(&header, rows));
+    for row in pipelines {
+        if let PipelineOutcome::Failed { reason } = &row.outcome {
+            text.push_str(&format!("\n{}, {}: {reason}", row.pipeline, row.clock));
+        }
+    }
+    text
+}
+
+fn ending(folder: &Path) -> String {
+    format!("run: {0}\nreport: {0}/report.html", folder.display())
+}
+
+/// Which clock, the sensor's rate, and what was noticed about the file.
+fn clock(data: &DataSummary) -> Vec<String> {
+    let mut remarks = vec![
+        data.reading.sentence.clone(),
+        format!("clock in force: {}", data.clock),
+        format!(
+            "sensor: one sample every {:.6} ms, {:.2} ± {:.2} Hz",
+            1e3 * data.sample_period_s,
+            data.sample_rate_hz,
+            data.sample_rate_std_error_hz
+        ),
+    ];
+    remarks.extend(report::noticed(data).iter().map(|finding| format!("note: {finding}")));
+    remarks
+}
+
+fn remarks(result: &EstimationResult) -> Vec<String> {
+    clock(&result.data).into_iter().chain(warned(&result.oracle)).collect()
+}
+
+fn warned(reference: &OracleSummary) -> impl Iterator<Item = String> {
+    report::warnings(reference).into_iter().map(|warning| format!("note: {warning}"))
+}

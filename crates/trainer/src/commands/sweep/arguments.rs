@@ -1,0 +1,72 @@
+//! The arguments of `trainer sweep`.
+
+use crate::options::{Output, RunOptions};
+use clap::{Args, ValueEnum};
+use experiment::sweep::Shard;
+use std::path::PathBuf;
+
+/// Every combination of some keys' values.
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer sweep configs/pinn.toml seed=0..9                 ten runs: a range holds both its ends
+  trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9 --out SWEEP
+                                   twenty: each estimator with each seed
+  trainer sweep configs/pinn.toml 'estimator.hidden=[16],[32,32]' fit.max_steps=50,500
+                                   a comma inside brackets separates nothing
+  trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9 --out SWEEP --resume
+                                   what is missing, if the configuration is the same
+  trainer sweep --out SWEEP --resume --failed               and what failed; the frozen list alone
+  trainer sweep configs/pinn.toml seed=0..999 --out SWEEP --shard 2/8
+                                   the second of eight shares; all may run at once on one folder
+  trainer sweep configs/pinn.toml seed=0..999 --launcher slurm --shards 20
+                                   a job array with one task for each share
+
+estimator=NAME chooses the estimator and leaves out what the file sets for another one.
+
+Every combination is resolved and checked before the first one runs, and frozen: SWEEP/sweep.json
+lists the runs, each with its digest, its state and its folder below SWEEP/runs, which `trainer
+report` reads. SWEEP/report.html, table.csv and table.md put them side by side.
+
+Exit codes: 0 done; 1 a run failed, or is outside its stated tolerance; 2 wrong input or usage,
+nothing was run; 130 interrupted, what is done is kept.")]
+pub(crate) struct SweepArguments {
+    /// The experiment that every combination starts from: a TOML file
+    #[arg(required_unless_present = "resume")]
+    pub(crate) config: Option<PathBuf>,
+    /// What to vary: KEY=V1,V2 or KEY=A..B, both ends included
+    #[arg(value_name = "KEY=VALUES")]
+    pub(crate) axes: Vec<String>,
+    #[command(flatten)]
+    pub(crate) run: RunOptions,
+    /// With --resume, runs again what failed
+    #[arg(long, requires = "resume")]
+    pub(crate) failed: bool,
+    /// Runs the I-th of N shares of the frozen list; begins the sweep in --out or joins it
+    #[arg(long, value_name = "I/N", requires = "out")]
+    pub(crate) shard: Option<Shard>,
+    /// Freezes the sweep and hands it to a batch system instead of running it here
+    #[arg(long, value_enum, conflicts_with_all = ["shard", "json"])]
+    pub(crate) launcher: Option<Launcher>,
+    /// With --launcher, how many tasks share the runs
+    #[arg(long, value_name = "N", requires = "launcher", default_value_t = 8,
+          value_parser = clap::value_parser!(u16).range(1..=10_000))]
+    pub(crate) shards: u16,
+    #[command(flatten)]
+    pub(crate) output: Output,
+}
+
+impl SweepArguments {
+    /// As many threads as asked for, or one for each core.
+    pub(super) fn threads(&self) -> usize {
+        let cores = || std::thread::available_parallelism().map_or(1, usize::from);
+        self.run.threads.map_or_else(cores, usize::from)
+    }
+}
+
+/// Who runs the shares.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Launcher {
+    /// A Slurm job array, submitted with sbatch
+    Slurm,
+}

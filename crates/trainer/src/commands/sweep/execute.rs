@@ -1,0 +1,242 @@
+//! Making the runs of a sweep, several at a time.
+
+use super::frozen::FrozenSweep;
+use crate::commands::run::{Run, perform};
+use crate::configured::classical;
+use crate::error::TrainerError;
+use crate::fits::input::Input;
+use crate::folders::resume::{Beginning, FAILED, Ledger, TakenUp, start, take_up};
+use crate::options::Output;
+use crate::outcome::Outcome;
+use crate::run_table::of_sweep::label;
+use crate::terminal::console;
+use crate::terminal::progress::Progress;
+use crate::terminal::table::two_digits;
+use estimator::Cancel;
+use experiment::{CheckpointSettings, resolve};
+use registry::ESTIMATORS;
+use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
+use runs::{Disk, RunError, RunFolder, read_run};
+use serde_json::json;
+use settings::Document;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// `sweep.json` is written again when this many times its own writing time has passed.
+const REST: u32 = 20;
+
+/// A run to be made: its line and its configuration.
+pub(super) type Job<'a> = (&'a SweepLine, &'a str);
+
+/// What a run of a sweep prints: the sweep speaks for it.
+const SILENT: Output = Output { quiet: true, json: false };
+
+/// Makes the runs on so many threads. Each run is fitted on a single one, so that its bits do not depend on them. A
+/// run that fails is reported and the others go on; a request to stop lets none begin.
+///
+/// An error is one of the sweep's folder: what became of a run could not be kept.
+pub(super) fn execute(
+    sweep: &FrozenSweep,
+    jobs: &[Job<'_>],
+    threads: usize,
+    output: Output,
+    cancel: &'static Cancel,
+) -> Result<(), RunError> {
+    let progress = Progress::over_runs(jobs.len() as u64, output.quiet || output.json);
+    let next = AtomicUsize::new(0);
+    let fault: Mutex<Option<RunError>> = Mutex::new(None);
+    let clerk = Mutex::new(Clerk::new(sweep));
+    let work = || {
+        while !cancel.is_requested() && !is_some(&fault) {
+            let Some(&(line, config)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
+            let remark = |words: &str| {
+                if !output.quiet {
+                    progress.aside(|| console::remark(words));
+                }
+            };
+            let end = make(sweep, line, config, cancel, &remark);
+            if let Err(error) = sweep.folder.end_run(&end) {
+                *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                break;
+            }
+            report(sweep, line, &end, &progress, output);
+            clerk.lock().unwrap_or_else(PoisonError::into_inner).note(sweep);
+        }
+    };
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(jobs.len()) {
+            scope.spawn(work);
+        }
+    });
+    progress.finish();
+    match fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
+        Some(error) => Err(error),
+        None => Ok(()),
+    }
+}
+
+fn is_some<T>(shared: &Mutex<Option<T>>) -> bool {
+    shared.lock().unwrap_or_else(PoisonError::into_inner).is_some()
+}
+
+/// Makes one run and says what became of it.
+fn make(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    config: &str,
+    cancel: &'static Cancel,
+    remark: &dyn Fn(&str),
+) -> SweepEnd {
+    let mut run = None;
+    // A panic would be a fault of the program; even so the other runs go on.
+    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, line, config, cancel, &mut run, remark)));
+    let (state, message) = match made {
+        Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
+        Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
+        // A request to stop may also end training that has nothing to show yet.
+        Ok(Err(_)) if cancel.is_requested() => (SweepState::Interrupted, None),
+        Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
+        Err(_) => {
+            let message = "the program panicked; what it said stands above (a fault, please report it)";
+            (SweepState::Failed, Some(message.to_owned()))
+        }
+    };
+    if let (Some(folder), Some(message)) = (&run, &message) {
+        // The sweep's own state file says so too; that this one cannot be written is no failure of its own.
+        let folder = RunFolder::open(&sweep.folder.path().join(folder));
+        let _ = folder.record_event(FAILED, &json!({ "message": message }));
+    }
+    SweepEnd { digest: line.digest.clone(), state, run, message }
+}
+
+/// Reads, fits and keeps; the run's folder is made, or taken up, once its record is read.
+fn attempt(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    config: &str,
+    cancel: &'static Cancel,
+    run: &mut Option<String>,
+    remark: &dyn Fn(&str),
+) -> Result<Outcome, TrainerError> {
+    let experiment = resolve(&Document::parse(&line.config, config)?, ESTIMATORS, &classical())?;
+    let input = Input::read(&experiment)?.with_pipelines(&experiment);
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(1)
+        .build()
+        .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
+    let beginning = Beginning::of(&experiment, &input.source.digest, config.to_owned(), 1);
+    let label = label(&sweep.manifest, line);
+    let (folder, ledger) = match begun_before(sweep, &label, &beginning, experiment.checkpoint, remark) {
+        Some((name, Before::Finished)) => {
+            *run = Some(name);
+            return Ok(Outcome::Done);
+        }
+        Some((name, Before::Open(folder, ledger))) => {
+            *run = Some(name);
+            (folder, ledger)
+        }
+        None => {
+            let (name, folder) = sweep.folder.begin_run(&label)?;
+            *run = Some(name);
+            let folder = start(folder, &beginning)?;
+            let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+            (folder, ledger)
+        }
+    };
+    perform(&Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: SILENT })
+}
+
+/// What an earlier attempt left of a run.
+enum Before {
+    /// All of it: it was killed before the sweep was told.
+    Finished,
+    /// Its finished fits, and the state of the one that it was killed in.
+    Open(RunFolder, Ledger),
+}
+
+/// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or
+/// where it failed there. One that is damaged or in another process's hands is left alone, and said.
+fn begun_before(
+    sweep: &FrozenSweep,
+    label: &str,
+    beginning: &Beginning<'_>,
+    checkpoint: CheckpointSettings,
+    remark: &dyn Fn(&str),
+) -> Option<(String, Before)> {
+    let name = sweep.folder.last_begun(label)?;
+    let path = sweep.folder.path().join(&name);
+    let open = || {
+        if RunFolder::open(&path).events()?.last(FAILED).is_some() {
+            return Ok(None);
+        }
+        Ok(Some(match take_up(&Disk::default(), &path, beginning, &|_| ())? {
+            TakenUp::Finished(_) => Before::Finished,
+            TakenUp::Open(folder) => {
+                let ledger = Ledger::open(&folder, checkpoint)?;
+                Before::Open(folder, ledger)
+            }
+        }))
+    };
+    let before = open().unwrap_or_else(|error: TrainerError| {
+        remark(&format!("{name} cannot be gone on with, so the run begins again beside it: {error}"));
+        None
+    });
+    before.map(|before| (name, before))
+}
+
+/// Says at once what became of a run.
+fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Progress, output: Output) {
+    let name = format!("{:04} ({})", line.number, line.overrides.join(" "));
+    if let Some(message) = &end.message {
+        let said = format!("run {name} FAILED: {message}");
+        if !output.quiet {
+            progress.aside(|| console::failure(&said));
+        }
+        progress.run_done(&format!("{name}: FAILED"));
+        return;
+    }
+    let rows = end.run.as_ref().map(|run| read_run(&sweep.folder.path().join(run)).rows).unwrap_or_default();
+    progress.run_done(&format!("{name}: {}", said(&rows)));
+}
+
+/// One line on the rows of a run.
+fn said(rows: &[RunTableRow]) -> String {
+    let bad = rows.iter().filter(|row| row.pass == Some(false)).count();
+    match rows {
+        [RunTableRow { zeta: Some(zeta), error_percent, reached, steps, seconds, .. }] => format!(
+            "{} after {} steps, {:.2} s, ζ {zeta:.8}, gap {} %{}",
+            reached.replace('_', " "),
+            steps.unwrap_or_default(),
+            seconds.unwrap_or_default(),
+            two_digits(error_percent.unwrap_or(f64::NAN)),
+            if bad > 0 { ", FAILS its tolerance" } else { "" },
+        ),
+        rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
+    }
+}
+
+/// Keeps `sweep.json` nearly up to date while runs are made.
+struct Clerk {
+    manifest: SweepManifest,
+    last: Instant,
+    rest: Duration,
+}
+
+impl Clerk {
+    fn new(sweep: &FrozenSweep) -> Self {
+        Self { manifest: sweep.manifest.clone(), last: Instant::now(), rest: Duration::ZERO }
+    }
+
+    /// Writes it, unless that was done just now: with thousands of runs it would take longer than these. That it
+    /// cannot be written is found out at the end, when it has to be.
+    fn note(&mut self, sweep: &FrozenSweep) {
+        if self.last.elapsed() < self.rest {
+            return;
+        }
+        let begun = Instant::now();
+        let _ = sweep.folder.refresh(&mut self.manifest);
+        (self.last, self.rest) = (Instant::now(), begun.elapsed() * REST);
+    }
+}

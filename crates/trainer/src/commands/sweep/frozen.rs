@@ -1,0 +1,223 @@
+//! The frozen list of a sweep: made and checked before the first run, or taken up again.
+
+use super::arguments::SweepArguments;
+use crate::configured::{classical, read_with_text};
+use crate::error::SweepCommandError;
+use crate::error::TrainerError;
+use crate::folders::environment::Environment;
+use crate::terminal::console;
+use experiment::resolve;
+use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
+use registry::ESTIMATORS;
+use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
+use runs::{Disk, RunError, RunFolder, SweepFolder, default_root};
+use serde_json::json;
+use settings::Document;
+use std::path::Path;
+
+/// A sweep whose list of runs is settled.
+pub(super) struct FrozenSweep {
+    pub(super) folder: SweepFolder,
+    pub(super) manifest: SweepManifest,
+    /// The runs' configurations, in the list's order.
+    pub(super) configs: Vec<String>,
+    /// Held as long as the sweep is worked on, so that nobody else takes it up; shares work side by side without.
+    _lock: Option<RunFolder>,
+}
+
+/// Freezes a new sweep, or takes up the one that the arguments name.
+pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerError> {
+    let planned = match &arguments.config {
+        Some(path) => Some((path.display().to_string(), planned(arguments, path)?)),
+        None => None,
+    };
+    let joins = arguments.run.resume || arguments.shard.is_some();
+    if let Some(path) = arguments.run.out.as_ref().filter(|path| SweepFolder::is_one(path)) {
+        if !joins {
+            return Err(SweepCommandError::Begun { folder: path.display().to_string() }.into());
+        }
+        return take_up(arguments, SweepFolder::open(path), planned.map(|(_, planned)| planned));
+    }
+    let Some((config, planned)) = planned else {
+        let folder = arguments.run.out.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
+        return Err(SweepCommandError::NoSweep { folder }.into());
+    };
+    let manifest = manifest(config, &planned)?;
+    let folder = match &arguments.run.out {
+        Some(path) if arguments.shard.is_some() => beginning(path)?,
+        Some(path) if joins => {
+            beginning(path)?;
+            RunFolder::resume_on(&Disk::default(), path)?
+        }
+        Some(path) => RunFolder::create_at(path)?,
+        None => RunFolder::create(&default_root(), &manifest.name)?,
+    };
+    let lock = arguments.shard.is_none().then(|| folder.clone());
+    let folder = SweepFolder::open(folder.path());
+    let configs: Vec<String> = planned.runs.iter().map(|run| run.config.clone()).collect();
+    let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
+    let environment = Environment::new(arguments.threads(), &digests.join(" "));
+    let environment = serde_json::to_vec_pretty(&environment)
+        .map_err(|error| TrainerError::System { what: "environment.json", problem: error.to_string() })?;
+    let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];
+    if !folder.freeze(&manifest, &configs, &beside)? {
+        // Another share came first.
+        drop(lock);
+        return take_up(arguments, folder, Some(planned));
+    }
+    folder.folder().record_event("start", &json!({ "name": manifest.name, "runs": manifest.runs.len() }))?;
+    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
+}
+
+/// What a configuration and axes come to.
+struct Planned {
+    name: String,
+    /// The configuration as its file has it.
+    text: String,
+    axes: Vec<Axis>,
+    runs: Vec<PlannedRun>,
+}
+
+fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
+    let (text, mut document) = read_with_text(config)?;
+    if let Some(seed) = arguments.run.seed {
+        document.apply_override(&format!("seed={seed}"))?;
+    }
+    let axes: Vec<Axis> = arguments
+        .axes
+        .iter()
+        .map(|argument| Axis::parse(argument))
+        .collect::<Result<_, _>>()
+        .map_err(SweepCommandError::Plan)?;
+    let runs = plan(&document, &axes, ESTIMATORS, &classical()).map_err(SweepCommandError::Plan)?;
+    let stem = config.file_stem().unwrap_or_default().to_string_lossy();
+    let name = document.get("name").and_then(|leaf| leaf.value.as_str()).unwrap_or(&stem);
+    Ok(Planned { text, name: format!("{name}-sweep"), axes, runs })
+}
+
+/// The manifest of a sweep that begins now. A record that cannot be read is found out here, not by its runs.
+fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerError> {
+    let mut records: Vec<SweepRecord> = Vec::new();
+    for run in &planned.runs {
+        if records.iter().all(|known| known.path != run.data_path) {
+            let digest = record::file_digest(Path::new(&run.data_path)).map_err(|source| {
+                SweepCommandError::Record { number: run.number, overrides: named(&run.overrides), source }
+            })?;
+            records.push(SweepRecord { path: run.data_path.clone(), digest });
+        }
+    }
+    let line = |run: &PlannedRun| SweepLine {
+        number: run.number,
+        digest: run.digest.clone(),
+        overrides: run.overrides.clone(),
+        config: format!("configs/{:04}.toml", run.number),
+        state: SweepState::Pending,
+        run: None,
+        message: None,
+    };
+    let axis = |axis: &Axis| SweepAxis { key: axis.key.clone(), values: axis.values.clone() };
+    Ok(SweepManifest {
+        schema: SWEEP_SCHEMA.to_owned(),
+        name: planned.name.clone(),
+        config,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        axes: planned.axes.iter().map(axis).collect(),
+        records,
+        runs: planned.runs.iter().map(line).collect(),
+    })
+}
+
+/// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written
+/// before the manifest, of which the frozen configurations come first.
+fn beginning(path: &Path) -> Result<RunFolder, RunError> {
+    match RunFolder::check_free(path) {
+        Ok(()) => Ok(RunFolder::open(path)),
+        Err(RunError::Occupied { path }) => {
+            let known = [".lock", "configs", "config.toml", "environment.json", "sweep.json"];
+            let is_ours = |name: &str| known.contains(&name) || name.starts_with(".tmp");
+            let entries = std::fs::read_dir(&path);
+            let mut names = entries.into_iter().flatten().flatten().map(|entry| entry.file_name());
+            if path.join("configs").is_dir() && names.all(|name| is_ours(&name.to_string_lossy())) {
+                Ok(RunFolder::open(&path))
+            } else {
+                Err(RunError::Occupied { path })
+            }
+        }
+        Err(other) => Err(other),
+    }
+}
+
+/// Goes on with a frozen sweep; what the command line asks for, if anything, has to be the same.
+fn take_up(
+    arguments: &SweepArguments,
+    folder: SweepFolder,
+    planned: Option<Planned>,
+) -> Result<FrozenSweep, TrainerError> {
+    let lock = match arguments.shard {
+        None => Some(RunFolder::resume_on(&Disk::default(), folder.path())?),
+        Some(_) => None,
+    };
+    let shown = || folder.path().display().to_string();
+    let manifest = folder
+        .manifest()
+        .map_err(SweepCommandError::Folder)?
+        .ok_or_else(|| SweepCommandError::NoSweep { folder: shown() })?;
+    if let Some(planned) = &planned
+        && let Some(difference) = difference(&folder, &manifest, planned)
+    {
+        return Err(SweepCommandError::Edited { folder: shown(), difference }.into());
+    }
+    for record in &manifest.records {
+        let now = record::file_digest(Path::new(&record.path))?;
+        if now != record.digest {
+            let (path, then) = (record.path.clone(), record.digest.clone());
+            return Err(SweepCommandError::OtherRecord { path, then, now }.into());
+        }
+    }
+    let configs = match planned {
+        Some(planned) => planned.runs.into_iter().map(|run| run.config).collect(),
+        None => manifest.runs.iter().map(|line| frozen_config(&folder, line)).collect::<Result<_, _>>()?,
+    };
+    if manifest.version != env!("CARGO_PKG_VERSION") {
+        console::remark(&format!(
+            "note: version {} froze this sweep and {} goes on with it; their numbers may differ",
+            manifest.version,
+            env!("CARGO_PKG_VERSION")
+        ));
+    }
+    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
+}
+
+/// A run's frozen configuration, if it still is what its digest says.
+fn frozen_config(folder: &SweepFolder, line: &SweepLine) -> Result<String, SweepCommandError> {
+    let path = folder.path().join(&line.config);
+    let file = path.display().to_string();
+    let text = std::fs::read_to_string(&path).ok();
+    let holds = |text: &String| {
+        let experiment = Document::parse(&file, text).and_then(|d| resolve(&d, ESTIMATORS, &classical()));
+        experiment.is_ok_and(|experiment| digest(&experiment) == line.digest)
+    };
+    let lost = || SweepCommandError::Lost { file: file.clone(), digest: line.digest.clone() };
+    text.filter(holds).ok_or_else(lost)
+}
+
+/// The overrides of a run in brackets, with a leading blank.
+fn named(overrides: &[String]) -> String {
+    if overrides.is_empty() { String::new() } else { format!(" ({})", overrides.join(" ")) }
+}
+
+/// What differs between the frozen list and another, in words.
+fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned) -> Option<String> {
+    for (line, run) in manifest.runs.iter().zip(&planned.runs) {
+        if line.digest == run.digest {
+            continue;
+        }
+        let then = std::fs::read_to_string(folder.path().join(&line.config)).unwrap_or_default();
+        let [then, now] = [&then, &run.config].map(|text| Document::parse("", text).unwrap_or_default());
+        let said = first_difference(&then, &now).unwrap_or_else(|| "another digest".to_owned());
+        return Some(format!("run {}{}: {said}", line.number, named(&line.overrides)));
+    }
+    let (then, now) = (manifest.runs.len(), planned.runs.len());
+    // The first of them are the same: an axis has become longer or shorter at its end.
+    (then != now).then(|| format!("{then} runs then, {now} now"))
+}

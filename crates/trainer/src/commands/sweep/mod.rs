@@ -1,0 +1,115 @@
+//! `trainer sweep`: every combination of some keys' values, resumable.
+
+pub(crate) mod arguments;
+mod execute;
+mod frozen;
+mod slurm;
+
+use crate::error::{SweepCommandError, TrainerError};
+use crate::folders::page::write_report;
+use crate::outcome::Outcome;
+use crate::run_table::{of_sweep, print_table};
+use crate::terminal::console;
+use crate::terminal::interrupt::{self, Saving};
+use arguments::{Launcher, SweepArguments};
+use execute::Job;
+use experiment::sweep::Shard;
+use frozen::FrozenSweep;
+use record::counted;
+use report::{run_table_csv, run_table_markdown};
+use results::{RunTable, SweepLine, SweepManifest, SweepState};
+use serde::Serialize;
+use serde_json::json;
+
+/// What a script is told: the table, and where everything is.
+#[derive(Serialize)]
+struct Answer<'a> {
+    folder: String,
+    #[serde(flatten)]
+    table: &'a RunTable,
+}
+
+/// Freezes or takes up, runs what is missing, puts the table together.
+pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
+    let cancel = interrupt::watch()?;
+    let mut sweep = frozen::settle(arguments)?;
+    if let Some(Launcher::Slurm) = arguments.launcher {
+        return slurm::launch(arguments, &sweep);
+    }
+    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    let output = arguments.output;
+    let jobs: Vec<Job<'_>> = sweep
+        .manifest
+        .runs
+        .iter()
+        .zip(&sweep.configs)
+        .enumerate()
+        .filter(|(position, (line, _))| shard.takes(*position) && is_missing(line, arguments.failed))
+        .map(|(_, (line, config))| (line, config.as_str()))
+        .collect();
+    if !output.quiet && !output.json {
+        let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
+        console::remark(&format!("sweep of {} in {path}, {} of them now", counted(all, "run"), jobs.len()));
+    }
+    let made = jobs.len();
+    execute::execute(&sweep, &jobs, arguments.threads(), output, cancel)?;
+    let _saving = Saving::begin();
+    let table = finish(&mut sweep)?;
+    let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
+    // Who asks to stop when the last run is done has missed it.
+    let interrupted = cancel.is_requested() && own().any(|(_, line)| is_missing(line, false));
+    let event = if interrupted { "interrupted" } else { "end" };
+    sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
+    let path = sweep.folder.path().display().to_string();
+    if output.json {
+        output.print(&Answer { folder: path.clone(), table: &table }, String::new)?;
+    } else if !output.quiet {
+        print_table(&table);
+        console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
+    }
+    if interrupted {
+        if !output.quiet {
+            console::remark(&format!("interrupted; trainer sweep --out {path} --resume goes on"));
+        }
+        return Ok(Outcome::Interrupted);
+    }
+    let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
+    Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
+}
+
+fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
+    match line.state {
+        SweepState::Pending | SweepState::Interrupted => true,
+        SweepState::Failed => failed_too,
+        SweepState::Done => false,
+    }
+}
+
+/// Whether a run is done and every row of it within its tolerance.
+fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
+    let name = of_sweep::run_name(manifest, line);
+    line.state == SweepState::Done
+        && table
+            .rows
+            .iter()
+            .filter(|row| row.run == name)
+            .all(|row| !row.state.is_bad() && row.pass != Some(false))
+}
+
+/// Writes the manifest, the table and the page until nothing has changed meanwhile: of several shares that end at
+/// the same time the last leaves them complete.
+fn finish(sweep: &mut FrozenSweep) -> Result<RunTable, TrainerError> {
+    loop {
+        sweep.folder.refresh(&mut sweep.manifest)?;
+        let table = of_sweep::table(&sweep.folder, &sweep.manifest);
+        let folder = sweep.folder.folder();
+        folder.write_json("result.json", &table)?;
+        folder.write("table.csv", run_table_csv(&table).as_bytes())?;
+        folder.write("table.md", run_table_markdown(&table).as_bytes())?;
+        write_report(folder)?;
+        let now = sweep.folder.manifest().map_err(SweepCommandError::Folder)?;
+        if now.is_none_or(|now| now.runs == sweep.manifest.runs) {
+            return Ok(table);
+        }
+    }
+}

@@ -1,0 +1,149 @@
+//! Asking the diagnosis: a process of its own for each group of cases, which gets that group's folder and nothing else.
+
+use super::arguments::TrialsArguments;
+use super::files::{self, WITHOUT};
+use super::open;
+use crate::error::TrainerError;
+use crate::error::TrialsError;
+use crate::terminal::console;
+use crate::terminal::progress::Progress;
+use estimator::Cancel;
+use results::{BatchResult, TrialsManifest};
+use runs::RunFolder;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Read;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// How often finished answers are counted.
+const LOOK: Duration = Duration::from_millis(50);
+/// How long a process that was asked to stop may go on, shorter than this one's own patience; its answers are written
+/// whole or not at all.
+const GRACE: Duration = Duration::from_millis(300);
+
+/// Has every case without an answer diagnosed; gives the messages of those that failed, `None` where interrupted.
+pub(crate) fn ask(
+    arguments: &TrialsArguments,
+    folder: &RunFolder,
+    manifest: &TrialsManifest,
+    cancel: &Cancel,
+) -> Result<Option<BTreeMap<String, String>>, TrainerError> {
+    let is_missing = |id: &str, group: &str| !folder.path().join(files::answer_name(group, id)).exists();
+    let missing = manifest.cases.iter().filter(|line| is_missing(&line.id, &line.group));
+    let mut groups: BTreeMap<&str, usize> = BTreeMap::new();
+    for line in missing.clone() {
+        *groups.entry(line.group.as_str()).or_default() += 1;
+    }
+    let missing_ids: Vec<&String> = missing.map(|line| &line.id).collect();
+    let count = missing_ids.len();
+    let truths = folder.path().join(files::TRUTHS);
+    if count > 0 && truths.exists() {
+        // What got no answer when it was asked gets none now.
+        let known = open::failed(folder)?;
+        if missing_ids.iter().all(|id| known.contains_key(id.as_str())) {
+            return Ok(Some(known));
+        }
+        return Err(TrialsError::Open { folder: truths.display().to_string(), missing: count }.into());
+    }
+    let silent = arguments.output.quiet || arguments.output.json;
+    let progress = Progress::over_cases(manifest.cases.len() as u64, silent);
+    let mut done = manifest.cases.len() - count;
+    progress.so_many_done(done as u64);
+    let mut failed = BTreeMap::new();
+    for (group, wanted) in groups {
+        let Some(result) = group_answers(arguments, folder.path(), group, cancel, &|answered| {
+            progress.so_many_done((done + answered) as u64);
+        })?
+        else {
+            progress.finish();
+            return Ok(None);
+        };
+        for case in result.failed {
+            progress.aside(|| console::error(&format!("{}: {}", case.id, case.message)));
+            failed.insert(case.id, case.message);
+        }
+        done += wanted;
+        progress.so_many_done(done as u64);
+    }
+    progress.finish();
+    Ok(Some(failed))
+}
+
+/// Diagnoses one group; `None` where interrupted.
+fn group_answers(
+    arguments: &TrialsArguments,
+    folder: &Path,
+    group: &str,
+    cancel: &Cancel,
+    answered: &dyn Fn(usize),
+) -> Result<Option<BatchResult>, TrialsError> {
+    let failed = |problem: String| TrialsError::Process { group: group.to_owned(), problem };
+    let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
+    let answers = folder.join("answers").join(group);
+    let before = names(&answers);
+    let mut command = Command::new(program);
+    command.arg("diagnose").arg("--batch").arg(folder.join("cases").join(group));
+    command.arg("--out").arg(&answers).arg("--json");
+    if let Some(threads) = arguments.run.threads {
+        command.args(["--threads", &threads.to_string()]);
+    }
+    if let Some(effect) = group.strip_prefix(WITHOUT) {
+        command.args(["--without", effect]);
+    }
+    let mut child = command
+        .stdin(Stdio::null())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .map_err(|error| failed(error.to_string()))?;
+    let (output, errors) = (drained(child.stdout.take()), drained(child.stderr.take()));
+    let status = watch(&mut child, cancel, &|| answered(names(&answers).difference(&before).count()));
+    let status = status.map_err(|error| failed(error.to_string()))?;
+    let text = output.join().unwrap_or_default();
+    if cancel.is_requested() || status == Some(130) {
+        return Ok(None);
+    }
+    // The process lists failed cases as errors too; what it says beside its result is heard where there is none.
+    serde_json::from_str(&text).map(Some).map_err(|_| {
+        let said = errors.join().unwrap_or_default();
+        let code = status.map_or_else(|| "a signal".to_owned(), |code| format!("exit code {code}"));
+        failed(format!("{code}: {}", said.trim()))
+    })
+}
+
+/// Waits for a process, counting meanwhile; once an interruption is requested, for a while only.
+fn watch(child: &mut Child, cancel: &Cancel, count: &dyn Fn()) -> std::io::Result<Option<i32>> {
+    let mut requested: Option<Instant> = None;
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status.code());
+        }
+        count();
+        if cancel.is_requested() {
+            // A terminal has asked the process to stop as well; a signal to this process alone has not.
+            let since = *requested.get_or_insert_with(Instant::now);
+            if since.elapsed() > GRACE {
+                child.kill()?;
+            }
+        }
+        std::thread::sleep(LOOK);
+    }
+}
+
+/// Reads a pipe to its end beside everything else: a full one would stop the process.
+fn drained(pipe: Option<impl Read + Send + 'static>) -> std::thread::JoinHandle<String> {
+    std::thread::spawn(move || {
+        let mut text = String::new();
+        if let Some(mut pipe) = pipe {
+            let _ = pipe.read_to_string(&mut text);
+        }
+        text
+    })
+}
+
+/// Names of the answers that are there.
+fn names(answers: &Path) -> BTreeSet<std::ffi::OsString> {
+    let entries = std::fs::read_dir(answers).into_iter().flatten().flatten();
+    entries.filter(|entry| entry.path().join(files::ANSWER).exists()).map(|entry| entry.file_name()).collect()
+}

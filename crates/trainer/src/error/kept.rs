@@ -1,0 +1,25 @@
+//! What an answer that is kept already can fail of.
+
+use thiserror::Error;
+
+/// Why an answer that is there is not the one that was asked for.
+#[derive(Debug, Error)]
+pub(crate) enum KeptError {
+    #[error(
+        "{folder}: was begun with another {what}: {kept}, now {asked}; ask as it was asked then, or name another folder with \
+         --out"
+    )]
+    AnotherQuestion { folder: String, what: String, kept: String, asked: String },
+    #[error(
+        "{record}: is not the record that was diagnosed: the answer in {answer} is on one with the digest {kept}, this one \
+         has {found}. Answers are never written over: name another folder with --out"
+    )]
+    AnotherRecord { record: String, answer: String, kept: String, found: String },
+    #[error(
+        "{nominal}: is not the simulator that was diagnosed: the answer in {answer} is for one with the digest {kept}, this \
+         one has {found}. Answers are never written over: name another folder with --out"
+    )]
+    AnotherNominal { nominal: String, answer: String, kept: String, found: String },
+    #[error("{answer}: is no diagnosis: {problem}; take it away, or name another folder with --out")]
+    NoDiagnosis { answer: String, problem: String },
+}

@@ -1,0 +1,232 @@
+//! What a command can fail of, and the exit code that belongs to it.
+
+mod kept;
+mod learn;
+mod resume;
+mod sweep;
+mod table;
+mod trials;
+
+use diagnosis::DiagnosisError;
+use envelope::EnvelopeError;
+use estimator::FitError;
+use identify::IdentifyError;
+use oracle::OracleError;
+use record::RecordError;
+use report::ReportError;
+use runs::RunError;
+use settings::{Origin, SettingsError};
+use simulator::GenerationError;
+use studies::StudyError;
+use thiserror::Error;
+use tracking::TrackingError;
+
+pub(crate) use kept::KeptError;
+pub(crate) use learn::LearnCommandError;
+pub(crate) use resume::ResumeError;
+pub(crate) use sweep::SweepCommandError;
+pub(crate) use table::TableError;
+pub(crate) use trials::TrialsError;
+
+/// Why a command gave no result.
+#[derive(Debug, Error)]
+pub(crate) enum TrainerError {
+    /// Neither a configuration nor a command.
+    #[error("name a configuration, for example configs/pinn.toml, or a command; --help shows both")]
+    NoConfig,
+    /// The configuration file could not be read.
+    #[error("{file}: cannot be read: {problem}; expected a TOML file, for example configs/pinn.toml")]
+    Config { file: String, problem: String },
+    #[error(transparent)]
+    Settings(#[from] SettingsError),
+    #[error(
+        "{origin}: this is a configuration for the task \"{task}\", which `trainer {file}` runs; `trainer {wanted}` needs one \
+         for the task \"{wanted}\", for example {example}"
+    )]
+    OtherTask { origin: Origin, file: String, task: String, wanted: &'static str, example: &'static str },
+    #[error(transparent)]
+    Record(#[from] RecordError),
+    /// A record that is not there, and of which the configuration says where it can be had.
+    #[error(
+        "{error}. It does not come with this project: get it from {source_of}, and name it with data.path=FILE"
+    )]
+    AbsentRecord { error: RecordError, source_of: String },
+    /// A file that states the truth of another record than the one that it lies beside.
+    #[error(
+        "{file} states the truth of a record {stated}, but {record} is {found}; remove it, or state the truth of this record"
+    )]
+    OtherTruth { file: String, record: String, stated: String, found: String },
+    #[error("{file}: {source}")]
+    Envelope { file: String, source: EnvelopeError },
+    #[error("{file}: {source}")]
+    Oracle { file: String, source: OracleError },
+    #[error("{estimator}, seed {seed}: {source}")]
+    Fit { estimator: &'static str, seed: u64, source: FitError },
+    #[error("{method}, seed {seed}: {source}")]
+    Classical { method: &'static str, seed: u64, source: OracleError },
+    #[error(
+        "{estimator}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps"
+    )]
+    NotFinite { estimator: &'static str, seed: u64 },
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    #[error(transparent)]
+    Tracking(#[from] TrackingError),
+    #[error("predict.methods and predict.problems leave nothing to fit")]
+    NothingToFit,
+    #[error("{file}: system {system}, record {record}: {source}")]
+    Generation { file: String, system: usize, record: usize, source: GenerationError },
+    /// A record named on the command line of a diagnosis, where options name columns.
+    #[error("{}", options_in(.0))]
+    DiagnosedRecord(RecordError),
+    #[error("{file}: {}", source.to_string().replace("unit = \"deg\"", "--unit deg"))]
+    Diagnosis { file: String, source: DiagnosisError },
+    #[error(
+        "{file}: the nominal simulator has an input_gain, so an input drives the system, but the record has no input \
+         column; name it with --input (the header has {columns})"
+    )]
+    MissingInput { file: String, columns: String },
+    #[error(
+        "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \
+         with --value, its unit with --unit, or set `coordinate` in the nominal simulator's file"
+    )]
+    OtherUnit { file: String, found: &'static str, expected: &'static str },
+    #[error(
+        "{file}: cannot be used: {problem}; expected a TOML file with inertia, damping, stiffness and rest_angle"
+    )]
+    Nominal { file: String, problem: String },
+    #[error(
+        "{record}: nothing to compare it with: name the simulator as it is with --nominal FILE; where there is none, \
+         `trainer init {record}` makes a first guess of one and prints the call that goes on from there"
+    )]
+    NoNominal { record: String },
+    #[error(
+        "{file}: is the configuration of an experiment, which `{command}` runs, not a nominal simulator; --nominal takes a TOML \
+         file with inertia, damping, stiffness and rest_angle: `trainer init LOG` writes one"
+    )]
+    NominalIsConfiguration { file: String, command: String },
+    #[error("{folder} is not empty; nothing that exists is overwritten: name another folder with --out")]
+    InitOccupied { folder: String },
+    #[error(
+        "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"
+    )]
+    SameRecord { first: String, second: String, digest: String },
+    #[error(transparent)]
+    Learn(#[from] LearnCommandError),
+    #[error(transparent)]
+    Kept(#[from] KeptError),
+    #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
+    Cases { folder: String, problem: String },
+    #[error(
+        "{folder}: there is no case in it; expected a folder for each, holding record-*.csv and nominal.toml"
+    )]
+    NoCases { folder: String },
+    #[error("{folder}: {problem}; expected the folder of a rig, holding record-*.csv and nominal.toml")]
+    NoRig { folder: String, problem: String },
+    #[error(
+        "--rigs {rig}: a rig alone has nothing to agree with; name several, or diagnose it with \
+         `trainer diagnose RECORD --nominal FILE`"
+    )]
+    OneRig { rig: String },
+    #[error("{file}: {source}")]
+    Identify { file: String, source: IdentifyError },
+    #[error(
+        "{log}: its name has no ending, so that a folder of that name cannot stand beside it; name one with --out"
+    )]
+    NoFolder { log: String },
+    #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
+    TooManySeeds { seed: u64 },
+    #[error(transparent)]
+    Trials(#[from] TrialsError),
+    #[error(transparent)]
+    Resume(#[from] ResumeError),
+    #[error(transparent)]
+    Sweep(#[from] SweepCommandError),
+    #[error(transparent)]
+    Table(#[from] TableError),
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
+    NoRun { folder: String, problem: String },
+    /// The result was printed to a place that took it not.
+    #[error("the result cannot be written to standard output: {problem}")]
+    Unprinted { problem: String },
+    /// Threads or signal handlers could not be set up.
+    #[error("cannot set up {what}: {problem}")]
+    System { what: &'static str, problem: String },
+}
+
+impl From<runs::SweepFolderError> for TrainerError {
+    fn from(error: runs::SweepFolderError) -> Self {
+        Self::Sweep(SweepCommandError::Folder(error))
+    }
+}
+
+impl TrainerError {
+    /// 2 for wrong input or usage, 1 for a failure that is not the user's.
+    pub(crate) fn exit_code(&self) -> u8 {
+        match self {
+            Self::NoConfig
+            | Self::Config { .. }
+            | Self::Settings(_)
+            | Self::OtherTask { .. }
+            | Self::Record(_)
+            | Self::AbsentRecord { .. }
+            | Self::OtherTruth { .. }
+            | Self::Envelope { .. }
+            | Self::Oracle { .. }
+            | Self::Classical { .. }
+            | Self::Study(_)
+            | Self::Tracking(_)
+            | Self::NothingToFit
+            | Self::Generation { .. }
+            | Self::DiagnosedRecord(_)
+            | Self::Diagnosis { .. }
+            | Self::MissingInput { .. }
+            | Self::OtherUnit { .. }
+            | Self::Nominal { .. }
+            | Self::NoNominal { .. }
+            | Self::NominalIsConfiguration { .. }
+            | Self::InitOccupied { .. }
+            | Self::SameRecord { .. }
+            | Self::Kept(_)
+            | Self::Learn(_)
+            | Self::Cases { .. }
+            | Self::NoCases { .. }
+            | Self::NoRig { .. }
+            | Self::OneRig { .. }
+            | Self::Identify { .. }
+            | Self::NoFolder { .. }
+            | Self::TooManySeeds { .. }
+            | Self::Trials(_)
+            | Self::Sweep(_)
+            | Self::Table(_)
+            | Self::Resume(_)
+            | Self::NoRun { .. }
+            | Self::Run(_)
+            | Self::Report(_)
+            | Self::Unprinted { .. } => 2,
+            Self::Fit { source: FitError::Backend { .. }, .. } => 1,
+            Self::Fit { .. } => 2,
+            Self::NotFinite { .. } | Self::System { .. } => 1,
+        }
+    }
+}
+
+/// A record's fault in terms of the command line: `data.time_unit` is --time-unit there.
+fn options_in(error: &RecordError) -> String {
+    in_options(&error.to_string())
+}
+
+/// A sentence that names keys of the section `data`, with the options in their place.
+pub(crate) fn in_options(text: &str) -> String {
+    let mut parts = text.split("`data.");
+    let mut told = parts.next().unwrap_or_default().to_owned();
+    for part in parts {
+        let (key, rest) = part.split_once('`').unwrap_or((part, ""));
+        told.push_str(&format!("--{}{rest}", key.trim_end_matches("_hz").replace('_', "-")));
+    }
+    told.replace("data.format = \"csv\"", "--format csv")
+}

@@ -1,0 +1,72 @@
+//! Whether pipelines and clocks agree on a record, in one sentence.
+
+use report::format;
+use results::{DataSummary, PipelineOutcome, PipelineRow};
+
+/// Distance between two answers, in standard errors of their difference, that is no chance.
+const PLAIN: f64 = 3.0;
+
+/// Distance between two angular frequencies that no peak's scatter makes, as a share: the median of periods does not average,
+/// and on a grid of 2 ms a period of 0.3 s is known to 0.35 %.
+const FREQUENCY: f64 = 0.01;
+
+/// The sentence that goes before any other where another way through the record gives another answer; `None` where all agree.
+pub(crate) fn disagreement(rows: &[PipelineRow], data: &DataSummary) -> Option<String> {
+    let fits: Vec<(&PipelineRow, [f64; 3])> = rows
+        .iter()
+        .filter_map(|row| match row.outcome {
+            PipelineOutcome::Fit { omega_rad_s, zeta, zeta_std_error, .. } => {
+                Some((row, [omega_rad_s, zeta, zeta_std_error]))
+            }
+            PipelineOutcome::Failed { .. } => None,
+        })
+        .collect();
+    let (own, [omega, zeta, error]) = *fits.iter().find(|(row, _)| row.in_force)?;
+    let apart = |other: &[f64; 3]| {
+        let [other_omega, other_zeta, other_error] = *other;
+        ((other_zeta - zeta).abs() / error.hypot(other_error), other_omega / omega - 1.0)
+    };
+    let differing: Vec<(&PipelineRow, f64, f64)> = fits
+        .iter()
+        .filter(|(row, _)| !row.in_force)
+        .map(|(row, other)| (*row, apart(other).0, apart(other).1))
+        .filter(|(_, errors, share)| *errors > PLAIN || share.abs() > FREQUENCY)
+        .collect();
+    let how = |(row, errors, share): &(&PipelineRow, f64, f64)| {
+        let zeta = (*errors > PLAIN).then(|| format!("ζ {errors:.1} standard errors away"));
+        let omega =
+            (share.abs() > FREQUENCY).then(|| format!("ω {} away", format::percent(100.0 * share.abs())));
+        let away: Vec<String> = zeta.into_iter().chain(omega).collect();
+        format!("{} puts {}", name(row), away.join(" and "))
+    };
+    let said: Vec<String> = differing.iter().map(how).collect();
+    (!said.is_empty()).then(|| {
+        format!(
+            "Pipelines or clocks disagree on this record: next to {}, in force, {}. {}",
+            name(own),
+            said.join("; "),
+            belief(own, data)
+        )
+    })
+}
+
+fn name(row: &PipelineRow) -> String {
+    format!("the {} pipeline on the {} clock", row.pipeline, row.clock)
+}
+
+/// Which answer to believe, and why.
+fn belief(own: &PipelineRow, data: &DataSummary) -> String {
+    let why = format!(
+        "it takes the samples as they are, on the clock that the record speaks for ({}); the paper's interpolates \
+         between the stamps",
+        data.believed_clock
+    );
+    if own.pipeline == "recommended" && own.clock == data.believed_clock {
+        format!("Believe the one in force: {why}.")
+    } else {
+        format!(
+            "Believe the recommended pipeline on the {} clock (data.clock=auto envelope.pipeline=recommended): {why}.",
+            data.believed_clock
+        )
+    }
+}

@@ -1,0 +1,77 @@
+//! One method on one seed. Nothing here knows what the oracle found.
+
+use crate::error::TrainerError;
+use crate::fits::method::{Method, Request};
+use crate::fits::watcher::{Place, Watcher};
+use crate::folders::resume::Ledger;
+use crate::terminal::progress::Progress;
+use envelope::Envelope;
+use estimator::{Estimate, Reached};
+use results::{SeedRow, TraceRow};
+use serde::{Deserialize, Serialize};
+
+/// One seed's fit.
+#[derive(Serialize, Deserialize)]
+pub(crate) struct SeedFit {
+    pub(crate) seed: u64,
+    pub(crate) estimate: Estimate,
+    pub(crate) trace: Vec<TraceRow>,
+    pub(crate) seconds: f64,
+}
+
+/// What a fit needs besides the method and the seed.
+pub(crate) struct FitSetting<'a> {
+    pub(crate) envelope: &'a Envelope,
+    pub(crate) request: Request<'a>,
+    pub(crate) progress: &'a Progress,
+    /// Where finished fits and the state of unfinished ones are kept.
+    pub(crate) ledger: Option<&'a Ledger>,
+}
+
+impl FitSetting<'_> {
+    /// Fits and times; goes on with a fit that was kept, finished or not.
+    pub(crate) fn fit(&self, method: &Method, seed: u64) -> Result<SeedFit, TrainerError> {
+        let name = format!("{} seed {seed}", method.id());
+        if let Some(done) = self.ledger.map(|ledger| ledger.finished(&name)).transpose()?.flatten() {
+            return Ok(done);
+        }
+        let watcher = Watcher::new(self.progress, self.ledger.map(|ledger| Place { ledger, name: &name }))?;
+        let estimate = method
+            .fit(self.envelope, seed, &self.request, &watcher, Some(&watcher))
+            .map_err(|error| watcher.failure().unwrap_or(error))?;
+        let seconds = watcher.seconds();
+        let fit = SeedFit { seed, estimate, trace: watcher.into_trace(), seconds };
+        match self.ledger {
+            Some(ledger) if !fit.is_interrupted() => ledger.keep(&name, &fit, seconds)?,
+            _ => {}
+        }
+        Ok(fit)
+    }
+}
+
+impl SeedFit {
+    /// Whether it was stopped before its end.
+    pub(crate) fn is_interrupted(&self) -> bool {
+        self.estimate.stop.reached == Reached::Interrupted
+    }
+
+    /// The fit as a row, beside the oracle's decay rate.
+    pub(crate) fn row(&self, envelope: &Envelope, oracle: f64) -> SeedRow {
+        let rate = self.estimate.decay_rate;
+        SeedRow {
+            seed: self.seed,
+            decay_rate: rate,
+            zeta: envelope.damping_ratio(rate),
+            error_percent: scoring::error_percent(rate, oracle),
+            reached: self.estimate.stop.reached.name().to_owned(),
+            steps: self.estimate.steps,
+            seconds: self.seconds,
+        }
+    }
+}
+
+/// The seeds of an experiment.
+pub(crate) fn seeds(first: u64, count: u64) -> Result<std::ops::Range<u64>, TrainerError> {
+    let end = first.checked_add(count).ok_or(TrainerError::TooManySeeds { seed: first })?;
+    Ok(first..end)
+}

@@ -1,0 +1,126 @@
+//! Watches one fit: keeps its trace and, from time to time, its state, and moves the bar.
+
+use crate::error::TrainerError;
+use crate::folders::resume::{Ledger, Resumed};
+use crate::terminal::progress::Progress;
+use estimator::{Checkpoints, Observer, Step};
+use results::TraceRow;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A step that takes longer may be left in its middle (see [`crate::terminal::interrupt`]): so much work is worth a write.
+const LONG_STEP: Duration = Duration::from_millis(300);
+
+/// Where the state of a fit is kept, and under which name.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub(crate) ledger: &'a Ledger,
+    pub(crate) name: &'a str,
+}
+
+/// Watches one fit.
+pub(crate) struct Watcher<'a> {
+    progress: &'a Progress,
+    place: Option<Place<'a>>,
+    begun: Instant,
+    /// Time spent on the fit by programs before this one.
+    earlier: Duration,
+    seen: Mutex<Seen>,
+}
+
+struct Seen {
+    trace: Vec<TraceRow>,
+    /// The state to go on from; taken once.
+    latest: Option<Vec<u8>>,
+    kept_at: Instant,
+    /// When it was last asked whether the state should be kept: before every step.
+    asked_at: Instant,
+    steps_since: u64,
+    /// Why a state could not be kept.
+    failure: Option<TrainerError>,
+}
+
+impl<'a> Watcher<'a> {
+    /// Watches a fit, with what an earlier program kept of it.
+    pub(crate) fn new(progress: &'a Progress, place: Option<Place<'a>>) -> Result<Self, TrainerError> {
+        let kept = place.map(|place| place.ledger.resumed(place.name)).transpose()?.flatten();
+        let (trace, latest, seconds) =
+            kept.map_or((Vec::new(), None, 0.0), |kept| (kept.trace, Some(kept.state), kept.seconds));
+        let begun = Instant::now();
+        Ok(Self {
+            progress,
+            place,
+            begun,
+            earlier: Duration::try_from_secs_f64(seconds).unwrap_or_default(),
+            seen: Mutex::new(Seen {
+                trace,
+                latest,
+                kept_at: begun,
+                asked_at: begun,
+                steps_since: 0,
+                failure: None,
+            }),
+        })
+    }
+
+    /// Time spent on the fit, in seconds.
+    pub(crate) fn seconds(&self) -> f64 {
+        (self.earlier + self.begun.elapsed()).as_secs_f64()
+    }
+
+    pub(crate) fn into_trace(self) -> Vec<TraceRow> {
+        self.seen.into_inner().unwrap_or_else(PoisonError::into_inner).trace
+    }
+
+    /// Why a state could not be kept, where that is why the fit failed.
+    pub(crate) fn failure(&self) -> Option<TrainerError> {
+        self.seen().failure.take()
+    }
+
+    fn seen(&self) -> MutexGuard<'_, Seen> {
+        self.seen.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Observer for Watcher<'_> {
+    fn observe(&self, step: &Step) {
+        self.progress.step(step);
+        self.seen().trace.push(TraceRow {
+            step: step.step,
+            phase: step.phase.clone(),
+            loss: step.loss,
+            decay_rate: step.decay_rate,
+        });
+    }
+}
+
+impl Checkpoints for Watcher<'_> {
+    fn latest(&self) -> Option<Vec<u8>> {
+        self.seen().latest.take()
+    }
+
+    fn is_due(&self) -> bool {
+        let Some(Place { ledger, .. }) = self.place else { return false };
+        let mut seen = self.seen();
+        seen.steps_since += 1;
+        let took = std::mem::replace(&mut seen.asked_at, Instant::now()).elapsed();
+        match ledger.settings.interval_steps {
+            Some(steps) => seen.steps_since >= steps,
+            None => took >= LONG_STEP || seen.kept_at.elapsed().as_secs_f64() >= ledger.settings.interval_s,
+        }
+    }
+
+    fn keep(&self, step: u64, state: &[u8]) -> Result<(), String> {
+        let Some(Place { ledger, name }) = self.place else { return Ok(()) };
+        let seconds = self.seconds();
+        let mut seen = self.seen();
+        let trace = seen.trace.iter().filter(|row| row.step < step).cloned().collect();
+        let outcome = ledger.keep_state(name, Resumed { state: state.to_vec(), trace, seconds });
+        (seen.kept_at, seen.steps_since) = (Instant::now(), 0);
+        outcome.map_err(|error| {
+            let sentence = error.to_string();
+            seen.failure = Some(error);
+            sentence
+        })
+    }
+}

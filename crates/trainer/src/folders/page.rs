@@ -1,0 +1,34 @@
+//! The page and the tables of a run, made from its folder's other files.
+
+use crate::error::TrainerError;
+use report::{RunTexts, comparison_markdown, prediction_markdown, render};
+use runs::RunFolder;
+use serde_json::Value;
+
+/// Writes `report.html` from the folder's other files.
+pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {
+    let texts = folder.texts()?;
+    let html = render(&RunTexts {
+        name: &texts.name,
+        config: &texts.config,
+        result: &texts.result,
+        trace: &texts.trace,
+        envelope: &texts.envelope,
+        predictions: &texts.predictions,
+        series: &texts.series,
+        environment: &texts.environment,
+    })?;
+    folder.write("report.html", html.as_bytes())?;
+    Ok(())
+}
+
+/// The tables that the folder's result makes, where its task has some.
+pub(crate) fn tables(folder: &RunFolder) -> Result<Option<String>, TrainerError> {
+    let result = folder.texts()?.result;
+    let task = serde_json::from_str::<Value>(&result).unwrap_or_default();
+    Ok(match task.get("task").and_then(Value::as_str) {
+        Some("compare") => Some(comparison_markdown(&result)?),
+        Some("predict") => Some(prediction_markdown(&result)?),
+        _ => None,
+    })
+}

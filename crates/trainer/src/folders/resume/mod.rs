@@ -1,0 +1,249 @@
+//! Beginning a run, or going on with one that was begun: to the bit what it would have been in one go.
+
+mod difference;
+mod ledger;
+
+use crate::error::{ResumeError, TrainerError};
+use crate::folders::environment::{self, Environment};
+use crate::options::ExperimentArguments;
+use crate::outcome::Outcome;
+use crate::terminal::console;
+use difference::differences;
+use experiment::Experiment;
+pub(crate) use ledger::{Ledger, Resumed};
+use runs::{Disk, RunFolder, digest};
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+use std::path::Path;
+
+/// The events that say how far a run is.
+const START: &str = "start";
+const RESUME: &str = "resume";
+const INTERRUPTED: &str = "interrupted";
+const END: &str = "end";
+/// The event of a run that failed, of which another attempt is made elsewhere.
+pub(crate) const FAILED: &str = "failed";
+
+/// A record file of a run.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct DataFile {
+    /// As configured.
+    pub(crate) path: String,
+    pub(crate) digest: String,
+}
+
+/// What a run is made of; whoever resumes it has to bring the same.
+pub(crate) struct Beginning<'a> {
+    pub(crate) name: &'a str,
+    pub(crate) seed: u64,
+    /// The resolved configuration, which becomes `config.toml`.
+    pub(crate) config: String,
+    pub(crate) data: Vec<DataFile>,
+    pub(crate) threads: usize,
+}
+
+impl<'a> Beginning<'a> {
+    /// Of an experiment on one record, with the text that is to be its `config.toml`.
+    pub(crate) fn of(experiment: &'a Experiment, digest: &str, config: String, threads: usize) -> Self {
+        let data = DataFile { path: experiment.data.path.clone(), digest: digest.to_owned() };
+        Self { name: &experiment.name, seed: experiment.seed, config, data: vec![data], threads }
+    }
+}
+
+/// The details of the event `start`: what the run is made of, in digests.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Start {
+    name: String,
+    seed: u64,
+    /// Version of the program.
+    version: String,
+    /// Digest of `config.toml`.
+    config: String,
+    pub(crate) data: Vec<DataFile>,
+}
+
+/// A run that is open for work, or one that needs none.
+pub(crate) enum Begun {
+    Open(RunFolder),
+    Finished(Outcome),
+}
+
+/// The folder of a run that was taken up again.
+pub(crate) enum TakenUp {
+    /// There is work left.
+    Open(RunFolder),
+    /// The run is finished.
+    Finished(RunFolder),
+}
+
+/// Makes the run's folder, or goes on with the one that the arguments name and `--resume` allows.
+pub(crate) fn begin(
+    arguments: &ExperimentArguments,
+    beginning: &Beginning<'_>,
+) -> Result<Begun, TrainerError> {
+    let Some(out) = arguments.run.out.as_ref().filter(|_| arguments.run.resume) else {
+        return start(arguments.new_folder(beginning.name)?, beginning).map(Begun::Open);
+    };
+    let remark = |words: &str| {
+        if !arguments.output.quiet {
+            console::remark(words);
+        }
+    };
+    match take_up(&arguments.disk, out, beginning, &remark)? {
+        TakenUp::Open(folder) => Ok(Begun::Open(folder)),
+        TakenUp::Finished(folder) => finished(arguments, &folder).map(Begun::Finished),
+    }
+}
+
+/// Goes on with the run in a folder, or begins it there where it was killed before it had begun. `remark` is given what
+/// the user should know.
+pub(crate) fn take_up(
+    disk: &Disk,
+    path: &Path,
+    beginning: &Beginning<'_>,
+    remark: &dyn Fn(&str),
+) -> Result<TakenUp, TrainerError> {
+    let folder = RunFolder::resume_on(disk, path)?;
+    let log = folder.events()?;
+    let shown = path.display();
+    if let Some(line) = log.torn_line {
+        remark(&format!("{shown}/events.jsonl:{line}: a crash cut the last line short; it is left out"));
+    }
+    let Some(begun) = started(&folder)? else {
+        // Killed before anything was computed, or nothing there yet.
+        return match folder.holds_only(&["config.toml", "environment.json", "events.jsonl"])? {
+            true => start(folder, beginning).map(TakenUp::Open),
+            false => Err(ResumeError::NoRun { folder: shown.to_string() }.into()),
+        };
+    };
+    check(&folder, &begun, beginning)?;
+    if log.last(END).is_some() {
+        // A kill after the last event may have left some.
+        folder.remove_checkpoints()?;
+        return Ok(TakenUp::Finished(folder));
+    }
+    check_data(&begun, &beginning.data)?;
+    let ground = environment::changes(&folder.read("environment.json")?, &environment_of(beginning));
+    remark(&format!("resuming {shown}"));
+    for change in &ground {
+        remark(&format!("note: {change}; last digits may differ from those of a run in one go"));
+    }
+    folder.record_event(RESUME, &json!({ "changes": ground }))?;
+    Ok(TakenUp::Open(folder))
+}
+
+/// Begins a run in a folder of its own.
+pub(crate) fn start(folder: RunFolder, beginning: &Beginning<'_>) -> Result<RunFolder, TrainerError> {
+    let config = &beginning.config;
+    folder.write("config.toml", config.as_bytes())?;
+    folder.write_json("environment.json", &environment_of(beginning))?;
+    let start = Start {
+        name: beginning.name.to_owned(),
+        seed: beginning.seed,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        config: digest(config.as_bytes()),
+        data: beginning.data.clone(),
+    };
+    folder.record_event(START, &start)?;
+    Ok(folder)
+}
+
+fn environment_of(beginning: &Beginning<'_>) -> Environment {
+    let digests: Vec<&str> = beginning.data.iter().map(|data| data.digest.as_str()).collect();
+    Environment::new(beginning.threads, &digests.join(" "))
+}
+
+/// What a run was begun with; `None` where its log does not say that it was.
+pub(crate) fn started(folder: &RunFolder) -> Result<Option<Start>, TrainerError> {
+    let Some(event) = folder.events()?.last(START).cloned() else { return Ok(None) };
+    let begun = serde_json::from_value(event.details);
+    begun.map(Some).map_err(|_| {
+        let shown = folder.path().display().to_string();
+        let asks = |command| ResumeError::OfAnotherCommand { folder: shown.clone(), command };
+        let holds = |file| folder.path().join(file).exists();
+        if holds("diagnosis.json") {
+            asks("diagnose").into()
+        } else if holds("cases") {
+            asks("trials").into()
+        } else {
+            ResumeError::NoRun { folder: shown }.into()
+        }
+    })
+}
+
+/// Whether the last word of a run's log is that it is finished.
+pub(crate) fn is_finished(folder: &RunFolder) -> Result<bool, TrainerError> {
+    Ok(folder.events()?.last(END).is_some())
+}
+
+/// The configuration of a run, if it is still what the run was begun with.
+pub(crate) fn config_of(folder: &RunFolder, begun: &Start) -> Result<String, TrainerError> {
+    let bytes = folder.read("config.toml")?;
+    let touched =
+        || ResumeError::ConfigTouched { file: folder.path().join("config.toml").display().to_string() };
+    if digest(&bytes) != begun.config {
+        return Err(touched().into());
+    }
+    Ok(String::from_utf8(bytes).map_err(|_| touched())?)
+}
+
+/// That this program with this configuration began the run.
+fn check(folder: &RunFolder, begun: &Start, beginning: &Beginning<'_>) -> Result<(), TrainerError> {
+    let shown = folder.path().display().to_string();
+    let version = env!("CARGO_PKG_VERSION");
+    if begun.version != version {
+        return Err(ResumeError::OtherVersion { folder: shown, begun: begun.version.clone(), version }.into());
+    }
+    let differences = differences(&config_of(folder, begun)?, &beginning.config)?;
+    if differences.is_empty() {
+        return Ok(());
+    }
+    Err(ResumeError::OtherConfig { folder: shown, differences: differences.join("; ") }.into())
+}
+
+/// That the records are those that the run was begun with.
+pub(crate) fn check_data(begun: &Start, data: &[DataFile]) -> Result<(), ResumeError> {
+    for expected in &begun.data {
+        let found = data.iter().find(|found| found.path == expected.path);
+        if found != Some(expected) {
+            return Err(ResumeError::OtherData {
+                file: expected.path.clone(),
+                expected: expected.digest.clone(),
+                found: found.map_or_else(|| "nothing".to_owned(), |found| found.digest.clone()),
+            });
+        }
+    }
+    Ok(())
+}
+
+/// A finished run is shown as it is, and ends as it ended: one that failed its check has not passed since.
+fn finished(arguments: &ExperimentArguments, folder: &RunFolder) -> Result<Outcome, TrainerError> {
+    if arguments.output.json {
+        console::result(String::from_utf8_lossy(&folder.read("result.json")?).trim_end());
+    } else if !arguments.output.quiet {
+        console::result(&format!("{}: this run is finished; nothing was changed", folder.path().display()));
+    }
+    let log = folder.events()?;
+    let has_failed = log.last(END).is_some_and(|end| end.details.get("pass") == Some(&false.into()));
+    Ok(if has_failed { Outcome::CheckFailed } else { Outcome::Done })
+}
+
+/// Writes the last event: that the run is finished, or where to go on. A finished run needs no checkpoints.
+pub(crate) fn end(
+    folder: &RunFolder,
+    interrupted: bool,
+    quiet: bool,
+    details: &impl Serialize,
+) -> Result<(), TrainerError> {
+    if interrupted {
+        folder.record_event(INTERRUPTED, details)?;
+        if !quiet {
+            let shown = folder.path().display();
+            console::remark(&format!("interrupted; go on with the same command, --out {shown} and --resume"));
+        }
+        return Ok(());
+    }
+    folder.record_event(END, details)?;
+    folder.remove_checkpoints()?;
+    Ok(())
+}

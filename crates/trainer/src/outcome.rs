@@ -1,0 +1,23 @@
+//! How a command ends.
+
+/// How a command that gave a result ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Outcome {
+    /// Done, and every stated check holds.
+    Done,
+    /// Done, but a stated check failed.
+    CheckFailed,
+    /// Stopped on request; the best so far is saved.
+    Interrupted,
+}
+
+impl Outcome {
+    /// The exit code that says so.
+    pub(crate) fn exit_code(self) -> u8 {
+        match self {
+            Self::Done => 0,
+            Self::CheckFailed => 1,
+            Self::Interrupted => 130,
+        }
+    }
+}

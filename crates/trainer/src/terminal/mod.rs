@@ -1,0 +1,7 @@
+//! What stands between the program and the one who runs it: output, progress, interruption.
+
+pub(crate) mod console;
+pub(crate) mod interrupt;
+pub(crate) mod progress;
+pub(crate) mod quit;
+pub(crate) mod table;

@@ -1,0 +1,135 @@
+//! Progress: bars on a terminal, plain lines elsewhere.
+
+use crate::terminal::console;
+use crate::terminal::table::two_digits;
+use estimator::Step;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use results::SeedRow;
+use std::fmt::Display;
+use std::io::IsTerminal;
+
+/// Progress over the fits of an experiment; of a single one, over its steps.
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    unit: &'static str,
+    counts_steps: bool,
+    lines: bool,
+}
+
+impl Progress {
+    /// Over the steps of one seed, or over several seeds.
+    pub(crate) fn over_seeds(seeds: u64, quiet: bool) -> Self {
+        let unit = if seeds == 1 { "steps" } else { "seeds" };
+        Self::new(seeds, unit, seeds == 1, quiet)
+    }
+
+    /// Over the fits of several methods.
+    pub(crate) fn over_fits(fits: u64, quiet: bool) -> Self {
+        Self::new(fits, "fits", false, quiet)
+    }
+
+    /// Over the runs of a sweep.
+    pub(crate) fn over_runs(runs: u64, quiet: bool) -> Self {
+        Self::new(runs, "runs", false, quiet)
+    }
+
+    /// Over the records of a simulation.
+    pub(crate) fn over_records(records: u64, quiet: bool) -> Self {
+        Self::new(records, "records", false, quiet)
+    }
+
+    /// Over the cases of a batch.
+    pub(crate) fn over_cases(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases", false, quiet)
+    }
+
+    /// Over the cases of trials, as they are made.
+    pub(crate) fn over_cases_made(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases made", false, quiet)
+    }
+
+    /// Over the cases of trials, as their truths are opened and simpler diagnosers asked.
+    pub(crate) fn over_cases_opened(cases: u64, quiet: bool) -> Self {
+        Self::new(cases, "cases opened", false, quiet)
+    }
+
+    fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
+        let terminal = std::io::stderr().is_terminal();
+        let bar = ProgressBar::with_draw_target(Some(length), ProgressDrawTarget::hidden());
+        if terminal && !quiet {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+        let template = format!("{{bar:30}} {{pos}}/{{len}} {unit}, {{eta}} left  {{wide_msg}}");
+        if let Ok(style) = ProgressStyle::with_template(&template) {
+            bar.set_style(style);
+        }
+        Self { bar, unit, counts_steps, lines: !terminal && !quiet }
+    }
+
+    /// A step of the only fit.
+    pub(crate) fn step(&self, step: &Step) {
+        if self.counts_steps {
+            self.bar.set_length(step.planned);
+            self.bar.set_position(step.step);
+            self.bar.set_message(format!("loss {:.3e}, λ {:.9} 1/s", step.loss, step.decay_rate));
+        }
+    }
+
+    /// A fit that is done, or why it is not.
+    pub(crate) fn fit_done<E: Display>(&self, method: &str, seed: u64, fit: Result<&SeedRow, E>) {
+        let line = match fit {
+            Ok(row) => format!(
+                "{method}, seed {seed}: {} after {} steps, {:.2} s, error {} %",
+                row.reached,
+                row.steps,
+                row.seconds,
+                two_digits(row.error_percent)
+            ),
+            Err(error) => format!("{method}, seed {seed}: FAILED: {error}"),
+        };
+        if self.lines {
+            console::remark(&line);
+        }
+        if !self.counts_steps {
+            self.bar.inc(1);
+            self.bar.set_message(line);
+        }
+    }
+
+    /// A run that came to its end, and what became of it.
+    pub(crate) fn run_done(&self, said: &str) {
+        self.bar.inc(1);
+        if self.lines {
+            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            console::remark(&format!("{done} of {all}: {said}"));
+        }
+        self.bar.set_message(said.to_owned());
+    }
+
+    /// One more of very many is done: a line for every tenth part of them.
+    pub(crate) fn one_of_many_done(&self) {
+        self.bar.inc(1);
+        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
+            console::remark(&format!("{done} of {all} {}", self.unit));
+        }
+    }
+
+    /// So many of very many are done: a line wherever another tenth part of them is.
+    pub(crate) fn so_many_done(&self, done: u64) {
+        let (before, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        self.bar.set_position(done);
+        if self.lines && all > 0 && done * 10 / all > before * 10 / all {
+            console::remark(&format!("{done} of {all} {}", self.unit));
+        }
+    }
+
+    /// Prints something without tearing the bar.
+    pub(crate) fn aside(&self, print: impl FnOnce()) {
+        self.bar.suspend(print);
+    }
+
+    pub(crate) fn finish(&self) {
+        self.bar.finish_and_clear();
+    }
+}
