@@ -122,6 +122,9 @@ def table(cases):
     lead = [case.classes.get(case.effects[0]["class"], 0.0) for case in composite]
     rows = [("cases; without an answer", f"{len(cases)}; {sum(not case.answered for case in cases)}")]
     rows.append(("composite: leading class at 0.9 or more", share(p >= 0.9 for p in lead)))
+    # A constant torque moves the rest position, and so does a rest angle that is off: one record cannot tell.
+    told = [p for case, p in zip(composite, lead) if case.effects[0]["id"] != "constant_torque"]
+    rows.append(("composite: the same, where it is no constant torque", share(p >= 0.9 for p in told)))
     rows.append(("composite: leading class's median probability", f"{median(lead):.3f}"))
     rows.append(("composite: leading class named", share(case.effects[0]["class"] in case.named_classes for case in composite)))
     rows.append(("composite: set of classes right", share(case.present == case.named_classes - case.open for case in composite)))

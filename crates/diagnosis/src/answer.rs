@@ -85,6 +85,9 @@ pub struct EffectClass {
     pub id: &'static str,
     /// Probability that the system has it.
     pub probability: f64,
+    /// Where another class would take its place nearly as well, and less well than it takes the other's: the probability that
+    /// one of the two acts.
+    pub either: Option<f64>,
     /// Shapley share of the gap that the repaired simulator closes, for classes of the verdict.
     pub gap_share: Option<Interval>,
     /// Its members that were fitted, the most probable first.

@@ -66,9 +66,17 @@ impl Parts<'_> {
     }
 }
 
+/// Probability from which on one of two classes acts for certain, though it can't be told which.
+const CERTAIN: f64 = 0.9;
+
+/// Whether a class is likelier there than not, or the better one of two of which one certainly is.
+fn is_likely(class: &EffectClass) -> bool {
+    class.probability >= LIKELY || class.either.is_some_and(|either| either >= CERTAIN)
+}
+
 /// Classes that are likelier there than not.
 pub(crate) fn likely(classes: &[EffectClass]) -> Vec<&'static str> {
-    classes.iter().filter(|class| class.probability >= LIKELY).map(|class| class.id).collect()
+    classes.iter().filter(|class| is_likely(class)).map(|class| class.id).collect()
 }
 
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
@@ -174,6 +182,7 @@ pub(crate) fn classes(parts: &Parts<'_>, effects: &[EffectProbability]) -> Vec<E
                 own.probability = own.probability.max(probability);
             }
             None => classes.push(EffectClass {
+                either: None,
                 id: class,
                 probability,
                 gap_share: None,
@@ -213,7 +222,7 @@ pub(crate) fn verdict(parts: &Parts<'_>) -> Verdict {
         }
     }
     // Classes that are likely, and that the best set of these does not have.
-    for class in parts.classes.iter().filter(|class| class.probability >= LIKELY) {
+    for class in parts.classes.iter().filter(|class| is_likely(class)) {
         let is_named = parts.named().iter().any(|own| own.counts() && own.evidence_class().id() == class.id);
         effects.extend(class.kinds.first().filter(|_| !is_named).map(|kind| kind.id));
     }

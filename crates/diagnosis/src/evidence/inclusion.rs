@@ -9,15 +9,17 @@ use crate::data::segments::Data;
 use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
+use crate::evidence::left_over::unexplained;
 use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::{Doubt, probability};
-use crate::evidence::weights::{Weighed, price, share};
+use crate::evidence::weights::{Weighed, acts, price, share};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::noise::floor;
 use crate::search::archive::vanished;
 use crate::search::proposals::proposal;
+use dynamics::DynamicsError;
 use nalgebra::DVector;
 use seed::Seed;
 
@@ -67,6 +69,8 @@ pub(crate) struct Inclusion<'a> {
     /// Log likelihood of the recalibrated simulator.
     bare: f64,
     vocabulary: usize,
+    /// Probability that something is left beside the best set.
+    left_over: f64,
 }
 
 struct Left {
@@ -83,12 +87,16 @@ const TOLD: f64 = 0.9;
 
 impl<'a> Inclusion<'a> {
     /// Weighs sets by what they predict of `segments`; the recalibrated simulator, `bare`, is the empty one.
+    ///
+    /// # Errors
+    /// What the dynamics refuse.
     pub(crate) fn of<'b>(
+        data: &Data,
         segments: &Data,
         predictions: &'b Predictions<'a>,
         bare: &'a Fit,
         vocabulary: usize,
-    ) -> Self {
+    ) -> Result<Self, DynamicsError> {
         let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
         let sets = predictions.sets.iter().map(own).chain([(bare, &predictions.recalibrated)]);
         let sets: Vec<(&'a Fit, &'b HeldOut)> = sets.collect();
@@ -102,12 +110,19 @@ impl<'a> Inclusion<'a> {
             .into_iter()
             .map(|(fit, held)| {
                 let powers = likelihood.powers(&held.continued);
-                let price = price(segments, fit, vocabulary);
-                let evidence = likelihood.log_of(&powers, &whole) - price;
+                let evidence = likelihood.log_of(&powers, &whole);
                 let error = held.mean_square().sqrt();
-                (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers, price })
+                (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers, price: 0.0 })
             })
             .collect();
+        let of_certain =
+            |own: &(Weighed<'_>, Left)| own.0.evidence - price(segments, own.0.fit, vocabulary, 0.0);
+        let closest = all.iter().max_by(|a, b| of_certain(a).total_cmp(&of_certain(b)));
+        let left_over = acts(unexplained(data, closest.map_or(bare, |own| own.0.fit))?.evidence);
+        for (set, left) in &mut all {
+            left.price = price(segments, set.fit, vocabulary, left_over);
+            set.evidence -= left.price;
+        }
         let base = all.last().map_or(0.0, |bare| bare.0.evidence);
         all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
         let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();
@@ -115,17 +130,51 @@ impl<'a> Inclusion<'a> {
         for w in &mut weighed {
             w.evidence -= base;
         }
-        Self { weighed, left, likelihood, bare: base, vocabulary }
+        Ok(Self { weighed, left, likelihood, bare: base, vocabulary, left_over })
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
-    pub(crate) fn classes(&self, witness: Option<&Witness>, doubt: Doubt, seed: &Seed) -> Vec<EffectClass> {
+    ///
+    /// `odds` are the prior odds of a class.
+    pub(crate) fn classes(&self, witness: Option<&Witness>, odds: f64, seed: &Seed) -> Vec<EffectClass> {
+        let doubt = Doubt { left_over: self.left_over, odds };
         let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
-        EvidenceClass::among(members)
+        let (ids, mut rows): (Vec<EvidenceClass>, Vec<EffectClass>) = EvidenceClass::among(members)
             .into_iter()
-            .filter_map(|class| self.class(class, witness, doubt, seed))
-            .collect()
+            .filter_map(|class| Some((class, self.class(class, witness, doubt, seed)?)))
+            .unzip();
+        let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
+        for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
+            for (other, beside) in ids.iter().enumerate().filter(|(other, _)| *other != place) {
+                let (Some(own), Some(rival)) = (known.get(place), known.get(other)) else { continue };
+                let Some(either) = self.either(*class, *beside, doubt) else { continue };
+                row.probability = row.probability.max(either * own / (own + rival));
+                let is_better = own > rival || own == rival && place < other;
+                if is_better {
+                    row.either = Some(row.either.map_or(either, |known| known.max(either)));
+                }
+            }
+        }
+        rows
+    }
+
+    /// Probability that one of two classes acts that take each other's place; none where they do not.
+    fn either(&self, one: EvidenceClass, other: EvidenceClass, doubt: Doubt) -> Option<f64> {
+        let place = |has: &dyn Fn(&Fit) -> bool| self.weighed.iter().position(|w| has(w.fit));
+        let with_one = place(&|fit| holds(fit, one))?;
+        let with_other = place(&|fit| holds(fit, other))?;
+        let neither = place(&|fit| !holds(fit, one) && !holds(fit, other))?;
+        let set = |at: usize| self.weighed.get(at).map(|w| w.fit);
+        if holds(set(with_one)?, other) || holds(set(with_other)?, one) {
+            return None;
+        }
+        let best = with_one.min(with_other);
+        let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
+        let error = |at: usize| self.left.get(at).map_or(0.0, |left| left.error);
+        let replacement = evidence(best) - evidence(neither);
+        let shown = ClassEvidence { replacement, half_swings: None };
+        Some(probability(&shown, error(neither) / error(best), doubt))
     }
 
     fn class(
@@ -142,6 +191,7 @@ impl<'a> Inclusion<'a> {
         let mut class_row = EffectClass {
             id: class.id(),
             probability: 0.0,
+            either: None,
             gap_share: None,
             kinds: self.kinds(class),
             kind_is_told: self.is_kind_told(class),
@@ -153,7 +203,8 @@ impl<'a> Inclusion<'a> {
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
         };
-        class_row.probability = probability(&class_row, doubt);
+        let ratio = class_row.error_without / class_row.error_with;
+        class_row.probability = probability(&class_row.evidence, ratio, doubt);
         Some(class_row)
     }
 
@@ -193,7 +244,9 @@ impl<'a> Inclusion<'a> {
     pub(crate) fn evidence(&self, segments: &Data, set: &Predicted<'_>) -> f64 {
         let whole: Vec<usize> = (0..set.after.residuals.len()).collect();
         let powers = self.likelihood.powers(&set.after.continued);
-        self.likelihood.log_of(&powers, &whole) - price(segments, set.followed, self.vocabulary) - self.bare
+        self.likelihood.log_of(&powers, &whole)
+            - price(segments, set.followed, self.vocabulary, self.left_over)
+            - self.bare
     }
 
     /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.

@@ -20,7 +20,7 @@
 //! that share no code with the fits, and banks with another seed, other ranges and other laws score it
 //! (`reports/trials/README.md`).
 
-use crate::answer::EffectClass;
+use crate::answer::ClassEvidence;
 
 /// Coefficients of the logistic function.
 struct Learned {
@@ -50,42 +50,31 @@ fn logistic(log_odds: f64) -> f64 {
     1.0 / (1.0 + (-log_odds).exp())
 }
 
-/// The probability of a class, from what speaks for it.
-pub(crate) fn probability(class: &EffectClass, doubt: Doubt) -> f64 {
-    let ratio = class.error_without / class.error_with;
+/// The probability of a class, from what speaks for it and the ratio of the held-out errors without it and with it.
+pub(crate) fn probability(evidence: &ClassEvidence, ratio: f64, doubt: Doubt) -> f64 {
     let error = if ratio.is_finite() && ratio > 0.0 { ratio.ln() } else { 0.0 };
     let learned = LEARNED.constant
-        + LEARNED.replacement * compressed(class.evidence.replacement)
-        + LEARNED.half_swings * class.evidence.half_swings.map_or(0.0, compressed)
+        + LEARNED.replacement * compressed(evidence.replacement)
+        + LEARNED.half_swings * evidence.half_swings.map_or(0.0, compressed)
         + LEARNED.error * error;
-    let stated = class.evidence.replacement + doubt.odds.ln();
+    let stated = evidence.replacement + doubt.odds.ln();
     doubt.left_over * logistic(learned) + (1.0 - doubt.left_over) * logistic(stated)
 }
 
 #[cfg(test)]
 mod tests {
     use super::{Doubt, probability};
-    use crate::answer::{ClassEvidence, EffectClass};
+    use crate::answer::ClassEvidence;
 
-    fn class(replacement: f64, half_swings: Option<f64>, error_without: f64) -> EffectClass {
-        EffectClass {
-            id: "friction",
-            probability: 0.0,
-            gap_share: None,
-            kinds: Vec::new(),
-            kind_is_told: false,
-            error_without,
-            error_with: 1.0,
-            stability: 1.0,
-            evidence: ClassEvidence { replacement, half_swings },
-        }
+    fn of_class(replacement: f64, half_swings: Option<f64>, ratio: f64, doubt: Doubt) -> f64 {
+        probability(&ClassEvidence { replacement, half_swings }, ratio, doubt)
     }
 
     const DOUBTED: Doubt = Doubt { left_over: 1.0, odds: 0.01 };
 
     #[test]
     fn a_class_is_the_surer_the_more_speaks_for_it() {
-        let of = |nats, swings, error| probability(&class(nats, swings, error), DOUBTED);
+        let of = |nats, swings, error| of_class(nats, swings, error, DOUBTED);
         assert!(of(100.0, Some(10.0), 3.0) > of(10.0, Some(10.0), 3.0));
         assert!(of(10.0, Some(10.0), 3.0) > of(10.0, Some(1.0), 3.0));
         assert!(of(10.0, None, 3.0) > of(10.0, None, 1.0));
@@ -94,23 +83,23 @@ mod tests {
     /// A class that nothing asks for is improbable, and one that everything does is certain.
     #[test]
     fn its_ends() {
-        assert!(probability(&class(-5.0, Some(-3.0), 0.95), DOUBTED) < 0.1);
-        assert!(probability(&class(200.0, Some(60.0), 10.0), DOUBTED) > 0.95);
+        assert!(of_class(-5.0, Some(-3.0), 0.95, DOUBTED) < 0.1);
+        assert!(of_class(200.0, Some(60.0), 10.0, DOUBTED) > 0.95);
     }
 
     /// Where nothing is left evidence of ln 100 makes prior odds of one in a hundred even.
     #[test]
     fn evidence_is_what_it_says_where_nothing_is_left() {
         let clean = Doubt { left_over: 0.0, odds: 0.01 };
-        assert!((probability(&class(100.0_f64.ln(), None, 1.01), clean) - 0.5).abs() < 1e-12);
-        assert!(probability(&class(15.0, None, 1.01), clean) > 0.99);
-        assert!(probability(&class(15.0, None, 1.01), DOUBTED) < 0.5);
+        assert!((of_class(100.0_f64.ln(), None, 1.01, clean) - 0.5).abs() < 1e-12);
+        assert!(of_class(15.0, None, 1.01, clean) > 0.99);
+        assert!(of_class(15.0, None, 1.01, DOUBTED) < 0.5);
     }
 
     #[test]
     fn an_error_that_is_no_number_says_nothing() {
-        let known = probability(&class(10.0, None, 1.0), DOUBTED);
-        assert_eq!(probability(&class(10.0, None, f64::NAN), DOUBTED), known);
-        assert_eq!(probability(&class(10.0, None, 0.0), DOUBTED), known);
+        let known = of_class(10.0, None, 1.0, DOUBTED);
+        assert_eq!(of_class(10.0, None, f64::NAN, DOUBTED), known);
+        assert_eq!(of_class(10.0, None, 0.0, DOUBTED), known);
     }
 }

@@ -70,7 +70,7 @@ impl<'a> Weighing<'a> {
         let parameters = fit.globals().saturating_sub(self.calibrated.globals()) + further_starts(fit);
         let fitted = parameter_price(parameters, self.likelihood.worth());
         let own = self.likelihood.log(&self.data.by_part(&fit.residuals));
-        own - self.bare - fitted - price(self.data, fit, self.vocabulary)
+        own - self.bare - fitted - price(self.data, fit, self.vocabulary, 1.0)
     }
 
     /// Every set with its probability, best first; the calibrated simulator alone is the empty one.
@@ -104,13 +104,14 @@ const SHAPE: f64 = 3.0;
 
 /// Log evidence that a set pays for its effects: each for having been chosen from a vocabulary, [`SHAPE`] for every such
 /// number, and [`FLEXIBLE`]. Held-out parts charge for what is fitted to noise; this is for what
-/// could have been fitted instead.
-pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize) -> f64 {
+/// could have been fitted instead. `left_over` is the probability that something is left beside the best set: where nothing
+/// is, there is nothing for a flexible effect to soak up.
+pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -> f64 {
     let of = |own: &Candidate| {
         let shapes = own.parameters(&data.facts).iter().filter(|parameter| parameter.shape).count();
         (vocabulary.max(2) as f64).ln()
             + SHAPE * shapes as f64
-            + if own.is_flexible() { FLEXIBLE } else { 0.0 }
+            + if own.is_flexible() { FLEXIBLE * left_over } else { 0.0 }
     };
     fit.hypothesis.candidates.iter().filter(|own| own.counts()).map(of).sum()
 }

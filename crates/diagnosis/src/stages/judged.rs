@@ -7,9 +7,6 @@ use crate::evidence::conclusion::likely;
 use crate::evidence::context::{Context, Held, Shift};
 use crate::evidence::half_swings::half_swings;
 use crate::evidence::inclusion::{Inclusion, asked};
-use crate::evidence::left_over::unexplained;
-use crate::evidence::probability::Doubt;
-use crate::evidence::weights::acts;
 use crate::fit::levenberg_marquardt::Fit;
 use std::cell::OnceCell;
 
@@ -37,16 +34,11 @@ impl<'a> Judged<'a> {
         let segments = &refined.segments;
         let mut predictions = work.predictions(&asked(&refined.weighed()))?;
         let bare = refined.archive.find(&[]).unwrap_or(&refined.base.calibrated);
-        let inclusion = Inclusion::of(segments, &predictions, bare, refined.candidates.len());
+        let inclusion = Inclusion::of(&refined.data, segments, &predictions, bare, refined.candidates.len())?;
         let frequency = request.simulator.angular_frequency();
         let swings = half_swings(request.records, &measured.free, frequency);
         let witness = swings.as_ref().map(|own| &own.witness);
-        let best = inclusion.weighed.first().map_or(bare, |w| w.fit);
-        let doubt = Doubt {
-            left_over: acts(unexplained(&refined.data, best)?.evidence),
-            odds: request.settings.false_alarm,
-        };
-        let classes = inclusion.classes(witness, doubt, &request.settings.seed);
+        let classes = inclusion.classes(witness, request.settings.false_alarm, &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
         let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();

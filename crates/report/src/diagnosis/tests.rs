@@ -211,7 +211,6 @@ fn every_status_has_its_words_and_a_rest_above_the_noise_its_caution() {
         ("calibration", "Only calibration"),
         ("effect", "Missing effect"),
         ("unknown", "a gap without a name"),
-        ("asleep", "not known to this report"),
     ] {
         result["verdict"]["status"] = json!(status);
         assert!(page(&result, "").contains(label), "{status}");
@@ -220,6 +219,14 @@ fn every_status_has_its_words_and_a_rest_above_the_noise_its_caution() {
     assert!(page(&result, "").contains("class=\"verdict good\""));
     result["gap"]["ratio_to_floor_interval_95"] = json!([5.0, 6.0]);
     assert!(page(&result, "").contains("class=\"verdict caution\""));
+}
+
+#[test]
+fn a_status_that_there_is_not_is_refused_with_those_that_there_are() {
+    let mut result = small();
+    result["verdict"]["status"] = json!("asleep");
+    let refused = render(&RunTexts { result: &result.to_string(), ..EMPTY }).unwrap_err().to_string();
+    assert!(refused.contains("unknown variant `asleep`, expected one of `none`, `calibration`"), "{refused}");
 }
 
 #[test]
