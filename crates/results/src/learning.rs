@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// The content of a learning study's `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnResult {
-    /// Always [`super::RESULT_SCHEMA`].
+    /// Always [`crate::RESULT_SCHEMA`].
     pub schema: String,
     /// What was asked for: `"learn"`.
     pub task: String,
@@ -73,8 +73,8 @@ pub struct LearnRow {
     pub id: String,
     /// Name in words.
     pub title: String,
-    /// `"learner"`, `"baseline"` or `"reference"`.
-    pub kind: String,
+    /// Part that it plays in the table.
+    pub kind: LearnKind,
     /// Scores on the test part; `None` where nothing was learned.
     pub test: Option<LearnTest>,
     /// Coefficients of the law by name, where the model is one.
@@ -87,12 +87,69 @@ pub struct LearnRow {
     pub parameters: usize,
     /// Wall time of the training, in seconds.
     pub seconds: f64,
-    /// `"converged"`, `"budget_spent"`, `"diverged"`, `"interrupted"` or `"failed"`.
-    pub reached: String,
+    /// How its training ended.
+    pub reached: LearnEnd,
     /// Why nothing was learned.
     pub failure: Option<String>,
     /// The model's file in the run's folder.
     pub model: Option<String>,
+}
+
+/// Part that a method plays in the table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LearnKind {
+    /// Learns from the records.
+    Learner,
+    /// Knows nothing, or what a simulator knows.
+    Baseline,
+    /// The true law, fitted: what nobody can do better.
+    Reference,
+}
+
+impl LearnKind {
+    /// The name as files and tables write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Learner => "learner",
+            Self::Baseline => "baseline",
+            Self::Reference => "reference",
+        }
+    }
+}
+
+/// How a training ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LearnEnd {
+    /// The method's own condition for a solution holds.
+    Converged,
+    /// The budget ended first.
+    BudgetSpent,
+    /// The loss grew without bound; the best state before is kept.
+    Diverged,
+    /// No step improves the fit, and the method's own condition does not hold either.
+    Stalled,
+    /// Stopped on request.
+    Interrupted,
+    /// Nothing was learned.
+    Failed,
+}
+
+impl LearnEnd {
+    /// The name as files and tables write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::BudgetSpent => "budget_spent",
+            Self::Diverged => "diverged",
+            Self::Stalled => "stalled",
+            Self::Interrupted => "interrupted",
+            Self::Failed => "failed",
+        }
+    }
 }
 
 /// Scores on records never seen. Errors that are not finite are `null`.

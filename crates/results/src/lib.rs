@@ -34,8 +34,8 @@ pub use estimation::{
 };
 pub use interval::WithInterval;
 pub use learning::{
-    LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTest,
-    LearnTorqueRow, LearnTraceRow,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
+    LearnTest, LearnTorqueRow, LearnTraceRow,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,

@@ -1,6 +1,6 @@
 //! The plots of a data set: free runs against the record, learned torques against the true ones, errors by method.
 
-use results::{LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
+use results::{LearnKind, LearnProblem, LearnRow, LearnSeriesRow, LearnTorqueRow};
 
 use crate::figures::{Figure, csv, figure, number};
 use crate::parse::Learning;
@@ -43,7 +43,7 @@ fn free_runs(
     };
     let drawn: Vec<(&LearnRow, Vec<&LearnSeriesRow>)> = rows
         .iter()
-        .filter(|row| row.kind != "reference")
+        .filter(|row| row.kind != LearnKind::Reference)
         .map(|row| (*row, of(&row.id)))
         .filter(|(_, found)| !found.is_empty())
         .take(MOST_RUNS)
@@ -154,16 +154,17 @@ fn torques(
 
 fn losses(id: &str, problem: &LearnProblem, rows: &[&LearnRow], learning: &Learning) -> Option<Figure> {
     let own: Vec<_> = learning.trace.iter().filter(|row| row.problem == problem.id).collect();
-    let series = rows.iter().filter(|row| row.kind == "learner").enumerate().map(|(index, row)| Series {
-        label: row.title.clone(),
-        hue: Hue::of_series(index),
-        mark: if index < 4 { Mark::Line } else { Mark::Dashes },
-        points: own
-            .iter()
-            .filter(|own| own.method == row.id)
-            .map(|own| (own.step as f64, own.train))
-            .collect(),
-    });
+    let series =
+        rows.iter().filter(|row| row.kind == LearnKind::Learner).enumerate().map(|(index, row)| Series {
+            label: row.title.clone(),
+            hue: Hue::of_series(index),
+            mark: if index < 4 { Mark::Line } else { Mark::Dashes },
+            points: own
+                .iter()
+                .filter(|own| own.method == row.id)
+                .map(|own| (own.step as f64, own.train))
+                .collect(),
+        });
     let plot = Plot {
         x: Axis::linear("training step"),
         y: Axis::log(format!("RMS residual while training ({})", problem.unit)),

@@ -5,7 +5,7 @@ mod figures;
 mod tests;
 
 use askama::Template;
-use results::{LearnProblem, LearnResult, LearnRow};
+use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
 
 use crate::figures::Figure;
 use crate::format::{fixed, quantity, significant};
@@ -144,8 +144,8 @@ fn row_view(row: &LearnRow) -> RowView<'_> {
             significant(row.seconds, 2),
         ]
     });
-    let reason = row.failure.clone().unwrap_or_else(|| row.reached.clone());
-    RowView { title: &row.title, is_learner: row.kind == "learner", cells, reason }
+    let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
+    RowView { title: &row.title, is_learner: row.kind == LearnKind::Learner, cells, reason }
 }
 
 fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {
@@ -172,12 +172,14 @@ fn headline(result: &LearnResult) -> Verdict {
         result.problems.iter().filter(|problem| problem.absent.is_none()).collect();
     let error =
         |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
-    let least = |problem: &LearnProblem, kind: &str| {
+    let least = |problem: &LearnProblem, kind: LearnKind| {
         let own = result.results.iter().filter(|row| row.problem == problem.id && row.kind == kind);
         own.filter(|row| row.id != "repaired").map(error).fold(f64::INFINITY, f64::min)
     };
-    let better =
-        present.iter().filter(|problem| least(problem, "learner") < least(problem, "baseline")).count();
+    let better = present
+        .iter()
+        .filter(|problem| least(problem, LearnKind::Learner) < least(problem, LearnKind::Baseline))
+        .count();
     let (tone, label) = match (present.len(), better) {
         (0, _) => (Tone::Bad, "Nothing learned"),
         (all, better) if all == better => (Tone::Good, "Learning helps on every data set"),

@@ -1,13 +1,16 @@
 use crate::{RunTexts, render};
-use results::{LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnTest, RESULT_SCHEMA};
+use results::{
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest,
+    RESULT_SCHEMA,
+};
 use std::collections::BTreeMap;
 
-fn row(id: &str, kind: &str, error: Option<f64>) -> LearnRow {
+fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
     LearnRow {
         problem: "swing".to_owned(),
         id: id.to_owned(),
         title: format!("Method {id}"),
-        kind: kind.to_owned(),
+        kind,
         test: error.map(|error| LearnTest {
             free_run_rmse: Some(error),
             unit: "rad".to_owned(),
@@ -30,7 +33,7 @@ fn row(id: &str, kind: &str, error: Option<f64>) -> LearnRow {
         torque_error: Some(0.012),
         parameters: 4,
         seconds: 0.2,
-        reached: "converged".to_owned(),
+        reached: LearnEnd::Converged,
         failure: error.is_none().then(|| "needs <a> nominal simulator".to_owned()),
         model: None,
     }
@@ -58,9 +61,9 @@ fn page(learner: f64) -> String {
         data: problem.data,
         problems: vec![problem],
         results: vec![
-            row("sindy", "learner", Some(learner)),
-            row("arx", "baseline", Some(0.1)),
-            row("nominal", "baseline", None),
+            row("sindy", LearnKind::Learner, Some(learner)),
+            row("arx", LearnKind::Baseline, Some(0.1)),
+            row("nominal", LearnKind::Baseline, None),
         ],
         seconds: 1.0,
     };

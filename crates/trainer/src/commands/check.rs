@@ -1,6 +1,6 @@
 //! `trainer check`: a configuration and its data looked at, nothing run, nothing written.
 
-use crate::commands::learn::{methods, problem};
+use crate::commands::learn::{method::methods, problem};
 use crate::configured::{ConfigArguments, Configured, read_document};
 use crate::error::TrainerError;
 use crate::fits::input::Input;

@@ -1,7 +1,7 @@
 //! What a learning study leaves: rows, tables, models, the report.
 
+use super::method::{Method, Tried, truth_of};
 use super::problem::{Prepared, Ready};
-use super::{Form, Method, Tried, truth_of};
 use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::page::write_report;
 use ::learn::LearnError;
@@ -9,8 +9,8 @@ use ::learn::data::Trajectory;
 use ::learn::judge::{Score, Truth};
 use experiment::LearnStudy;
 use results::{
-    LearnCoefficient, LearnData, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTest,
-    LearnTorqueRow, LearnTraceRow, RESULT_SCHEMA,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
+    LearnTest, LearnTorqueRow, LearnTraceRow, RESULT_SCHEMA,
 };
 use runs::{RunFolder, to_csv};
 use serde_json::json;
@@ -35,19 +35,19 @@ impl Row<'_> {
             problem: self.problem.id.clone(),
             id: self.method.id.to_owned(),
             title: self.method.title.to_owned(),
-            kind: self.method.form.name().to_owned(),
+            kind: self.method.kind,
             test: None,
             coefficients: None,
             equation: None,
             torque_error: None,
             parameters: 0,
             seconds: self.tried.seconds,
-            reached: "failed".to_owned(),
+            reached: LearnEnd::Failed,
             failure: None,
             model: None,
         };
         match &self.tried.fitted {
-            Err(LearnError::Interrupted) => row.reached = "interrupted".to_owned(),
+            Err(LearnError::Interrupted) => row.reached = LearnEnd::Interrupted,
             Err(error) => row.failure = Some(error.to_string()),
             Ok(judged) => {
                 let model = judged.model.as_ref();
@@ -57,7 +57,7 @@ impl Row<'_> {
                 row.torque_error =
                     truth.and_then(|truth| truth.torque_error(model)).filter(|error| error.is_finite());
                 row.parameters = model.parameters();
-                row.reached = judged.reached.to_owned();
+                row.reached = judged.reached;
                 row.model = model.stored().map(|_| self.model_file());
             }
         }
@@ -222,7 +222,7 @@ fn traces(rows: &[Row<'_>]) -> Vec<LearnTraceRow> {
         });
         made.collect()
     };
-    rows.iter().filter(|row| row.method.form == Form::Learner).flat_map(of).collect()
+    rows.iter().filter(|row| row.method.kind == LearnKind::Learner).flat_map(of).collect()
 }
 
 /// Free runs of the first test stretch of each problem.
@@ -253,7 +253,7 @@ fn series(rows: &[Row<'_>]) -> Vec<LearnSeriesRow> {
 /// Learned torques of learners beside the true ones.
 fn torques(rows: &[Row<'_>]) -> Vec<LearnTorqueRow> {
     let mut all = Vec::new();
-    for row in rows.iter().filter(|row| row.method.form == Form::Learner) {
+    for row in rows.iter().filter(|row| row.method.kind == LearnKind::Learner) {
         let (Ok(judged), Some(truth)) = (&row.tried.fitted, truth_of(row.ready)) else { continue };
         for [position, velocity, input, truth, learned, std] in truth.rows(judged.model.as_ref()) {
             all.push(LearnTorqueRow {

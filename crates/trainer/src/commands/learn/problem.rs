@@ -3,11 +3,13 @@
 use crate::commands::diagnose::read_nominal;
 use crate::configured::read_document;
 use crate::error::{LearnCommandError, TrainerError};
+use crate::folders::resume::DataFile;
 use ::learn::LearnError;
 use ::learn::data::{DataSet, Making, Trajectory};
 use dynamics::{NominalSimulator, System};
 use experiment::{DataSettings, LearnSource, LearningProblem};
 use record::{Clock, Quantity, Record, read_file};
+use runs::digest;
 use simulator::{Plan, generate};
 use std::path::{Path, PathBuf};
 
@@ -24,15 +26,9 @@ pub(crate) struct Prepared {
 pub(crate) struct Ready {
     pub(crate) data: DataSet,
     pub(crate) records: usize,
-    pub(crate) files: Vec<File>,
+    pub(crate) files: Vec<DataFile>,
     /// What generated simulated records; only the judge looks at it.
     pub(crate) truth: Option<System>,
-}
-
-/// A file that was read.
-pub(crate) struct File {
-    pub(crate) path: String,
-    pub(crate) digest: String,
 }
 
 /// Reads or simulates a data set. Files that are absent are no error; a set that cannot be used is.
@@ -94,7 +90,9 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<Ready, TrainerErro
     let making = Making { unit: unit.to_owned(), nominal: Some(nominal), ..problem.making() };
     let data = DataSet::new(&trajectories, making).map_err(refused(problem))?;
     let truth = drawn.truths.into_iter().next().map(|truth| truth.system);
-    Ok(Ready { data, records: trajectories.len(), files: Vec::new(), truth })
+    let files =
+        [Some(file), problem.nominal.as_deref()].into_iter().flatten().map(held).collect::<Result<_, _>>()?;
+    Ok(Ready { data, records: trajectories.len(), files, truth })
 }
 
 fn files(
@@ -133,7 +131,7 @@ fn files(
         let clock = Clock::new(&record, reading.clock).map_err(|fault| fault.in_file(&source.path))?;
         trajectories.push(trajectory(problem, &name, &record, &clock.times_s)?);
         origin = origin.or(reading.statements().origin).or(source.statements.origin);
-        read.push(File { path: source.path, digest: source.digest });
+        read.push(DataFile { path: source.path, digest: source.digest });
     }
     let nominal = problem.nominal.as_ref().map(|path| read_nominal(Path::new(path))).transpose()?;
     let making = Making {
@@ -143,7 +141,15 @@ fn files(
     };
     let data = DataSet::new(&trajectories, making).map_err(refused(problem))?;
     let origin = origin.unwrap_or_default().name().to_owned();
+    read.extend(problem.nominal.as_deref().map(held).transpose()?);
     Ok((Ready { data, records: trajectories.len(), files: read, truth: None }, origin))
+}
+
+/// A file that the data set depends on, held to its bytes.
+fn held(file: &str) -> Result<DataFile, TrainerError> {
+    let bytes = std::fs::read(file)
+        .map_err(|error| TrainerError::Config { file: file.to_owned(), problem: error.to_string() })?;
+    Ok(DataFile { path: file.to_owned(), digest: digest(&bytes) })
 }
 
 /// The files of a folder that a name stands for, in alphabetical order.

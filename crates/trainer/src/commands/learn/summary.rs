@@ -1,7 +1,7 @@
 //! The terminal's answer to `task = "learn"`: a table for each data set.
 
 use crate::terminal::table::{table, two_digits};
-use results::{LearnProblem, LearnResult, LearnRow};
+use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
 use std::path::Path;
 
 const HEADER: [&str; 9] =
@@ -55,11 +55,15 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
 
 fn cells(row: &LearnRow) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
-    let name = if row.kind == "learner" { row.id.clone() } else { format!("{} ({})", row.id, row.kind) };
+    let name = if row.kind == LearnKind::Learner {
+        row.id.clone()
+    } else {
+        format!("{} ({})", row.id, row.kind.name())
+    };
     let mut cells = vec![name];
     match &row.test {
         None => cells.extend(vec![
-            row.reached.clone(),
+            row.reached.name().to_owned(),
             String::new(),
             String::new(),
             String::new(),
