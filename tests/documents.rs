@@ -110,3 +110,131 @@ fn the_gate_runs_the_readmes_test_command() {
     assert_eq!(run, "cargo run -p trainer -- configs/pinn.toml");
     assert!(gate.lines().any(|line| line == test), "`{test}` is not a line of .ci/run");
 }
+
+/// The documents that people read first, with the book's pages.
+fn documents() -> Vec<PathBuf> {
+    let top = ["README.md", "ARCHITECTURE.md", "CONTRIBUTING.md"].map(|name| root().join(name));
+    top.into_iter().chain(files("book/src", "md")).chain(files("experiments", "md")).collect()
+}
+
+/// The parts of a text between two marks.
+fn between<'a>(text: &'a str, open: &str, close: &str) -> Vec<&'a str> {
+    text.split(open).skip(1).filter_map(|rest| rest.split(close).next()).collect()
+}
+
+#[test]
+fn links_of_the_documents_lead_somewhere() {
+    let mut checked = 0;
+    for path in documents() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        for target in between(&text, "](", ")") {
+            let file = target.split('#').next().unwrap();
+            if target.contains("://") || file.is_empty() {
+                continue;
+            }
+            assert!(path.with_file_name(file).exists(), "{}: {target} leads nowhere", path.display());
+            checked += 1;
+        }
+    }
+    assert!(checked > 60, "{checked}");
+}
+
+#[test]
+fn every_page_of_the_book_stands_in_its_contents_and_includes_what_exists() {
+    let summary = std::fs::read_to_string(root().join("book/src/SUMMARY.md")).unwrap();
+    let listed = between(&summary, "](", ")");
+    for path in files("book/src", "md") {
+        let name = path.strip_prefix(root().join("book/src")).unwrap().to_str().unwrap();
+        assert!(name == "SUMMARY.md" || listed.contains(&name), "{name} is not in SUMMARY.md");
+        let text = std::fs::read_to_string(&path).unwrap();
+        for include in between(&text, "{{#include ", "}}") {
+            let (file, anchor) =
+                include.split_once(':').map_or((include, None), |(file, anchor)| (file, Some(anchor)));
+            let included = std::fs::read_to_string(path.with_file_name(file));
+            let included = included.unwrap_or_else(|error| panic!("{name} includes {file}: {error}"));
+            let is_there = anchor.is_none_or(|anchor| included.contains(&format!("ANCHOR: {anchor}\n")));
+            assert!(is_there, "{name}: {file} has no anchor {anchor:?}");
+        }
+    }
+}
+
+/// The words of every command of the documents that begins in one of these ways, lines that go on joined.
+fn commands(beginning: &str) -> Vec<(PathBuf, Vec<String>)> {
+    let mut found = Vec::new();
+    for path in documents() {
+        let text = std::fs::read_to_string(&path).unwrap().replace("\\\n", " ");
+        for line in text.lines().filter_map(|line| line.trim().strip_prefix(beginning)) {
+            found.push((path.clone(), line.split_whitespace().map(|word| word.replace('\'', "")).collect()));
+        }
+    }
+    found
+}
+
+#[test]
+fn commands_of_the_documents_name_commands_options_and_files_that_exist() {
+    let help = |arguments: &[&str]| String::from_utf8(trainer(arguments).stdout).unwrap();
+    let whole = help(&["--help"]);
+    let all = [commands("cargo run -p trainer -- "), commands("cargo run --release -p trainer -- ")].concat();
+    assert!(all.len() > 30, "{}", all.len());
+    for (path, words) in all {
+        let place = path.display();
+        let first = words[0].as_str();
+        let is_configuration = first.ends_with(".toml");
+        let own = if is_configuration || first.starts_with('-') {
+            whole.clone()
+        } else {
+            assert!(whole.contains(&format!("\n  {first} ")), "{place}: `{first}` is no command");
+            help(&[first, "--help"])
+        };
+        for word in &words {
+            if let Some(option) = word.strip_prefix("--").and_then(|word| word.split('=').next()) {
+                assert!(own.contains(&format!("--{option}")), "{place}: {first} has no option --{option}");
+            }
+            // A name in capitals stands for the reader's own file.
+            if word.starts_with("configs/") || word.starts_with("experiments/") {
+                assert!(root().join(word).exists(), "{place}: {word} is not there");
+            }
+        }
+    }
+}
+
+#[test]
+fn examples_and_tests_that_the_documents_name_exist() {
+    let manifest = std::fs::read_to_string(root().join("crates/ringdown/Cargo.toml")).unwrap();
+    let examples = commands("cargo run -p ringdown-lab --example ");
+    assert!(examples.len() >= 5, "{}", examples.len());
+    for (path, words) in examples {
+        let name = format!("name = \"{}\"", words[0]);
+        assert!(manifest.contains(&name), "{}: no example {}", path.display(), words[0]);
+    }
+    for (path, words) in commands("cargo test -p ") {
+        let name = format!("name = \"{}\"", words[0]);
+        let is_there = files("crates", "toml")
+            .iter()
+            .any(|manifest| std::fs::read_to_string(manifest).unwrap().contains(&name));
+        assert!(is_there, "{}: no package {}", path.display(), words[0]);
+    }
+}
+
+/// The lines of the diagnosis that the README and the first hour show, each cut off somewhere, are those of the command now.
+#[test]
+fn the_diagnosis_that_the_documents_show_is_what_the_command_says() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("GAP");
+    let shipped = "experiments/default-record";
+    let [record, nominal] = ["record.csv", "nominal.toml"].map(|name| format!("{shipped}/{name}"));
+    let told = trainer(&["diagnose", &record, "--nominal", &nominal, "--out", out.to_str().unwrap()]);
+    let plain = |line: &str| line.replace('’', "'").split_whitespace().collect::<Vec<_>>().join(" ");
+    let told: Vec<String> = String::from_utf8(told.stdout).unwrap().lines().map(plain).collect();
+    let rows = ["certain ", "likely ", "open ", "simulator as given ", "recalibrated ", "repaired "];
+    for document in ["README.md", "book/src/first-hour.md"] {
+        let text = std::fs::read_to_string(root().join(document)).unwrap();
+        let shown = text.lines().filter_map(|line| line.strip_prefix("    ")).map(plain);
+        let shown: Vec<String> = shown.filter(|line| rows.iter().any(|row| line.starts_with(row))).collect();
+        assert!(shown.len() >= 6, "{document}: {shown:?}");
+        for line in shown {
+            let is_there = told.iter().any(|own| own.starts_with(&line));
+            assert!(is_there, "{document} shows `{line}`; the command says\n{}", told.join("\n"));
+        }
+    }
+}

@@ -39,6 +39,7 @@ mod recipe;
 mod resuming;
 mod rigs;
 mod run_folders;
+mod rust_interface;
 mod schema;
 mod simulation;
 mod support;

@@ -32,7 +32,14 @@ fn workspace() -> TempDir {
     for name in ["Cargo.toml", "Cargo.lock"] {
         fs::copy(root().join(name), home.join(name)).unwrap();
     }
-    // The trainer's tests lie outside the copied folder.
+    // Libraries of another version lie beside the workspace's own in the target folder and never in their place: doc tests,
+    // which cargo runs last, would look for these.
+    edit(&home.join("Cargo.toml"), "version = \"0.1.0\"", "version = \"0.1.0-recipe\"");
+    // The trainer's tests lie outside the copied folder; examples and gallery outside of the crate that
+    // declares them.
+    for folder in ["examples", "book/gallery"] {
+        copy(&root().join(folder), &home.join(folder));
+    }
     copy(&root().join("crates"), &home.join("crates"));
     copy(&root().join("tests"), &home.join("tests"));
     scratch

@@ -2,13 +2,7 @@
 
 /// Modules that are part of a circle, by crate.
 pub(super) const CIRCLES: &[(&str, &str)] = &[
-    ("diagnosis", "diagnose"),
-    ("diagnosis", "evidence::conclusion"),
     ("diagnosis", "evidence::context"),
-    ("diagnosis", "evidence::inclusion"),
-    ("diagnosis", "explain::coefficients"),
-    ("diagnosis", "explain::position_torque"),
-    ("diagnosis", "explain::repaired"),
     ("diagnosis", "fit::calibrate"),
     ("diagnosis", "fit::levenberg_marquardt"),
     ("diagnosis", "fit::restart"),
@@ -47,7 +41,6 @@ pub(super) const CIRCLES: &[(&str, &str)] = &[
     ("diagnosis", "noise::rounding"),
     ("trainer", "commands::diagnose"),
     ("trainer", "commands::diagnose::batch"),
-    ("trainer", "commands::diagnose::kept"),
     ("trainer", "commands::diagnose::rigs"),
     ("trials", "make::case"),
     ("trials", "make::composite"),
@@ -63,7 +56,6 @@ pub(super) const CIRCLES: &[(&str, &str)] = &[
 pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("bayesian", "fit::by_sampling", "one run of the sampler from its start to its answer"),
     ("diagnosis", "data::segments::check", "not divided yet"),
-    ("diagnosis", "diagnose::diagnose", "not divided yet"),
     ("diagnosis", "evidence::conclusion::probabilities", "not divided yet"),
     ("diagnosis", "evidence::context::shares", "not divided yet"),
     ("diagnosis", "explain::next_experiment::synthetic", "not divided yet"),
@@ -96,9 +88,9 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("simulator", "plan::resolve", "one configuration, section by section"),
     ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
     ("trainer", "commands::diagnose::batch::batch", "one batch: list, ask, count, tell"),
-    ("trainer", "commands::diagnose::result::result", "one file, field by field"),
     ("trials", "make::case::written", "one case, field by field"),
     ("trials", "make::plan::resolve", "one configuration, section by section"),
     ("trials", "make::shape::draw", "one drawing for each effect, side by side"),
     ("trials", "make::stressed::draw", "one drawing for each effect, side by side"),
+    ("workflow", "result::result", "one file, field by field"),
 ];

@@ -8,6 +8,7 @@
 mod configuration;
 mod equation;
 mod modelica;
+mod nominal;
 mod python;
 mod repaired;
 mod robot;
@@ -18,6 +19,7 @@ mod tests;
 pub use configuration::configuration;
 pub use equation::{equation_latex, equation_text};
 pub use modelica::modelica;
+pub use nominal::nominal_text;
 pub use python::python;
 pub use repaired::Repaired;
 pub use robot::{mjcf, urdf};

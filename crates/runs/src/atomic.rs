@@ -16,6 +16,14 @@ pub(crate) fn write(disk: &Disk, path: &Path, content: &[u8]) -> Result<(), RunE
     disk.flush_folder(folder_of(path)).map_err(RunError::io(path, "flush the folder of"))
 }
 
+/// Writes one file outside of a run's folder, in place of one that is there: whole, or not at all.
+///
+/// # Errors
+/// [`RunError::Io`] with the file and what was tried.
+pub fn write_file(path: &Path, content: &[u8]) -> Result<(), RunError> {
+    write(&Disk::default(), path, content)
+}
+
 /// As [`write`] where there is no such file yet; `false`, and nothing changed, where there is one.
 pub(crate) fn write_new(disk: &Disk, path: &Path, content: &[u8]) -> Result<bool, RunError> {
     let file = fill(disk, path, content)?;
@@ -43,7 +51,11 @@ fn fill(disk: &Disk, path: &Path, content: &[u8]) -> Result<NamedTempFile, RunEr
 }
 
 fn folder_of(path: &Path) -> &Path {
-    path.parent().unwrap_or_else(|| Path::new("."))
+    match path.parent() {
+        // A bare name has an empty parent.
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
 }
 
 #[cfg(test)]

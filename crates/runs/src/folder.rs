@@ -181,10 +181,7 @@ impl RunFolder {
     /// # Errors
     /// As [`RunFolder::write`]; [`RunError::Encoding`] where the value has no JSON.
     pub fn write_json(&self, name: &str, value: &impl Serialize) -> Result<(), RunError> {
-        let mut text = serde_json::to_string_pretty(value)
-            .map_err(|error| RunError::Encoding { name: name.to_owned(), problem: error.to_string() })?;
-        text.push('\n');
-        self.write(name, text.as_bytes())
+        self.write(name, to_json(name, value)?.as_bytes())
     }
 
     /// Adds a line to `events.jsonl`: the time, the event's name, and what belongs to it.
@@ -364,3 +361,13 @@ fn names(path: &Path) -> Result<Vec<String>, RunError> {
 
 #[cfg(test)]
 mod tests;
+
+/// A value as the text of a JSON file, indented, ending in a line break; `name` is what messages call the file.
+///
+/// # Errors
+/// [`RunError::Encoding`] where the value has no JSON.
+pub fn to_json(name: &str, value: &impl Serialize) -> Result<String, RunError> {
+    let text = serde_json::to_string_pretty(value)
+        .map_err(|error| RunError::Encoding { name: name.to_owned(), problem: error.to_string() })?;
+    Ok(text + "\n")
+}

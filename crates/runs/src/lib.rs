@@ -30,12 +30,13 @@ mod sealed;
 mod sweep;
 mod table;
 
+pub use atomic::write_file;
 pub use catalog::{KeptRun, has_run_files, list_runs, read_run};
 pub use digest::digest;
 pub use disk::Disk;
 pub use error::RunError;
 pub use events::{Event, EventLog};
-pub use folder::{RunFolder, Texts, default_root};
+pub use folder::{RunFolder, Texts, default_root, to_json};
 pub use scratch::Scratch;
 pub use sweep::{SweepFolder, SweepFolderError};
 pub use table::to_csv;

@@ -28,9 +28,10 @@ mod oscillator;
 mod tests;
 
 pub use decay_law::DecayLaw;
-pub use draw::{DrawnSystem, nominal_text};
+pub use draw::DrawnSystem;
 pub use envelope_draw::{EnvelopeSimulation, EnvelopeTruth, SMALLEST_IN_SCATTER, Scatter};
 pub use error::SimulationError;
+pub use export::nominal_text;
 pub use generate::{MOST_DECIMALS, MOST_SAMPLES, csv_text, generate};
 pub use generation_error::GenerationError;
 pub use json_schema::simulate_schema;

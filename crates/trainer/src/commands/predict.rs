@@ -1,22 +1,22 @@
 //! `trainer predict`: a learned model run on a record it never saw.
 
 use crate::commands::diagnose::arguments::Reading;
-use crate::commands::diagnose::read::{centered, read_options};
 use crate::error::{LearnCommandError, TrainerError};
 use crate::options::Output;
 use crate::outcome::Outcome;
-use crate::terminal::table::{table, two_digits};
+use crate::terminal::table::table;
 use ::learn::data::Trajectory;
 use ::learn::learners::{LEARNERS, find};
 use ::learn::{Ahead, Past, Predicted, Stored};
 use clap::Args;
-use record::{Clock, ClockChoice, Record};
+use record::{Clock, Coordinate, Record};
 use results::LearnSeriesRow;
 use runs::{RunFolder, to_csv};
 use serde::Deserialize;
-use serde::de::IntoDeserializer;
 use serde_json::json;
 use std::path::{Path, PathBuf};
+use workflow::Loaded;
+use workflow::guess::two_digits;
 
 /// A learned model on a record.
 #[derive(Debug, Args)]
@@ -150,12 +150,12 @@ fn answer(
 }
 
 fn read(path: &Path, reading: &Reading, about: &About) -> Result<Trajectory, TrainerError> {
-    let coordinate =
-        if about.unit == "m" { dynamics::Coordinate::Displacement } else { dynamics::Coordinate::Angle };
-    let options = read_options(reading, Some(coordinate), about.driven);
-    let (record, source) = record::read_file(path, &options).map_err(TrainerError::DiagnosedRecord)?;
-    let fault = |fault: record::Fault| TrainerError::DiagnosedRecord(fault.in_file(&source.path));
-    let record = if reading.remove_mean { centered(&record).map_err(fault)? } else { record };
+    let coordinate = if about.unit == "m" { Coordinate::Displacement } else { Coordinate::Angle };
+    let mut plain = reading.plain();
+    plain.options.coordinate = Some(coordinate);
+    plain.options.driven = about.driven;
+    let loaded = Loaded::read(path, &plain)?;
+    let record = &loaded.record;
     let name = || path.display().to_string();
     if record.unit() != about.unit {
         let wrong = ::learn::LearnError::MixedUnits {
@@ -171,10 +171,8 @@ fn read(path: &Path, reading: &Reading, about: &About) -> Result<Trajectory, Tra
         let (with, without) = (words(about.driven), words(record.input().is_some()));
         return Err(LearnCommandError::Input { record: name(), with, without }.into());
     }
-    let choice = IntoDeserializer::<serde::de::value::Error>::into_deserializer(reading.clock.as_str());
-    let choice = ClockChoice::deserialize(choice).unwrap_or_default();
-    let clock = Clock::new(&record, choice).map_err(fault)?;
-    trajectory(&record, &clock, name())
+    let clock = loaded.believed()?;
+    trajectory(record, &clock, name())
 }
 
 fn trajectory(record: &Record, clock: &Clock, name: String) -> Result<Trajectory, TrainerError> {

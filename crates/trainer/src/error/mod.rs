@@ -7,10 +7,8 @@ mod sweep;
 mod table;
 mod trials;
 
-use diagnosis::DiagnosisError;
 use envelope::EnvelopeError;
 use estimator::FitError;
-use identify::IdentifyError;
 use oracle::OracleError;
 use record::RecordError;
 use report::ReportError;
@@ -20,6 +18,7 @@ use simulator::GenerationError;
 use studies::StudyError;
 use thiserror::Error;
 use tracking::TrackingError;
+use workflow::WorkflowError;
 
 pub(crate) use kept::KeptError;
 pub(crate) use learn::LearnCommandError;
@@ -76,41 +75,15 @@ pub(crate) enum TrainerError {
     NothingToFit,
     #[error("{file}: system {system}, record {record}: {source}")]
     Generation { file: String, system: usize, record: usize, source: GenerationError },
-    /// A record named on the command line of a diagnosis, where options name columns.
-    #[error("{}", options_in(.0))]
-    DiagnosedRecord(RecordError),
-    #[error("{file}: {}", source.to_string().replace("unit = \"deg\"", "--unit deg"))]
-    Diagnosis { file: String, source: DiagnosisError },
-    #[error(
-        "{file}: the nominal simulator has an input_gain, so an input drives the system, but the record has no input \
-         column; name it with --input (the header has {columns})"
-    )]
-    MissingInput { file: String, columns: String },
-    #[error(
-        "{file}: the record is in {found}, the nominal simulator's coordinate asks for {expected}; name the column \
-         with --value, its unit with --unit, or set `coordinate` in the nominal simulator's file"
-    )]
-    OtherUnit { file: String, found: &'static str, expected: &'static str },
-    #[error(
-        "{file}: cannot be used: {problem}; expected a TOML file with inertia, damping, stiffness and rest_angle"
-    )]
-    Nominal { file: String, problem: String },
     #[error(
         "{record}: nothing to compare it with: name the simulator as it is with --nominal FILE; where there is none, \
          `trainer init {record}` makes a first guess of one and prints the call that goes on from there"
     )]
     NoNominal { record: String },
-    #[error(
-        "{file}: is the configuration of an experiment, which `{command}` runs, not a nominal simulator; --nominal takes a TOML \
-         file with inertia, damping, stiffness and rest_angle: `trainer init LOG` writes one"
-    )]
-    NominalIsConfiguration { file: String, command: String },
     #[error("{folder} is not empty; nothing that exists is overwritten: name another folder with --out")]
     InitOccupied { folder: String },
-    #[error(
-        "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"
-    )]
-    SameRecord { first: String, second: String, digest: String },
+    #[error(transparent)]
+    Workflow(#[from] WorkflowError),
     #[error(transparent)]
     Learn(#[from] LearnCommandError),
     #[error(transparent)]
@@ -128,8 +101,6 @@ pub(crate) enum TrainerError {
          `trainer diagnose RECORD --nominal FILE`"
     )]
     OneRig { rig: String },
-    #[error("{file}: {source}")]
-    Identify { file: String, source: IdentifyError },
     #[error(
         "{log}: its name has no ending, so that a folder of that name cannot stand beside it; name one with --out"
     )]
@@ -182,22 +153,15 @@ impl TrainerError {
             | Self::Tracking(_)
             | Self::NothingToFit
             | Self::Generation { .. }
-            | Self::DiagnosedRecord(_)
-            | Self::Diagnosis { .. }
-            | Self::MissingInput { .. }
-            | Self::OtherUnit { .. }
-            | Self::Nominal { .. }
             | Self::NoNominal { .. }
-            | Self::NominalIsConfiguration { .. }
             | Self::InitOccupied { .. }
-            | Self::SameRecord { .. }
+            | Self::Workflow(_)
             | Self::Kept(_)
             | Self::Learn(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::NoRig { .. }
             | Self::OneRig { .. }
-            | Self::Identify { .. }
             | Self::NoFolder { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
@@ -213,20 +177,4 @@ impl TrainerError {
             Self::NotFinite { .. } | Self::System { .. } => 1,
         }
     }
-}
-
-/// A record's fault in terms of the command line: `data.time_unit` is --time-unit there.
-fn options_in(error: &RecordError) -> String {
-    in_options(&error.to_string())
-}
-
-/// A sentence that names keys of the section `data`, with the options in their place.
-pub(crate) fn in_options(text: &str) -> String {
-    let mut parts = text.split("`data.");
-    let mut told = parts.next().unwrap_or_default().to_owned();
-    for part in parts {
-        let (key, rest) = part.split_once('`').unwrap_or((part, ""));
-        told.push_str(&format!("--{}{rest}", key.trim_end_matches("_hz").replace('_', "-")));
-    }
-    told.replace("data.format = \"csv\"", "--format csv")
 }

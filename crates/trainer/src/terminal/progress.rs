@@ -1,12 +1,12 @@
 //! Progress: bars on a terminal, plain lines elsewhere.
 
 use crate::terminal::console;
-use crate::terminal::table::two_digits;
 use estimator::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use results::SeedRow;
 use std::fmt::Display;
 use std::io::IsTerminal;
+use workflow::guess::two_digits;
 
 /// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {

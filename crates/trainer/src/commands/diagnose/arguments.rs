@@ -3,8 +3,10 @@
 use crate::options::Output;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
-use record::{Missing, Quantity, TimeUnit, Unit};
-use serde::Serialize;
+use record::{CsvColumns, Format, Missing, Quantity, ReadOptions, TimeUnit, Unit};
+use serde::de::IntoDeserializer;
+use serde::de::value::Error;
+use serde::{Deserialize, Serialize};
 use std::path::PathBuf;
 
 /// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
@@ -148,6 +150,43 @@ impl Default for Reading {
             remove_mean: false,
         }
     }
+}
+
+impl Reading {
+    /// The options as the reader takes them.
+    pub(crate) fn plain(&self) -> workflow::Reading {
+        workflow::Reading {
+            options: ReadOptions {
+                format: match self.format {
+                    FormatChoice::Auto => Format::Auto,
+                    FormatChoice::Csv => Format::Csv,
+                    FormatChoice::HostLog => Format::HostLog,
+                },
+                columns: CsvColumns {
+                    time: self.time.clone(),
+                    value: self.value.clone(),
+                    input: self.input.clone(),
+                    unit: self.unit.as_deref().and_then(word),
+                    input_unit: self.input_unit.as_deref().and_then(word),
+                    time_unit: self.time_unit.as_deref().and_then(word),
+                    sample_rate_hz: self.sample_rate,
+                    filter: self.filter.as_deref().and_then(word),
+                    missing: word(&self.missing).unwrap_or_default(),
+                },
+                quantity: self.quantity.map(QuantityChoice::quantity),
+                ..ReadOptions::default()
+            },
+            clock: word(&self.clock).unwrap_or_default(),
+            origin: self.origin.as_deref().and_then(word),
+            remove_mean: self.remove_mean,
+        }
+    }
+}
+
+/// A word as configurations write it; the command line admits no other.
+fn word<'de, T: Deserialize<'de>>(text: &'de str) -> Option<T> {
+    let deserializer = IntoDeserializer::<Error>::into_deserializer(text);
+    T::deserialize(deserializer).ok()
 }
 
 /// Format of a record file.

@@ -1,7 +1,7 @@
 //! `trainer diagnose --batch`: every case of a folder.
 
 use super::arguments::DiagnoseArguments;
-use super::{Question, kept, settings};
+use super::{kept, settings};
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
 use crate::terminal::console;
@@ -14,6 +14,7 @@ use results::{BatchResult, FailedCase, RESULT_SCHEMA};
 use runs::RunFolder;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use workflow::Question;
 
 /// A folder with records of one system.
 pub(super) struct Case {
@@ -122,8 +123,9 @@ fn fate(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Fate 
         return kept::check_answer(&answer, &case.records, &case.nominal)
             .map_or_else(failed, |()| Fate::Skipped);
     }
-    let answered = Question::read(&case.records, &case.nominal, &arguments.reading)
+    let answered = Question::read(&case.records, &case.nominal, &arguments.reading.plain())
         .and_then(|question| question.answer(&settings(arguments), arguments.seed))
+        .map_err(TrainerError::from)
         .and_then(|answer| Ok(folder.write_json(&name, &answer.result)?));
     answered.map_or_else(failed, |()| Fate::Diagnosed)
 }

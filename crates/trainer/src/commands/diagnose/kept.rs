@@ -1,13 +1,13 @@
 //! What a folder holds of a diagnosis: for `--resume`, and for the answers of a batch.
 
 use super::arguments::DiagnoseArguments;
-use super::{Question, nominal};
 use crate::error::{KeptError, TrainerError};
 use record::file_digest;
 use results::DiagnosisResult;
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
+use workflow::{Question, nominal};
 
 /// The event that says what was asked, before any other file of a diagnosis is there.
 pub(super) const ASKED: &str = "start";

@@ -3,10 +3,6 @@
 pub(crate) mod arguments;
 mod batch;
 mod kept;
-mod nominal;
-pub(crate) mod read;
-mod repair;
-mod result;
 mod rigs;
 mod summary;
 
@@ -15,22 +11,16 @@ use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
 use crate::outcome::Outcome;
 use crate::terminal::interrupt::{self, Saving};
-use arguments::{DiagnoseArguments, Reading};
-use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use arguments::DiagnoseArguments;
+use diagnosis::{Observations, Settings};
 use dynamics::Nominal;
-use experiment::StatedNominal;
-use export::Repaired;
-pub(crate) use nominal::read as read_nominal;
-use read::Given;
 use record::Quantity;
-use result::{Beside, result, series_rows};
-use results::DiagnosisResult;
 use runs::{Disk, RunFolder, default_root, to_csv};
 use seed::Seed;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 use trials::BaselineRecord;
+use workflow::{Answer, Question, Reading, series_rows};
 
 /// Diagnoses the records named, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
@@ -68,13 +58,6 @@ pub(crate) fn given(records: &[PathBuf], nominal: &Path) -> Result<GivenCase, Tr
     Ok(GivenCase { nominal, observations, records })
 }
 
-/// One diagnosis with all that it needs to be shown.
-struct Answer {
-    found: Diagnosis,
-    repaired: Repaired,
-    result: DiagnosisResult,
-}
-
 fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, TrainerError> {
     // Better to know before the work than after it; a new folder is made once there is an answer.
     let begun = match &arguments.out {
@@ -92,7 +75,7 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
     interrupt::watch_impatiently()?;
-    let question = Question::read(&arguments.records, nominal, &arguments.reading)?;
+    let question = Question::read(&arguments.records, nominal, &arguments.reading.plain())?;
     let asked = kept::asked(arguments, &question);
     if let Some(folder) = &begun
         && let Some(result) = kept::finished(folder, &asked)?
@@ -127,7 +110,7 @@ fn keep(
     threads: usize,
 ) -> Result<(), TrainerError> {
     folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
-    folder.write("nominal.toml", simulator::nominal_text(&question.stated.simulator).as_bytes())?;
+    folder.write("nominal.toml", export::nominal_text(&question.stated.simulator).as_bytes())?;
     folder.record_event(kept::ASKED, asked)?;
     folder.write_json("diagnosis.json", &answer.result)?;
     folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
@@ -146,79 +129,4 @@ fn settings(arguments: &DiagnoseArguments) -> Settings {
         without: arguments.without.clone(),
         seed: Seed::new(arguments.seed),
     }
-}
-
-/// Records of one system and what is believed of it.
-struct Question {
-    stated: StatedNominal,
-    given: Vec<Given>,
-    nominal: PathBuf,
-}
-
-impl Question {
-    fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, TrainerError> {
-        let stated = nominal::read(nominal)?;
-        let given =
-            records.iter().map(|path| read::read(path, reading, &stated)).collect::<Result<Vec<_>, _>>()?;
-        check_distinct(&given)?;
-        Ok(Self { stated, given, nominal: nominal.to_owned() })
-    }
-
-    /// Digests of the records, with spaces between.
-    fn digests(&self) -> String {
-        let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
-        digests.join(" ")
-    }
-
-    fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, TrainerError> {
-        let start = Instant::now();
-        let observations: Vec<Observations> =
-            self.given.iter().map(|given| given.observations.clone()).collect();
-        let stopwatch = || start.elapsed().as_secs_f64();
-        let found = diagnosis::diagnose(&observations, &self.stated.simulator, settings, &stopwatch)
-            .map_err(|source| self.refused(source))?;
-        let seconds = stopwatch();
-        let repaired = repair::repaired(&found, &self.given, self.stated.nominal.units())
-            .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
-        let nominal = self.nominal.display().to_string();
-        let nominal_digest = nominal::digest(&self.stated);
-        let beside = Beside {
-            given: &self.given,
-            nominal: &nominal,
-            nominal_digest: &nominal_digest,
-            seed,
-            seconds,
-            repaired: &repaired,
-        };
-        let result = result(&found, &beside);
-        Ok(Answer { found, repaired, result })
-    }
-
-    /// A refusal with the file that it is about; where there are several records, the core counts them from 1.
-    fn refused(&self, source: DiagnosisError) -> TrainerError {
-        use DiagnosisError as E;
-        let record = match &source {
-            E::TooFewSamples { record, .. }
-            | E::TooFewCycles { record, .. }
-            | E::NoMotion { record, .. }
-            | E::MissingInput { record }
-            | E::AnotherPeriod { record, .. }
-            | E::LooksLikeDegrees { record, .. }
-            | E::MixedQuantities { record } => *record,
-            _ => 1,
-        };
-        let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
-        TrainerError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
-    }
-}
-
-/// That no record is there twice: it would count as two that agree.
-fn check_distinct(given: &[Given]) -> Result<(), TrainerError> {
-    for (at, one) in given.iter().enumerate() {
-        if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
-            let [first, second] = [one, again].map(|given| given.row.path.clone());
-            return Err(TrainerError::SameRecord { first, second, digest: one.row.digest.clone() });
-        }
-    }
-    Ok(())
 }

@@ -1,20 +1,20 @@
 //! `trainer init`: a first look at a log, and the files to go on from.
 
-mod files;
-
 use crate::commands::diagnose::arguments::Reading;
-use crate::commands::diagnose::read::{centered, coordinate_of, read_options};
-use crate::error::{TrainerError, in_options};
+use crate::error::TrainerError;
 use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use identify::{Estimated, LinearOscillator, identify};
-use record::{Look, look};
+use record::{Look, ReadOptions, look};
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
+use workflow::guess as files;
+use workflow::read::{centered, coordinate_of};
+use workflow::{WorkflowError, in_options};
 
 /// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to go on from.
 #[derive(Debug, Args)]
@@ -74,15 +74,14 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         other => other.into(),
     })?;
     // An input that stands in the file drives the system, whatever its name.
-    let options = read_options(reading, None, true);
-    let mut look = look(log, &options).map_err(TrainerError::DiagnosedRecord)?;
+    let options = ReadOptions { driven: true, ..reading.plain().options };
+    let mut look = look(log, &options).map_err(WorkflowError::Record)?;
     let name = log.display().to_string();
     if reading.remove_mean {
-        look.record =
-            centered(&look.record).map_err(|fault| TrainerError::DiagnosedRecord(fault.in_file(&name)))?;
+        look.record = centered(&look.record).map_err(|fault| WorkflowError::Record(fault.in_file(&name)))?;
     }
     let oscillator = identify(&look.record, &look.clock)
-        .map_err(|source| TrainerError::Identify { file: name.clone(), source })?;
+        .map_err(|source| WorkflowError::Identify { file: name.clone(), source })?;
     let coordinate = coordinate_of(look.source.reading.coordinate);
     let mut files = vec![("nominal.toml", files::nominal_toml(&name, &oscillator, coordinate))];
     let nominal = folder.join("nominal.toml");

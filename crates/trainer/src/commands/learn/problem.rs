@@ -1,6 +1,5 @@
 //! Data sets of a learning study: read or simulated.
 
-use crate::commands::diagnose::read_nominal;
 use crate::configured::read_document;
 use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::resume::DataFile;
@@ -12,6 +11,7 @@ use record::{Clock, Quantity, Record, read_file};
 use runs::digest;
 use simulator::{Plan, generate};
 use std::path::{Path, PathBuf};
+use workflow::nominal;
 
 /// A data set by name, ready or absent.
 pub(crate) struct Prepared {
@@ -84,7 +84,7 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<Ready, TrainerErro
         trajectories.push(trajectory(problem, &name, &record, record.stamps_s())?);
     }
     let nominal = match &problem.nominal {
-        Some(path) => read_nominal(Path::new(path))?.simulator,
+        Some(path) => nominal::read(Path::new(path))?.simulator,
         None => NominalSimulator::from(&drawn.nominal),
     };
     let making = Making { unit: unit.to_owned(), nominal: Some(nominal), ..problem.making() };
@@ -133,7 +133,7 @@ fn files(
         origin = origin.or(reading.statements().origin).or(source.statements.origin);
         read.push(DataFile { path: source.path, digest: source.digest });
     }
-    let nominal = problem.nominal.as_ref().map(|path| read_nominal(Path::new(path))).transpose()?;
+    let nominal = problem.nominal.as_ref().map(|path| nominal::read(Path::new(path))).transpose()?;
     let making = Making {
         unit: unit.map_or("rad", |(_, unit)| unit).to_owned(),
         nominal: nominal.map(|stated| stated.simulator),

@@ -1,12 +1,13 @@
 //! The terminal's answer: one short screen.
 
-use crate::terminal::table::{table, two_digits};
+use crate::terminal::table::table;
 use report::format;
 use results::{
     ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
+use workflow::guess::two_digits;
 
 /// The result as a person wants to read it.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {

@@ -11,7 +11,6 @@ use crate::outcome::Outcome;
 use crate::run_table::of_sweep::label;
 use crate::terminal::console;
 use crate::terminal::progress::Progress;
-use crate::terminal::table::two_digits;
 use estimator::Cancel;
 use experiment::{CheckpointSettings, resolve};
 use registry::ESTIMATORS;
@@ -23,6 +22,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
+use workflow::guess::two_digits;
 
 /// `sweep.json` is written again when this many times its own writing time has passed.
 const REST: u32 = 20;

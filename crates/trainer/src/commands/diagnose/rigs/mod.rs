@@ -5,7 +5,7 @@ mod summary;
 
 use super::arguments::DiagnoseArguments;
 use super::batch::Case;
-use super::{Question, keep, kept, settings};
+use super::{keep, kept, settings};
 use crate::error::TrainerError;
 use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
@@ -19,6 +19,7 @@ use runs::{Disk, RunFolder, default_root};
 use shared::Answered;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
+use workflow::Question;
 
 /// A rig and where its answer goes.
 struct Rig {
@@ -148,7 +149,7 @@ fn answered(
     out: &Path,
     threads: usize,
 ) -> Result<(Answered, String), TrainerError> {
-    let question = Question::read(&rig.case.records, &rig.case.nominal, &arguments.reading)?;
+    let question = Question::read(&rig.case.records, &rig.case.nominal, &arguments.reading.plain())?;
     let asked = kept::asked(arguments, &question);
     let folder = RunFolder::resume_on(&Disk::default(), &out.join(&rig.name))?;
     let result = match kept::finished(&folder, &asked)? {

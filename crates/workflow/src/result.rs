@@ -1,6 +1,6 @@
 //! A diagnosis in the form that files and scripts get.
 
-use super::read::Given;
+use crate::read::Given;
 use diagnosis::{
     Calibrated, Cell, Diagnosis, EffectClass, Interval, KnownRow, ParameterEstimate, Series, Status, Swing,
     backbone, surface,
@@ -14,7 +14,7 @@ use results::{
     ParameterRow, RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, WithInterval,
 };
 
-/// What stands beside the diagnosis itself.
+/// The records, the nominal simulator and the repaired one, beside the diagnosis itself.
 pub(crate) struct Beside<'a> {
     pub(crate) given: &'a [Given],
     /// The file of the nominal simulator.
@@ -159,7 +159,8 @@ fn class_row(class: &EffectClass) -> ClassRow {
 }
 
 /// The name of an id in words.
-pub(crate) fn title(id: &str) -> String {
+#[must_use]
+pub fn title(id: &str) -> String {
     match Status::of_row(id) {
         Some(Status::None) => "nothing is missing",
         Some(Status::Calibration) => "only the coefficients were off",
@@ -298,7 +299,7 @@ fn next_experiment(found: &Diagnosis) -> NextExperiment {
     }
 }
 
-/// Why no experiment is proposed.
+/// Reason why no experiment is proposed.
 fn no_experiment(found: &Diagnosis) -> &'static str {
     match found.verdict.status {
         Status::None | Status::Calibration => "None: no effect was named, so there is nothing to confirm.",
@@ -329,7 +330,7 @@ fn backbones(series: &Series) -> Backbone {
     }
 }
 
-/// What the recalibrated law lacks; a coefficient that these data cannot tell stays as it was.
+/// Restoring force that the recalibrated law lacks, by cells of the phase plane; a coefficient that these data cannot tell stays as it was.
 fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCell> {
     let value = |name: &str| {
         let row = found.calibration.iter().find(|row| row.name == name);
@@ -354,7 +355,8 @@ fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCe
 }
 
 /// The rows of `series.csv`.
-pub(crate) fn series_rows(series: &Series) -> Vec<SeriesRow> {
+#[must_use]
+pub fn series_rows(series: &Series) -> Vec<SeriesRow> {
     let mut rows = Vec::with_capacity(series.time_s.len());
     let mut segment = 0;
     let driven = series.input_torque.iter().any(|torque| *torque != 0.0);

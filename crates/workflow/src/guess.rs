@@ -1,11 +1,12 @@
-//! The files that `trainer init` writes.
+//! A first guess of a nominal simulator, and the files that `trainer init` writes.
 
 use dynamics::Coordinate;
 use identify::{Basis, Estimated, LinearOscillator};
 use std::fmt::Write;
 
 /// A guess of a nominal simulator as a commented `nominal.toml`.
-pub(super) fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordinate) -> String {
+#[must_use]
+pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordinate) -> String {
     let (position, inertia, torque) = match coordinate {
         Coordinate::Angle => ("rad", "kg m^2", "torque"),
         Coordinate::Displacement => ("m", "kg", "force"),
@@ -56,7 +57,8 @@ pub(super) fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate:
 }
 
 /// A configuration that estimates the damping of the record, with the keys that say how to read it.
-pub(super) fn configuration(path: &str, reading: &[(&str, String)]) -> String {
+#[must_use]
+pub fn configuration(path: &str, reading: &[(&str, String)]) -> String {
     let mut text = format!(
         "# Estimates the damping ratio of one record.\n\
          #\n\
@@ -83,15 +85,17 @@ fn quoted(text: &str) -> String {
 }
 
 /// The coordinate's name in configurations.
-pub(super) fn name(coordinate: Coordinate) -> &'static str {
+#[must_use]
+pub fn name(coordinate: Coordinate) -> &'static str {
     match coordinate {
         Coordinate::Angle => "angle",
         Coordinate::Displacement => "displacement",
     }
 }
 
-/// What the oscillator was read from, in words.
-pub(super) fn basis(oscillator: &LinearOscillator) -> String {
+/// The basis of the guess, in words: turning points or windows.
+#[must_use]
+pub fn basis(oscillator: &LinearOscillator) -> String {
     match oscillator.basis {
         Basis::TurningPoints(count) => format!("from {count} turning points of a free decay"),
         Basis::Windows(count) => format!("by regression over {count} windows of the record"),
@@ -99,7 +103,8 @@ pub(super) fn basis(oscillator: &LinearOscillator) -> String {
 }
 
 /// A number to the second digit of its standard error, as TOML reads it.
-pub(super) fn digits(estimated: Estimated) -> String {
+#[must_use]
+pub fn digits(estimated: Estimated) -> String {
     let Estimated { value, std_error } = estimated;
     // Sixteen digits hold any double; an error of zero, or none, asks for all that are worth reading.
     let wanted = if std_error > 0.0 && value != 0.0 {
@@ -115,8 +120,21 @@ pub(super) fn digits(estimated: Estimated) -> String {
 }
 
 /// A standard error to two digits.
-pub(super) fn error(estimated: Estimated) -> String {
-    crate::terminal::table::two_digits(estimated.std_error)
+#[must_use]
+pub fn error(estimated: Estimated) -> String {
+    two_digits(estimated.std_error)
+}
+
+/// An error to two significant digits: with a power of ten only where that is shorter.
+#[must_use]
+pub fn two_digits(value: f64) -> String {
+    let exponent = value.abs().log10().floor();
+    if (-2.0..4.0).contains(&exponent) {
+        let decimals = (1.0 - exponent).max(0.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.1e}")
+    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The repaired simulator: the recalibrated nominal one with the effects that were fitted.
 
-use super::read::{Given, observed};
-use super::result::title;
+use crate::read::{Given, observed};
+use crate::result::title;
 use diagnosis::{Diagnosis, has_fitted_hidden_start, rounded};
 use dynamics::{Active, DynamicsError, Effect, Start, System, Units};
 use export::Repaired;

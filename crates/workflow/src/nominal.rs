@@ -1,39 +1,51 @@
 //! Reading `nominal.toml`: what is believed of a system.
 
-use crate::configured::is_simulation;
-use crate::configured::is_trials;
-use crate::error::TrainerError;
+use crate::error::WorkflowError;
 use experiment::{StatedNominal, resolve_nominal};
 use settings::{Document, SettingsError};
 use std::path::Path;
 
 /// Digest of all that a nominal simulator states; comments and order are not among it.
-pub(super) fn digest(stated: &StatedNominal) -> String {
-    runs::digest(simulator::nominal_text(&stated.simulator).as_bytes())
+#[must_use]
+pub fn digest(stated: &StatedNominal) -> String {
+    runs::digest(export::nominal_text(&stated.simulator).as_bytes())
 }
 
 /// Reads a nominal simulator.
-pub(crate) fn read(path: &Path) -> Result<StatedNominal, TrainerError> {
+///
+/// # Errors
+/// [`WorkflowError`] with line and column; of a file that is something else, with the command that runs it.
+pub fn read(path: &Path) -> Result<StatedNominal, WorkflowError> {
     let file = path.display().to_string();
-    let text = std::fs::read_to_string(path).map_err(|error| TrainerError::Nominal {
+    let text = std::fs::read_to_string(path).map_err(|error| WorkflowError::Nominal {
         file: file.clone(),
         problem: if path.is_dir() { "it is a folder".to_owned() } else { error.to_string() },
     })?;
-    let document = Document::parse(&file, &text)?;
+    parse(&file, &text)
+}
+
+/// Reads a nominal simulator from the text of a file; `file` is its name in messages.
+///
+/// # Errors
+/// As [`read`].
+pub fn parse(file: &str, text: &str) -> Result<StatedNominal, WorkflowError> {
+    let document = Document::parse(file, text)?;
     resolve_nominal(&document).map_err(|error| match (command_for(&document), error) {
-        (Some(command), _) => {
-            TrainerError::NominalIsConfiguration { command: format!("{command} {file}"), file }
-        }
-        (None, SettingsError::Refused { file, problem }) => TrainerError::Nominal { file, problem },
+        (Some(command), _) => WorkflowError::NominalIsConfiguration {
+            command: format!("{command} {file}"),
+            file: file.to_owned(),
+        },
+        (None, SettingsError::Refused { file, problem }) => WorkflowError::Nominal { file, problem },
         (None, other) => other.into(),
     })
 }
 
 /// The command that runs a document which is the configuration of an experiment; `None` where it is none.
 fn command_for(document: &Document) -> Option<&'static str> {
-    if is_trials(document) {
+    let is_task = |name| document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(name));
+    if is_task("trials") {
         Some("trainer trials")
-    } else if is_simulation(document)
+    } else if is_task("simulate")
         || ["record", "start", "sensor"].iter().any(|key| has_section(document, key))
     {
         Some("trainer simulate")
@@ -43,7 +55,7 @@ fn command_for(document: &Document) -> Option<&'static str> {
     }
 }
 
-/// Whether a document has a key or a section of this name.
+/// True where a document has a key or a section of this name.
 fn has_section(document: &Document, name: &str) -> bool {
     let is_below =
         |key: &str| key.strip_prefix(name).is_some_and(|rest| rest.is_empty() || rest.starts_with('.'));

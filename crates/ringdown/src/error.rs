@@ -1,0 +1,103 @@
+//! Reasons why a call gave no answer.
+
+use envelope::EnvelopeError;
+use estimator::FitError;
+use oracle::OracleError;
+use report::ReportError;
+use runs::RunError;
+use settings::SettingsError;
+use simulator::GenerationError;
+use thiserror::Error;
+use workflow::WorkflowError;
+
+/// Reason why a call gave no answer, with the message of the command line: what was found, where, and what to do.
+///
+/// Messages name options of the command line (`--unit deg`); the field of [`Reading`](crate::Reading) or
+/// [`Arrays`](crate::Arrays) has the same name.
+///
+/// ```
+/// use ringdown_lab::{Error, Reading, Record};
+///
+/// let error = Record::parse("log.csv", b"time_s,angle_rad\n0.0,0.1\n0.1,oops\n", &Reading::default()).unwrap_err();
+/// assert!(matches!(error, Error::Record(_)));
+/// assert!(error.to_string().starts_with("log.csv"));
+/// ```
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A record that cannot be read, or that cannot be of the nominal system.
+    #[error(transparent)]
+    Record(WorkflowError),
+    /// A nominal simulator or an option with a wrong value.
+    #[error("{0}")]
+    Config(String),
+    /// A record that says nothing of the nominal system.
+    #[error(transparent)]
+    Diagnosis(WorkflowError),
+    /// A record without an envelope.
+    #[error("{record}: {source}")]
+    Envelope {
+        /// Name of the record.
+        record: String,
+        /// The fault.
+        source: EnvelopeError,
+    },
+    /// An envelope that least squares has no answer for.
+    #[error("{record}: {source}")]
+    LeastSquares {
+        /// Name of the record.
+        record: String,
+        /// The fault.
+        source: OracleError,
+    },
+    /// A method that gives no estimate.
+    #[error("{method}, seed {seed}: {source}")]
+    Fit {
+        /// The method.
+        method: String,
+        /// The seed that it drew from.
+        seed: u64,
+        /// The fault.
+        source: FitError,
+    },
+    /// An estimate that is not a finite number.
+    #[error("{method}, seed {seed}: the estimate is not finite; lower the estimator's start values or steps")]
+    NotFinite {
+        /// The method.
+        method: String,
+        /// The seed that it drew from.
+        seed: u64,
+    },
+    /// A system that cannot be simulated.
+    #[error(transparent)]
+    Simulation(#[from] GenerationError),
+    /// A page that cannot be made.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A file that cannot be written.
+    #[error(transparent)]
+    File(#[from] RunError),
+}
+
+impl From<WorkflowError> for Error {
+    fn from(error: WorkflowError) -> Self {
+        use WorkflowError as E;
+        match error {
+            E::Settings(_) | E::Nominal { .. } | E::NominalIsConfiguration { .. } => {
+                Self::Config(error.to_string())
+            }
+            E::Diagnosis { .. } => Self::Diagnosis(error),
+            E::Record(_)
+            | E::MissingInput { .. }
+            | E::OtherUnit { .. }
+            | E::SameRecord { .. }
+            | E::Identify { .. } => Self::Record(error),
+        }
+    }
+}
+
+impl From<SettingsError> for Error {
+    fn from(error: SettingsError) -> Self {
+        Self::Config(error.to_string())
+    }
+}

@@ -1,0 +1,255 @@
+//! Estimates of the damping ratio.
+
+use crate::error::Error;
+use crate::record::Record;
+use envelope::Extraction;
+use estimator::{Cancel, Estimator, FitContext, Silent};
+use experiment::{Experiment, Pipeline, Single, Task, resolve};
+use oracle::DecayFit;
+use oracle::classical::CLASSICAL;
+use registry::ESTIMATORS;
+use seed::Seed;
+use settings::Document;
+
+/// Options of an estimate, with the defaults of the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct EstimateOptions {
+    /// The way from the record to its peaks; the default is the recommended one.
+    pub pipeline: Pipeline,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// Cap on the training steps; `None` leaves them to the method, 0 asks for the untrained estimate.
+    pub max_steps: Option<u64>,
+    /// Settings of the method as lines of TOML, such as `hidden = [16]`; `trainer explain estimator` lists them.
+    pub settings: String,
+}
+
+impl Default for EstimateOptions {
+    fn default() -> Self {
+        Self { pipeline: Pipeline::Recommended, seed: 0, max_steps: None, settings: String::new() }
+    }
+}
+
+/// A method that estimates a decay rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Method {
+    /// Name in configurations, such as `pinn`.
+    pub id: &'static str,
+    /// Name in words.
+    pub title: &'static str,
+    /// Description in a sentence.
+    pub summary: &'static str,
+}
+
+/// Every method there is: the paper's classical ones, then the learned ones.
+///
+/// ```
+/// assert!(ringdown_lab::methods().any(|method| method.id == "gaussian-process"));
+/// ```
+pub fn methods() -> impl Iterator<Item = Method> {
+    let classical = CLASSICAL.iter().map(|own| Method { id: own.id, title: own.title, summary: own.summary });
+    let learned = ESTIMATORS.iter().map(|own| Method { id: own.id, title: own.title, summary: own.summary });
+    classical.chain(learned)
+}
+
+/// An estimate of the damping of a free decay, beside least squares on the same peaks.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Estimate {
+    /// Damping ratio ζ = λ/√(λ² + ω²); in the paper's pipeline λ/ω.
+    pub damping_ratio: f64,
+    /// Standard error of ζ, where the method states one, for residuals as they scatter on this record.
+    pub damping_ratio_std_error: Option<f64>,
+    /// Decay rate λ of the amplitude, in 1/s.
+    pub decay_rate: f64,
+    /// 95 % interval of λ, where the method states one.
+    pub decay_rate_interval_95: Option<[f64; 2]>,
+    /// Angular frequency ω = 2π/(median period), in rad/s.
+    pub omega_rad_s: f64,
+    /// Number of peaks.
+    pub peaks: usize,
+    /// ζ by closed-form least squares on the same peaks.
+    pub least_squares: f64,
+    /// |ζ − ζ of least squares| over that, in percent: how well the method solved the problem that it was given.
+    pub error_percent: f64,
+    /// State that the fit reached: `converged`, `budget_spent`, `stalled`, `diverged`.
+    pub reached: &'static str,
+    /// Reason for stopping there: a sentence; where it did not converge, with what to do.
+    pub because: String,
+    /// Training steps taken.
+    pub steps: u64,
+    /// Law that the method found, where it finds laws.
+    pub equation: Option<String>,
+}
+
+/// Estimates the damping ratio of a free decay by a method of the registry.
+///
+/// # Errors
+/// [`Error::Config`] for an unknown method or setting, [`Error::Envelope`] for a record without enough peaks,
+/// [`Error::Fit`] where the method gives no estimate.
+///
+/// ```
+/// use ringdown_lab::{EstimateOptions, Nominal, Simulation, estimate};
+///
+/// let record = Simulation::of(&Nominal::swinging(2.0, 0.01)?).noise(1e-4).run()?;
+/// let found = estimate(&record, "sindy", &EstimateOptions::default())?;
+/// assert!((found.damping_ratio - 0.01).abs() < 1e-4);
+/// assert_eq!(found.reached, "converged");
+/// # Ok::<(), ringdown_lab::Error>(())
+/// ```
+pub fn estimate(record: &Record, method: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
+    let experiment = experiment(method, options)?;
+    let prepared = Prepared::new(record, &experiment)?;
+    match &experiment.task {
+        Task::Estimate(Single::Learned { entry, estimator }) => {
+            prepared.learned(entry.id, estimator.as_ref(), options)
+        }
+        Task::Estimate(Single::Classical(id)) => prepared.classical(id, options),
+        Task::Compare(_) => Err(Error::Config("expected one method".to_owned())),
+    }
+}
+
+/// Estimates the damping ratio of a free decay by an estimator of one's own; `name` is what messages call it.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn estimate_with(
+    record: &Record,
+    name: &str,
+    estimator: &dyn Estimator,
+    options: &EstimateOptions,
+) -> Result<Estimate, Error> {
+    Prepared::new(record, &experiment("ols", &EstimateOptions { max_steps: None, ..options.clone() })?)?
+        .learned(name, estimator, options)
+}
+
+/// The peaks of a record, with least squares on them.
+///
+/// # Errors
+/// As [`estimate`].
+///
+/// ```
+/// use ringdown_lab::{EstimateOptions, Nominal, Simulation, peaks};
+///
+/// let record = Simulation::of(&Nominal::swinging(2.0, 0.01)?).sampled(200.0, 10.0).run()?;
+/// let found = peaks(&record, &EstimateOptions::default())?;
+/// // Both half cycles count: four peaks a second, but for those at the ends.
+/// assert!((38..=41).contains(&found.envelope.len()));
+/// # Ok::<(), ringdown_lab::Error>(())
+/// ```
+pub fn peaks(record: &Record, options: &EstimateOptions) -> Result<Extraction, Error> {
+    Ok(Prepared::new(record, &experiment("ols", &EstimateOptions { max_steps: None, ..options.clone() })?)?
+        .extraction)
+}
+
+/// The configuration that the command line would run.
+fn experiment(method: &str, options: &EstimateOptions) -> Result<Experiment, Error> {
+    let text = |value: &str| toml::Value::String(value.to_owned()).to_string();
+    let cap = options.max_steps.map_or_else(String::new, |cap| format!("max_steps = {cap}\n"));
+    let configuration = format!(
+        "[envelope]\npipeline = {}\n[fit]\n{cap}[estimator]\nname = {}\n{}\n",
+        text(options.pipeline.name()),
+        text(method),
+        options.settings,
+    );
+    let document = Document::parse("options", &configuration)?;
+    let classical: Vec<&str> = CLASSICAL.iter().map(|own| own.id).collect();
+    Ok(resolve(&document, ESTIMATORS, &classical)?)
+}
+
+/// A record's envelope and least squares on it.
+struct Prepared {
+    extraction: Extraction,
+    reference: DecayFit,
+}
+
+impl Prepared {
+    fn new(record: &Record, experiment: &Experiment) -> Result<Self, Error> {
+        let name = || record.name().to_owned();
+        let settings = &experiment.envelope;
+        let extraction = settings
+            .extract(settings.pipeline, &record.loaded.record, &record.clock()?)
+            .map_err(|source| Error::Envelope { record: name(), source })?;
+        let reference = oracle::decay_rate(&extraction.envelope)
+            .map_err(|source| Error::LeastSquares { record: name(), source })?;
+        Ok(Self { extraction, reference })
+    }
+
+    fn learned(
+        &self,
+        name: &str,
+        estimator: &dyn Estimator,
+        options: &EstimateOptions,
+    ) -> Result<Estimate, Error> {
+        let cancel = Cancel::new();
+        let seed = Seed::new(options.seed).child(name);
+        let context = FitContext::new(seed, options.max_steps, &Silent, &cancel);
+        let fit = estimator.fit(&self.extraction.envelope, &context).map_err(|source| Error::Fit {
+            method: name.to_owned(),
+            seed: options.seed,
+            source,
+        })?;
+        let made = self.estimate(fit.decay_rate, fit.uncertainty.map(|own| (own.std_error, own.interval_95)));
+        let made = Estimate {
+            reached: fit.stop.reached.name(),
+            because: fit.stop.because,
+            steps: fit.steps,
+            equation: fit.equation,
+            ..made
+        };
+        made.finite(name, options.seed)
+    }
+
+    fn classical(&self, id: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
+        let route = CLASSICAL
+            .iter()
+            .find(|own| own.id == id)
+            .ok_or_else(|| Error::Config(format!("`{id}` is no method")))?;
+        let envelope = &self.extraction.envelope;
+        let fit = (route.fit)(envelope, &Seed::new(options.seed).child(id))
+            .map_err(|source| Error::LeastSquares { record: id.to_owned(), source })?;
+        let degrees = envelope.len() as f64 - 2.0;
+        let uncertainty = fit
+            .std_error
+            .and_then(|error| estimator::Uncertainty::students_t(fit.decay_rate, error, degrees));
+        let made = self.estimate(fit.decay_rate, uncertainty.map(|own| (own.std_error, own.interval_95)));
+        let reached = match fit.reached {
+            oracle::classical::Reached::Converged => "converged",
+            oracle::classical::Reached::BudgetSpent => "budget_spent",
+            oracle::classical::Reached::Stalled => "stalled",
+        };
+        Estimate { reached, because: fit.because, steps: fit.steps, ..made }.finite(id, options.seed)
+    }
+
+    /// An estimate from a decay rate and its stated error, which takes the scatter of the peaks to be even, brought to the
+    /// scatter of this record.
+    fn estimate(&self, rate: f64, stated: Option<(f64, [f64; 2])>) -> Estimate {
+        let envelope = &self.extraction.envelope;
+        let factor = self.reference.scatter_factor;
+        Estimate {
+            damping_ratio: envelope.damping_ratio(rate),
+            damping_ratio_std_error: stated
+                .map(|(error, _)| envelope.damping_ratio_error(rate, factor * error)),
+            decay_rate: rate,
+            decay_rate_interval_95: stated
+                .map(|(_, interval)| interval.map(|bound| rate + factor * (bound - rate))),
+            omega_rad_s: envelope.omega_rad_s(),
+            peaks: envelope.len(),
+            least_squares: self.reference.zeta,
+            error_percent: scoring::error_percent(rate, self.reference.decay_rate),
+            reached: "",
+            because: String::new(),
+            steps: 0,
+            equation: None,
+        }
+    }
+}
+
+impl Estimate {
+    fn finite(self, method: &str, seed: u64) -> Result<Self, Error> {
+        if self.decay_rate.is_finite() {
+            Ok(self)
+        } else {
+            Err(Error::NotFinite { method: method.to_owned(), seed })
+        }
+    }
+}

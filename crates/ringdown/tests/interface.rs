@@ -1,0 +1,101 @@
+//! The interface as a program of its own uses it.
+
+#![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
+
+use ringdown_lab::{
+    Arrays, DiagnosisOptions, Error, Excitation, Nominal, Quantity, Reading, Record, Simulation, Unit,
+    Waveform, diagnose, simulate,
+};
+
+fn arm() -> Nominal {
+    Nominal::swinging(3.5, 0.005).unwrap()
+}
+
+#[test]
+fn a_record_written_as_csv_is_read_again_to_the_bit() {
+    let record = simulate(&Simulation::of(&arm()).sampled(100.0, 2.0).noise(1e-3)).unwrap();
+    let text = record.to_csv(9);
+    assert!(text.starts_with("# origin: simulated\n"));
+    let again = Record::parse("again.csv", text.as_bytes(), &Reading::default()).unwrap();
+    assert_eq!((again.stamps_s(), again.values()), (record.stamps_s(), record.values()));
+
+    // Arrays say nothing of where they came from, and so does the file.
+    let own = Record::new(record.stamps_s().to_vec(), record.values().to_vec(), Arrays::default()).unwrap();
+    assert!(own.to_csv(9).starts_with("time_s,angle_rad\n"));
+}
+
+#[test]
+fn arrays_are_brought_to_si_units_and_tell_their_quantity() {
+    let time: Vec<f64> = (0..20).map(f64::from).collect();
+    let of = |unit, quantity| {
+        let arrays = Arrays { unit, quantity, input: Some(vec![2.0; 20]), ..Arrays::default() };
+        let arrays = Arrays { input_unit: Some(Unit::MillinewtonMeter), ..arrays };
+        Record::new(time.clone(), vec![3.0; 20], arrays).unwrap()
+    };
+    let gyroscope = of(Unit::DegreePerSecond, None);
+    assert_eq!((gyroscope.quantity(), gyroscope.unit()), (Quantity::Velocity, "rad/s"));
+    assert!((gyroscope.values()[0] - 3.0_f64.to_radians()).abs() < 1e-15);
+    assert!((gyroscope.input().unwrap()[0] - 2e-3).abs() < 1e-18);
+    // A voltage stands for whatever it is said to.
+    assert_eq!(of(Unit::Volt, None).quantity(), Quantity::Position);
+    assert_eq!(of(Unit::Volt, Some(Quantity::Velocity)).quantity(), Quantity::Velocity);
+}
+
+#[test]
+fn what_the_simulator_has_already_is_not_named() {
+    let record = Simulation::of(&arm())
+        .with_effect("coulomb_friction", &[("torque", 1.0)])
+        .unwrap()
+        .sampled(150.0, 12.0)
+        .noise(2e-4)
+        .run()
+        .unwrap();
+    let named = |nominal: &Nominal| {
+        let found = diagnose(std::slice::from_ref(&record), nominal, &DiagnosisOptions::default()).unwrap();
+        found.verdict().effects.clone()
+    };
+    assert_eq!(named(&arm()), ["coulomb_friction"]);
+    let knowing = arm().with_effect("coulomb_friction", &[("torque", 0.8)]).unwrap();
+    assert!(named(&knowing).is_empty());
+    // Its text is a nominal simulator with the effect in it.
+    let again = Nominal::parse("again.toml", &knowing.to_toml()).unwrap();
+    assert_eq!(again.to_toml(), knowing.to_toml());
+}
+
+#[test]
+fn a_driven_displacement_needs_its_input_and_its_unit() {
+    let drive = arm().of_a_displacement().unwrap().driven(2.0).unwrap();
+    let chirp =
+        Excitation { waveform: Waveform::Chirp, amplitude: 5.0, frequency_hz: 1.0, end_frequency_hz: 6.0 };
+    let simulation = Simulation::of(&drive).starting(0.0, 0.0).driven_by(chirp).noise(1e-5);
+    let record = simulation.run().unwrap();
+    assert_eq!(record.unit(), "m");
+    let found = diagnose(std::slice::from_ref(&record), &drive, &DiagnosisOptions::default()).unwrap();
+    assert!(found.verdict().effects.is_empty(), "{:?}", found.verdict());
+    // The guess from the record has the gain.
+    let guessed = Nominal::guess(&record).unwrap().coefficients();
+    assert!((guessed.input_gain / 2.0 - 1.0).abs() < 0.01, "{guessed:?}");
+
+    let free = Simulation::of(&drive).run().unwrap();
+    let error = diagnose(&[free], &drive, &DiagnosisOptions::default()).unwrap_err();
+    assert!(matches!(error, Error::Record(_)) && error.to_string().contains("input"), "{error}");
+    let angle = Simulation::of(&arm()).run().unwrap();
+    let error = diagnose(&[angle], &drive, &DiagnosisOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("is in rad"), "{error}");
+}
+
+#[test]
+fn the_same_record_twice_is_refused() {
+    let record = Simulation::of(&arm()).run().unwrap();
+    let twice = [record.clone(), record];
+    let error = diagnose(&twice, &arm(), &DiagnosisOptions::default()).unwrap_err();
+    assert!(error.to_string().contains("the same record"), "{error}");
+}
+
+#[test]
+fn what_cannot_be_simulated_is_refused() {
+    let unknown = Simulation::of(&arm()).with_effect("drag", &[]).unwrap_err();
+    assert!(matches!(unknown, Error::Config(_)), "{unknown}");
+    let endless = Simulation::of(&arm()).sampled(1e9, 1e9).run().unwrap_err();
+    assert!(matches!(endless, Error::Simulation(_)), "{endless}");
+}

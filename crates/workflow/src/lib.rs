@@ -1,0 +1,20 @@
+//! From records and a nominal simulator to a stored answer: what the command line and the Rust interface share.
+//!
+//! A record is [`load`](read::Loaded)ed by its [`Reading`] options, a nominal simulator is [`read`](nominal::read) or
+//! [`guess`]ed; together they are a [`Question`], whose [`Answer`] holds the diagnosis, the repaired simulator and the content
+//! of `diagnosis.json`. Nothing here parses a command line, prints, or writes a file.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+mod error;
+pub mod guess;
+pub mod nominal;
+mod question;
+pub mod read;
+mod repair;
+mod result;
+
+pub use error::{WorkflowError, in_options};
+pub use question::{Answer, Question};
+pub use read::{Given, Loaded, Reading};
+pub use result::{series_rows, title};

@@ -1,0 +1,112 @@
+//! Records of one system, what is believed of it, and the answer.
+
+use crate::error::WorkflowError;
+use crate::nominal;
+use crate::read::{Given, Loaded, Reading};
+use crate::repair::repaired;
+use crate::result::{Beside, result};
+use diagnosis::{Diagnosis, DiagnosisError, Observations, Settings};
+use experiment::StatedNominal;
+use export::Repaired;
+use results::DiagnosisResult;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Records of one system and what is believed of it.
+pub struct Question {
+    /// The nominal simulator.
+    pub stated: StatedNominal,
+    /// The records, in the order given.
+    pub given: Vec<Given>,
+    /// The name of the nominal simulator's file, as results show it.
+    pub nominal: String,
+}
+
+/// A diagnosis with all that it needs to be shown.
+pub struct Answer {
+    /// The diagnosis.
+    pub found: Diagnosis,
+    /// The simulator with what it lacked.
+    pub repaired: Repaired,
+    /// The content of `diagnosis.json`.
+    pub result: DiagnosisResult,
+}
+
+impl Question {
+    /// Puts records and a nominal simulator together.
+    ///
+    /// # Errors
+    /// [`WorkflowError::SameRecord`]: a record that is there twice would count as two that agree.
+    pub fn new(given: Vec<Given>, stated: StatedNominal, nominal: String) -> Result<Self, WorkflowError> {
+        for (at, one) in given.iter().enumerate() {
+            if let Some(again) = given.iter().skip(at + 1).find(|other| other.row.digest == one.row.digest) {
+                let [first, second] = [one, again].map(|given| given.row.path.clone());
+                return Err(WorkflowError::SameRecord { first, second, digest: one.row.digest.clone() });
+            }
+        }
+        Ok(Self { stated, given, nominal })
+    }
+
+    /// Reads records and their nominal simulator from files.
+    ///
+    /// # Errors
+    /// [`WorkflowError`] with the file, the place in it and the option to set.
+    pub fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, WorkflowError> {
+        let stated = nominal::read(nominal)?;
+        let reading = reading.clone().for_nominal(&stated);
+        let given = records.iter().map(|path| Loaded::read(path, &reading)?.given(&stated));
+        let given = given.collect::<Result<Vec<_>, _>>()?;
+        Self::new(given, stated, nominal.display().to_string())
+    }
+
+    /// Digests of the records, with spaces between.
+    #[must_use]
+    pub fn digests(&self) -> String {
+        let digests: Vec<&str> = self.given.iter().map(|given| given.row.digest.as_str()).collect();
+        digests.join(" ")
+    }
+
+    /// Diagnoses; `seed` is what the answer states as the root of the draws of `settings`.
+    ///
+    /// # Errors
+    /// [`WorkflowError::Diagnosis`] with the record that the refusal is about.
+    pub fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, WorkflowError> {
+        let start = Instant::now();
+        let observations: Vec<Observations> =
+            self.given.iter().map(|given| given.observations.clone()).collect();
+        let stopwatch = || start.elapsed().as_secs_f64();
+        let found = diagnosis::diagnose(&observations, &self.stated.simulator, settings, &stopwatch)
+            .map_err(|source| self.refused(source))?;
+        let seconds = stopwatch();
+        let repaired = repaired(&found, &self.given, self.stated.nominal.units())
+            .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;
+        let nominal_digest = nominal::digest(&self.stated);
+        let beside = Beside {
+            given: &self.given,
+            nominal: &self.nominal,
+            nominal_digest: &nominal_digest,
+            seed,
+            seconds,
+            repaired: &repaired,
+        };
+        let result = result(&found, &beside);
+        Ok(Answer { found, repaired, result })
+    }
+
+    /// A refusal with the file that it is about; where there are several records, the core counts them from 1.
+    fn refused(&self, source: DiagnosisError) -> WorkflowError {
+        use DiagnosisError as E;
+        let record = match &source {
+            E::TooFewSamples { record, .. }
+            | E::TooFewCycles { record, .. }
+            | E::NoMotion { record, .. }
+            | E::MissingInput { record }
+            | E::AnotherPeriod { record, .. }
+            | E::LooksLikeDegrees { record, .. }
+            | E::MixedQuantities { record } => *record,
+            _ => 1,
+        };
+        let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
+        WorkflowError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
+    }
+}

@@ -1,0 +1,70 @@
+//! Walks the recipe for a new effect: a damping that grows away from the middle, −c·θ̇·sin²θ.
+//!
+//! An effect is a line of the registry and cannot be added from outside of the workspace. This example makes a record of a
+//! system that has one before the program knows it, shows what the diagnosis says of such a record, and then prints
+//! the steps with the files that teach it the effect. The test `recipe::a_new_effect_takes_two_files_and_is_diagnosed` follows
+//! the same steps with the same files in a copy of the workspace.
+//!
+//!     cargo run -p ringdown-lab --example new_effect
+
+#![allow(clippy::print_stdout, reason = "an example talks to its reader")]
+
+use ringdown_lab::{Arrays, DiagnosisOptions, Error, Nominal, Origin, Record, diagnose};
+
+// ANCHOR: record
+/// The new law: torque per inertia of a damping that grows away from the middle.
+fn sine_drag(position: f64, velocity: f64) -> f64 {
+    -1.2 * velocity * position.sin().powi(2)
+}
+
+/// A record of an arm with it, integrated by the classical Runge–Kutta method; every sample lies on the encoder's steps.
+fn record(arm: &Nominal) -> Result<Record, Error> {
+    let own = arm.coefficients();
+    let acceleration = |position: f64, velocity: f64| {
+        -own.stiffness * position - own.damping * velocity + sine_drag(position, velocity)
+    };
+    let (rate, substeps, encoder) = (260.0, 8, 3e-4_f64);
+    let step = 1.0 / (rate * f64::from(substeps));
+    let (mut position, mut velocity) = (0.8_f64, 0.0_f64);
+    let (mut times, mut values) = (Vec::new(), Vec::new());
+    for sample in 0..5200 {
+        times.push(f64::from(sample) / rate);
+        values.push((position / encoder).round() * encoder);
+        for _ in 0..substeps {
+            let slope = |dx: f64, dv: f64| (velocity + dv, acceleration(position + dx, velocity + dv));
+            let (x1, v1) = slope(0.0, 0.0);
+            let (x2, v2) = slope(0.5 * step * x1, 0.5 * step * v1);
+            let (x3, v3) = slope(0.5 * step * x2, 0.5 * step * v2);
+            let (x4, v4) = slope(step * x3, step * v3);
+            position += step / 6.0 * (x1 + 2.0 * x2 + 2.0 * x3 + x4);
+            velocity += step / 6.0 * (v1 + 2.0 * v2 + 2.0 * v3 + v4);
+        }
+    }
+    let name = "an arm with sine drag".to_owned();
+    Record::new(times, values, Arrays { name, origin: Origin::Simulated, ..Arrays::default() })
+}
+// ANCHOR_END: record
+
+// ANCHOR: main
+/// The steps of CONTRIBUTING.md: where, and what goes there.
+const STEPS: [(&str, &str); 5] = [
+    ("crates/dynamics/src/effects/sine_drag.rs", include_str!("../tests/recipe/law.rs")),
+    ("crates/dynamics/src/effects/mod.rs", "mod sine_drag;\npub use sine_drag::SineDrag;\n"),
+    ("crates/dynamics/src/registry.rs, under `system`", "    SineDrag,\n"),
+    ("crates/diagnosis/src/model/candidates/sine_drag.rs", include_str!("../tests/recipe/candidate.rs")),
+    (
+        "crates/diagnosis/src/model/candidates/mod.rs",
+        "pub(crate) mod sine_drag;\n    Candidate::new(&sine_drag::SineDrag),\n",
+    ),
+];
+
+fn main() -> Result<(), Error> {
+    let arm = Nominal::new(1.0, 0.2, 480.0, 0.0)?;
+    let diagnosis = diagnose(&[record(&arm)?], &arm, &DiagnosisOptions::default())?;
+    println!("Before the program knows the effect:\n{}\n", diagnosis.verdict().summary);
+    for (file, text) in STEPS {
+        println!("--- {file}\n{text}");
+    }
+    Ok(())
+}
+// ANCHOR_END: main
