@@ -1,7 +1,6 @@
 //! From scores to probabilities and a verdict.
 
 use crate::data::segments::Data;
-use crate::evidence::left_over::unexplained;
 use crate::evidence::likelihood::Likelihood;
 use crate::evidence::score::{further_starts, parameter_price};
 use crate::fit::levenberg_marquardt::Fit;
@@ -52,21 +51,17 @@ pub(crate) struct Weighing<'a> {
     /// Log likelihood of the calibrated simulator.
     bare: f64,
     vocabulary: usize,
-    /// Probability that something is left beside the closest set.
-    left_over: f64,
 }
 
 impl<'a> Weighing<'a> {
     /// Beside what the closest set of an archive leaves.
     pub(crate) fn of(data: &'a Data, calibrated: &'a Fit, archive: &Archive, vocabulary: usize) -> Self {
         let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
-        let closest = closest.unwrap_or(calibrated);
-        let noise = crate::noise::floor::floor(data, &closest.residuals).value;
-        let likelihood = Likelihood::of(data, &data.by_part(&closest.residuals), noise);
+        let closest = &closest.unwrap_or(calibrated).residuals;
+        let noise = crate::noise::floor::floor(data, closest).value;
+        let likelihood = Likelihood::of(data, &data.by_part(closest), noise);
         let bare = likelihood.log(&data.by_part(&calibrated.residuals));
-        // Where that cannot be told, something may be left.
-        let left_over = unexplained(data, closest).map_or(1.0, |left| acts(left.evidence));
-        Self { data, calibrated, likelihood, bare, vocabulary, left_over }
+        Self { data, calibrated, likelihood, bare, vocabulary }
     }
 
     /// Log evidence of a set relative to the calibrated simulator: what it gains, less the Bayesian information
@@ -75,7 +70,7 @@ impl<'a> Weighing<'a> {
         let parameters = fit.globals().saturating_sub(self.calibrated.globals()) + further_starts(fit);
         let fitted = parameter_price(parameters, self.likelihood.worth());
         let own = self.likelihood.log(&self.data.by_part(&fit.residuals));
-        own - self.bare - fitted - price(self.data, fit, self.vocabulary, self.left_over)
+        own - self.bare - fitted - price(self.data, fit, self.vocabulary, 1.0)
     }
 
     /// Every set with its probability, best first; the calibrated simulator alone is the empty one.
