@@ -14,7 +14,7 @@ fn layer(name: &str) -> Option<u8> {
         "estimator" | "simulator" => 2,
         "neural" | "sparse" => 3,
         name if name.starts_with("estimator-") => 4,
-        "oracle" => 4,
+        "learn" | "oracle" => 4,
         "scoring" | "experiment" | "runs" | "identify" => 5,
         "conformance" | "diagnosis" => 3,
         "registry" => 5,

@@ -76,6 +76,15 @@ fn every_shipped_configuration_runs() {
             assert_eq!(result["cases"], 3, "{}", path.display());
             continue;
         }
+        if text.contains("task = \"learn\"") {
+            let mut quick =
+                vec![path.to_str().unwrap(), "learn.max_steps=2", "bayesian.warm_up=2", "bayesian.draws=10"];
+            let all = path.ends_with("learn.toml") || path.ends_with("measured.toml");
+            quick.extend(all.then_some("learn.learners=sindy,gaussian-process"));
+            let (code, result, _) = result(&quick);
+            assert_eq!(code, 0, "{}: {result}", path.display());
+            continue;
+        }
         let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../shared/data/"));
         if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {
             continue;

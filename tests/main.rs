@@ -27,6 +27,7 @@ mod fuzz_regressions;
 mod honesty;
 mod init;
 mod json_schema;
+mod learning;
 mod listing;
 mod measured_records;
 mod modules;

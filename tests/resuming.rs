@@ -61,19 +61,22 @@ const PREDICTION: &[&str] = &[
     "checkpoint.interval_s=0.02",
 ];
 
+/// One learner of dynamics beside the baselines; nothing of it is kept before its end.
+const LEARNING: &[&str] = &["configs/learn/sindy.toml", "sindy.members=4", "sindy.refit_samples=500"];
+
 /// Kills a run at random moments and resumes it, until it ends by itself; then everything in its folder equals that of
 /// a run in one go.
 fn killed_and_resumed(rounds: usize, seed: &Seed) {
     let scratch = tempfile::tempdir().unwrap();
     let mut generator = seed.generator();
-    for (which, arguments) in [TRAINING, COMPARISON, PREDICTION].into_iter().enumerate() {
+    for (which, arguments) in [TRAINING, COMPARISON, PREDICTION, LEARNING].into_iter().enumerate() {
         let whole = scratch.path().join(format!("whole-{which}"));
         let begun = Instant::now();
         let code = start(arguments, &whole).wait().unwrap().code();
         let took = begun.elapsed();
         assert!(matches!(code, Some(0 | 1)), "{arguments:?} {code:?}");
         let expected = timeless_files(&whole);
-        for round in (0..rounds).filter(|round| round % 3 == which) {
+        for round in (0..rounds).filter(|round| round % 4 == which) {
             let out = scratch.path().join(format!("{which}-{round}"));
             let mut kills = 0;
             loop {

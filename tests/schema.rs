@@ -24,6 +24,7 @@ fn value(text: &str) -> Value {
 fn configurations() -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> =
         std::fs::read_dir(root().join("configs")).unwrap().map(|entry| entry.unwrap().path()).collect();
+    found.retain(|path| path.is_file());
     found.sort();
     assert!(found.len() > 20);
     found

@@ -32,6 +32,7 @@ fn every_kind_of_run_verifies_as_identical() {
                 "predict.methods=ols,sindy",
             ],
         ),
+        ("learn", &["configs/learn/sindy.toml", "sindy.members=4", "sindy.refit_samples=500"]),
         ("simulate", &["configs/simulate.toml", "simulate.systems=2"]),
     ] {
         let out = run(arguments, scratch.path(), name);

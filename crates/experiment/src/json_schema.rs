@@ -80,7 +80,7 @@ pub fn predict_schema(registry: &[Entry], classical: &[&str]) -> Value {
 }
 
 /// Only the default task need not be named.
-fn asking_for_task(mut required: Value) -> Value {
+pub(crate) fn asking_for_task(mut required: Value) -> Value {
     json_schema::require(&mut required, "", "task");
     required
 }
@@ -108,7 +108,7 @@ fn either(known: Value, other: &Value) -> Value {
     }
 }
 
-fn put(schema: &mut Value, key: &str, value: Value) {
+pub(crate) fn put(schema: &mut Value, key: &str, value: Value) {
     if let Some(object) = schema.as_object_mut() {
         object.insert(key.to_owned(), value);
     }

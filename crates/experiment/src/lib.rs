@@ -7,6 +7,7 @@
 
 mod experiment;
 mod json_schema;
+mod learning;
 mod nominal;
 mod prediction;
 mod schema;
@@ -20,6 +21,9 @@ pub use experiment::{
     Pipeline, Single, Task, resolve,
 };
 pub use json_schema::{compare_schema, estimate_schema, predict_schema};
+pub use learning::{
+    LearnSettings, LearnSource, LearnStudy, LearningProblem, is_learning, learn_schema, resolve_learning,
+};
 pub use nominal::{KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, StatedNominal, resolve_nominal};
 pub use prediction::{
     Law, PredictionSettings, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,

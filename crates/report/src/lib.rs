@@ -20,6 +20,7 @@ mod figures;
 pub mod format;
 mod frame;
 pub mod glossary;
+mod learning;
 mod page;
 mod parse;
 pub mod plot;
@@ -58,6 +59,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
     match parse::task(texts.result)? {
         parse::Task::Estimate => render_run(texts),
         parse::Task::Compare => render_comparison(texts),
+        parse::Task::Learn => learning::render(texts, &parse::parse_learning(texts)?),
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
         parse::Task::Rigs => rigs::render(texts, &parse::rigs_result(texts.result)?),

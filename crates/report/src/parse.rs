@@ -1,9 +1,9 @@
 //! From the texts of a run folder to typed values.
 
 use results::{
-    ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, PredictionCsvRow,
-    PredictionResult, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow,
-    TrialsResult,
+    ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, LearnResult,
+    LearnSeriesRow, LearnTorqueRow, LearnTraceRow, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
+    RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -36,11 +36,20 @@ pub(crate) struct Diagnosis {
     pub(crate) series: Vec<SeriesRow>,
 }
 
+/// The parsed content of the folder of a learning study.
+pub(crate) struct Learning {
+    pub(crate) result: LearnResult,
+    pub(crate) runs: Vec<LearnSeriesRow>,
+    pub(crate) torques: Vec<LearnTorqueRow>,
+    pub(crate) trace: Vec<LearnTraceRow>,
+}
+
 /// What a run was asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task {
     Estimate,
     Compare,
+    Learn,
     Predict,
     Diagnose,
     /// Several rigs of one build.
@@ -56,6 +65,7 @@ impl Task {
         match self {
             Self::Estimate => "estimate",
             Self::Compare => "compare",
+            Self::Learn => "learn",
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
             Self::Rigs => "rigs",
@@ -96,6 +106,16 @@ pub(crate) fn parse_prediction(texts: &RunTexts<'_>) -> Result<Prediction, Repor
     Ok(Prediction {
         result: prediction_result(texts.result)?,
         rows: table("predictions.csv", texts.predictions)?,
+    })
+}
+
+pub(crate) fn parse_learning(texts: &RunTexts<'_>) -> Result<Learning, ReportError> {
+    // No rows are valid tables: no method may have learned anything.
+    Ok(Learning {
+        result: result(texts.result, Task::Learn)?,
+        runs: table("predictions.csv", texts.predictions)?,
+        torques: table("series.csv", texts.series)?,
+        trace: table("trace.csv", texts.trace)?,
     })
 }
 
@@ -162,11 +182,11 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     if tag.task == "runs" {
         return Ok(Task::Table);
     }
-    [Task::Estimate, Task::Compare, Task::Predict, Task::Table]
+    [Task::Estimate, Task::Compare, Task::Learn, Task::Predict, Task::Table]
         .into_iter()
         .find(|task| task.name() == tag.task)
         .ok_or_else(|| ReportError::Task {
-            expected: "\"estimate\", \"sweep\", \"runs\", \"compare\" or \"predict\"".to_owned(),
+            expected: "\"estimate\", \"sweep\", \"runs\", \"compare\", \"learn\" or \"predict\"".to_owned(),
             found: tag.task,
         })
 }
@@ -280,7 +300,7 @@ mod tests {
         sample.result.task = "dream".into();
         let text = sample.render().unwrap_err().to_string();
         assert!(text.starts_with("result.json, field `task`: this report reads \"estimate\", "), "{text}");
-        assert!(text.contains("\"compare\" or \"predict\", the file says \"dream\""), "{text}");
+        assert!(text.contains("\"compare\", \"learn\" or \"predict\", the file says \"dream\""), "{text}");
         sample.result.task = "compare".into();
         let text = sample.render().unwrap_err().to_string();
         assert!(text.contains("reads \"estimate\", the file says \"compare\""), "{text}");

@@ -12,6 +12,7 @@ mod comparison;
 mod diagnosis;
 mod estimation;
 mod interval;
+mod learning;
 mod prediction;
 mod rigs;
 mod simulation;
@@ -32,6 +33,10 @@ pub use estimation::{
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
 };
 pub use interval::WithInterval;
+pub use learning::{
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
+    LearnTest, LearnTorqueRow, LearnTraceRow,
+};
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,

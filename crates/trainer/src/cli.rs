@@ -7,6 +7,7 @@ use crate::commands::explain::ExplainArguments;
 use crate::commands::export::ExportArguments;
 use crate::commands::init::InitArguments;
 use crate::commands::list::Listing;
+use crate::commands::predict::PredictArguments;
 use crate::commands::schema::Purpose;
 use crate::commands::sweep::arguments::SweepArguments;
 use crate::commands::trials::arguments::TrialsArguments;
@@ -34,6 +35,8 @@ Examples:
                                                   starts, or resumes after an interruption
   trainer configs/pinn.toml --json | jq .estimate.zeta
   trainer diagnose record.csv --nominal nominal.toml
+  trainer configs/learn.toml                      the dynamics, learned and judged on unseen records
+  trainer predict MODEL record.csv                a learned model on a record
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable
@@ -97,6 +100,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
+    /// Runs a learned model on a record that it never saw
+    Predict(PredictArguments),
     /// Prints the JSON Schema of configurations, for editors
     Schema {
         /// What the file is for [default: what its key `task` says]

@@ -2,9 +2,13 @@
 
 use crate::error::TrainerError;
 use crate::options::{ExperimentArguments, Output};
+use ::learn::learners::LEARNERS;
 use clap::Args;
 use experiment::sweep::apply_override;
-use experiment::{Experiment, PredictionStudy, is_prediction, resolve, resolve_prediction};
+use experiment::{
+    Experiment, LearnStudy, PredictionStudy, is_learning, is_prediction, resolve, resolve_learning,
+    resolve_prediction,
+};
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
 use settings::{Document, Resolved, nearest};
@@ -28,12 +32,14 @@ pub(crate) struct ConfigArguments {
 }
 
 /// The tasks that configurations are for.
-const TASKS: [&str; 5] = ["estimate", "compare", "predict", "simulate", "trials"];
+const TASKS: [&str; 6] = ["estimate", "compare", "learn", "predict", "simulate", "trials"];
 
 /// A checked configuration.
 pub(crate) enum Configured {
     /// One estimator, or a comparison.
     Experiment(Box<Experiment>),
+    /// Dynamics learned from records.
+    Learning(Box<LearnStudy>),
     /// Held-out prediction.
     Prediction(Box<PredictionStudy>),
     /// Records of systems drawn from priors.
@@ -50,6 +56,8 @@ impl Configured {
             Self::Simulation(Box::new(Plan::resolve(document)?))
         } else if is_trials(document) {
             Self::Trials(Box::new(TrialPlan::resolve(document)?))
+        } else if is_learning(document) {
+            Self::Learning(Box::new(resolve_learning(document, LEARNERS)?))
         } else if is_prediction(document) {
             Self::Prediction(Box::new(resolve_prediction(document, ESTIMATORS, &classical)?))
         } else {
@@ -61,6 +69,7 @@ impl Configured {
     pub(crate) fn resolved(&self) -> &Resolved {
         match self {
             Self::Experiment(experiment) => &experiment.resolved,
+            Self::Learning(study) => &study.resolved,
             Self::Prediction(study) => &study.resolved,
             Self::Simulation(plan) => &plan.resolved,
             Self::Trials(plan) => &plan.resolved,

@@ -27,8 +27,8 @@ mod terminal;
 use clap::{CommandFactory, FromArgMatches};
 use cli::{Arguments, Command};
 use commands::{
-    check, cite, compare, diagnose, explain, export, init, list, manual, report, run, schema, simulate,
-    sweep, trials, verify,
+    check, cite, compare, diagnose, explain, export, init, list, manual, predict, report, run, schema,
+    simulate, sweep, trials, verify,
 };
 use error::TrainerError;
 use outcome::Outcome;
@@ -73,6 +73,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
+        Some(Command::Predict(arguments)) => predict::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),
         Some(Command::Verify { run, threads, output }) => verify::command(&run, threads, output),

@@ -50,7 +50,7 @@ fn command_for(document: &Document) -> Option<&'static str> {
     {
         Some("trainer simulate")
     } else {
-        let known = ["task", "base", "estimator", "data", "fit", "compare", "predict"];
+        let known = ["task", "base", "estimator", "data", "fit", "compare", "learn", "predict"];
         known.iter().any(|key| has_section(document, key)).then_some("trainer")
     }
 }

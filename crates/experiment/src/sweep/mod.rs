@@ -115,7 +115,7 @@ fn one(
         apply_override(&mut document, argument).map_err(Fault::Settings)?;
     }
     let task = document.get("task").and_then(|leaf| leaf.value.as_str());
-    if let Some(task @ ("predict" | "simulate" | "trials")) = task {
+    if let Some(task @ ("learn" | "predict" | "simulate" | "trials")) = task {
         return Err(Fault::Task(task.to_owned()));
     }
     resolve(&document, registry, classical).map_err(Fault::Settings)

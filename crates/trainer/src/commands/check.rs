@@ -1,12 +1,13 @@
 //! `trainer check`: a configuration and its data looked at, nothing run, nothing written.
 
+use crate::commands::learn::{method::methods, problem};
 use crate::configured::{ConfigArguments, Configured, read_document};
 use crate::error::TrainerError;
 use crate::fits::input::Input;
 use crate::fits::method::Method;
 use crate::outcome::Outcome;
 use crate::terminal::table::table;
-use experiment::{Experiment, PredictionStudy, Single, Task};
+use experiment::{Experiment, LearnStudy, PredictionStudy, Single, Task};
 use serde::Serialize;
 use settings::{Origin, Resolved};
 use simulator::Plan;
@@ -54,6 +55,7 @@ pub(crate) fn command(arguments: &ConfigArguments) -> Result<Outcome, TrainerErr
             };
             (task, &experiment.name, experiment.seed, fits(experiment)?)
         }
+        Configured::Learning(study) => ("learn", &study.name, study.seed, learning(study)?),
         Configured::Prediction(study) => ("predict", &study.name, study.seed, study_of(study)?),
         Configured::Simulation(plan) => {
             ("simulate", &plan.name, plan.seed, simulation(plan, document.file())?)
@@ -114,6 +116,27 @@ fn study_of(study: &PredictionStudy) -> Result<Vec<Line>, TrainerError> {
                 None => format!("simulated, {} draws", ready.envelopes.len()),
             },
             Err(missing) => format!("ABSENT: {}", missing.reason),
+        };
+        lines.push(line(format!("problem {}", problem.id), text));
+    }
+    Ok(lines)
+}
+
+fn learning(study: &LearnStudy) -> Result<Vec<Line>, TrainerError> {
+    let methods = methods(&study.settings, &study.resolved)?;
+    let names: Vec<&str> = methods.iter().map(|method| method.id).collect();
+    let mut lines = vec![line("methods", format!("{}: {}", names.len(), names.join(", ")))];
+    for problem in &study.problems {
+        let text = match problem::prepare(problem)?.ready {
+            Ok(ready) => {
+                let data = &ready.data;
+                let parts = (data.train.len(), data.validation.len(), data.test.len());
+                format!(
+                    "{} records: {} to learn from, {} to choose, {} to test on",
+                    ready.records, parts.0, parts.1, parts.2
+                )
+            }
+            Err(reason) => format!("ABSENT: {reason}"),
         };
         lines.push(line(format!("problem {}", problem.id), text));
     }

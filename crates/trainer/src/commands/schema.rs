@@ -3,9 +3,11 @@
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
 use crate::terminal::console;
+use ::learn::learners::LEARNERS;
 use clap::ValueEnum;
 use experiment::{
-    KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, compare_schema, estimate_schema, predict_schema,
+    KNOWN_EFFECT, NOMINAL, NOMINAL_DECAYS, NOMINAL_SWINGS, compare_schema, estimate_schema, learn_schema,
+    predict_schema,
 };
 use oracle::classical::CLASSICAL;
 use registry::ESTIMATORS;
@@ -21,6 +23,8 @@ pub(crate) enum Purpose {
     Estimate,
     /// Many methods on one record
     Compare,
+    /// Dynamics learned from records
+    Learn,
     /// Methods scored on held-out peaks
     Predict,
     /// Records of systems drawn from priors
@@ -32,14 +36,21 @@ pub(crate) enum Purpose {
 }
 
 /// Those that a file names as its task.
-const TASKS: [Purpose; 5] =
-    [Purpose::Estimate, Purpose::Compare, Purpose::Predict, Purpose::Simulate, Purpose::Trials];
+const TASKS: [Purpose; 6] = [
+    Purpose::Estimate,
+    Purpose::Compare,
+    Purpose::Learn,
+    Purpose::Predict,
+    Purpose::Simulate,
+    Purpose::Trials,
+];
 
 impl Purpose {
     fn name(self) -> &'static str {
         match self {
             Self::Estimate => "estimate",
             Self::Compare => "compare",
+            Self::Learn => "learn",
             Self::Predict => "predict",
             Self::Simulate => "simulate",
             Self::Trials => "trials",
@@ -52,6 +63,7 @@ impl Purpose {
         match self {
             Self::Estimate => estimate_schema(ESTIMATORS, &classical),
             Self::Compare => compare_schema(ESTIMATORS, &classical),
+            Self::Learn => learn_schema(LEARNERS),
             Self::Predict => predict_schema(ESTIMATORS, &classical),
             Self::Simulate => simulate_schema(),
             Self::Trials => trials_schema(),

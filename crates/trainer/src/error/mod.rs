@@ -1,6 +1,7 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
 mod kept;
+mod learn;
 mod resume;
 mod sweep;
 mod table;
@@ -20,6 +21,7 @@ use tracking::TrackingError;
 use workflow::WorkflowError;
 
 pub(crate) use kept::KeptError;
+pub(crate) use learn::LearnCommandError;
 pub(crate) use resume::ResumeError;
 pub(crate) use sweep::SweepCommandError;
 pub(crate) use table::TableError;
@@ -82,6 +84,8 @@ pub(crate) enum TrainerError {
     InitOccupied { folder: String },
     #[error(transparent)]
     Workflow(#[from] WorkflowError),
+    #[error(transparent)]
+    Learn(#[from] LearnCommandError),
     #[error(transparent)]
     Kept(#[from] KeptError),
     #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
@@ -153,6 +157,7 @@ impl TrainerError {
             | Self::InitOccupied { .. }
             | Self::Workflow(_)
             | Self::Kept(_)
+            | Self::Learn(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::NoRig { .. }

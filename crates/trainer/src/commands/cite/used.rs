@@ -46,6 +46,8 @@ impl Used {
                     }
                 }
             }
+            // What learns dynamics is no estimator; its works stand with the registry of learners.
+            (_, "learn") => {}
             (_, "simulate") => self.effects.extend(ids(result.get("effects"))),
             _ => return Err(refused(format!("{name} is of no task that is known here"))),
         }

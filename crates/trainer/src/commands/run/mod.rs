@@ -8,7 +8,7 @@ mod ready;
 mod resume_tests;
 mod summary;
 
-use crate::commands::{simulate, trials};
+use crate::commands::{learn, simulate, trials};
 use crate::configured::{Configured, read_config};
 use crate::error::TrainerError;
 use crate::fits::input::Input;
@@ -37,6 +37,7 @@ pub(crate) fn run_until(
     let experiment = match Configured::resolve(&read_config(arguments)?)? {
         Configured::Simulation(plan) => return simulate::simulate(arguments, &plan, cancel),
         Configured::Trials(_) => return trials::run(&arguments.into(), cancel),
+        Configured::Learning(study) => return learn::learn(arguments, &study, cancel),
         Configured::Prediction(study) => return predict(arguments, &study, cancel),
         Configured::Experiment(experiment) => experiment,
     };

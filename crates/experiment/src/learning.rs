@@ -1,0 +1,413 @@
+//! `task = "learn"`: dynamics learned from sets of records, judged on records never seen.
+
+use crate::experiment::DataSettings;
+use crate::json_schema::{asking_for_task, put};
+use crate::schema::{DATA, PLAIN, TOP};
+use learn::Entry;
+use learn::baselines::BASELINES;
+use learn::data::{InputHold, Making, Split, SplitKind};
+use serde::Deserialize;
+use serde_json::{Value, json};
+use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError, json_schema};
+use toml::Table;
+
+/// The name of the task.
+const TASK: &str = "learn";
+
+/// A learning study with every key checked.
+pub struct LearnStudy {
+    /// Start of the run folder's name.
+    pub name: String,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// Methods and budget.
+    pub settings: LearnSettings,
+    /// The data sets, in the order written.
+    pub problems: Vec<LearningProblem>,
+    /// Every value in force.
+    pub resolved: Resolved,
+}
+
+/// The section `learn`.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LearnSettings {
+    /// Names of the learners, each known; `None` for all there are.
+    pub learners: Option<Vec<String>>,
+    /// Names of the baselines, each known; `None` for all there are.
+    pub baselines: Option<Vec<String>>,
+    problems: Option<Vec<String>>,
+    /// Cap on the steps of every fit.
+    pub max_steps: Option<u64>,
+}
+
+/// A section `problem.NAME`: a data set.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearningProblem {
+    /// NAME.
+    pub id: String,
+    /// Title in words.
+    pub title: String,
+    /// Where its records come from.
+    pub source: LearnSource,
+    /// File of the nominal simulator, where one is named.
+    pub nominal: Option<String>,
+    /// Every how manieth sample is taken.
+    pub every: usize,
+    /// Whether the mean of the observed column is taken away.
+    pub remove_mean: bool,
+    split: SplitKeys,
+}
+
+/// Where records come from.
+#[derive(Debug, Clone, PartialEq)]
+pub enum LearnSource {
+    /// A configuration of a simulation: the records of its first system.
+    Simulation(String),
+    /// Files below a folder.
+    Files {
+        /// The folder.
+        folder: String,
+        /// Names, which may hold `*`.
+        records: Vec<String>,
+        /// How to read them.
+        reading: Box<DataSettings>,
+    },
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct SplitKeys {
+    split: SplitKind,
+    test_records: usize,
+    validation_records: usize,
+    test_share: f64,
+    validation_share: f64,
+    hold: InputHold,
+    warm_up_s: Option<f64>,
+    period_s: Option<f64>,
+    noise: Option<f64>,
+}
+
+impl LearningProblem {
+    /// What a data set is made from, as far as the configuration says it; the nominal simulator and the unit are the
+    /// caller's.
+    #[must_use]
+    pub fn making(&self) -> Making {
+        let keys = &self.split;
+        Making {
+            split: Split {
+                kind: keys.split,
+                test_records: keys.test_records,
+                validation_records: keys.validation_records,
+                test_share: keys.test_share,
+                validation_share: keys.validation_share,
+            },
+            unit: String::new(),
+            nominal: None,
+            hold: keys.hold,
+            warm_up_s: keys.warm_up_s,
+            period_s: keys.period_s,
+            noise: keys.noise,
+        }
+    }
+}
+
+#[derive(Deserialize)]
+struct Head {
+    title: Option<String>,
+    simulation: Option<String>,
+    folder: Option<String>,
+    records: Option<Vec<String>>,
+    nominal: Option<String>,
+    every: usize,
+    remove_mean: bool,
+}
+
+#[derive(Deserialize)]
+struct Top {
+    name: Option<String>,
+    seed: u64,
+}
+
+const TASK_FIELD: Field = Field {
+    key: "task",
+    kind: Kind::Choice(&[TASK]),
+    default: Default::Required,
+    meaning: "What to do: learn the dynamics from records, and judge on records never seen.",
+    ..PLAIN
+};
+
+fn top() -> Vec<Field> {
+    TOP.iter().map(|field| if field.key == "task" { TASK_FIELD } else { *field }).collect()
+}
+
+const LEARN: &[Field] = &[
+    Field {
+        key: "learners",
+        kind: Kind::Texts { at_least: 0, at_most: 100 },
+        meaning: "Which learners, by name; left open, all there are.",
+        ..PLAIN
+    },
+    Field {
+        key: "baselines",
+        kind: Kind::Texts { at_least: 0, at_most: 100 },
+        meaning: "Which baselines: persistence, nominal, recalibrated, arx, repaired (which runs a diagnosis, the slowest); \
+                  left open, all there are.",
+        ..PLAIN
+    },
+    Field {
+        key: "problems",
+        kind: Kind::Texts { at_least: 1, at_most: 1000 },
+        meaning: "Which data sets, by name; left open, every section problem.NAME.",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Kind::Integer { min: 0, max: i64::MAX },
+        meaning: "Cap on the steps of every fit, whatever a learner's own; 0 leaves networks untrained.",
+        ..PLAIN
+    },
+];
+
+const PROBLEM: &[Field] = &[
+    Field { key: "title", meaning: "Title in tables and reports; left open, the section's name.", ..PLAIN },
+    Field {
+        key: "simulation",
+        kind: Kind::Path,
+        meaning: "A configuration of a simulation; the records are those of its first system, and the truth is known to the \
+                  judge.",
+        ..PLAIN
+    },
+    Field { key: "folder", kind: Kind::Path, meaning: "The folder of the record files.", ..PLAIN },
+    Field {
+        key: "records",
+        kind: Kind::Texts { at_least: 1, at_most: 10_000 },
+        meaning: "Names of record files in the folder, which may hold *; the last ones are tested on.",
+        ..PLAIN
+    },
+    Field {
+        key: "nominal",
+        kind: Kind::Path,
+        meaning: "The nominal simulator's file; left open, that of the simulation, or none.",
+        ..PLAIN
+    },
+    Field {
+        key: "every",
+        kind: Kind::Integer { min: 1, max: 1_000_000 },
+        default: Default::Integer(1),
+        meaning: "Takes one sample of so many.",
+        ..PLAIN
+    },
+    Field {
+        key: "remove_mean",
+        kind: Kind::Boolean,
+        default: Default::Boolean(false),
+        meaning: "Takes the mean of the observed column and of the input away: for channels with an arbitrary zero.",
+        ..PLAIN
+    },
+    Field {
+        key: "split",
+        kind: Kind::Choice(&["record", "time", "both"]),
+        default: Default::Text("record"),
+        meaning: "What is tested on: whole records, the end of every record, or the end of records not learned from.",
+        ..PLAIN
+    },
+    Field {
+        key: "test_records",
+        kind: Kind::Integer { min: 0, max: 100_000 },
+        default: Default::Integer(1),
+        meaning: "By record: how many, the last ones, are tested on.",
+        ..PLAIN
+    },
+    Field {
+        key: "validation_records",
+        kind: Kind::Integer { min: 0, max: 100_000 },
+        default: Default::Integer(0),
+        meaning: "By record: how many, before those, choose among models; with 0 the end of the training records does.",
+        ..PLAIN
+    },
+    Field {
+        key: "test_share",
+        kind: Kind::Float { min: 0.01, max: 0.9 },
+        default: Default::Float(0.3),
+        meaning: "By time: share of a record at its end that is tested on.",
+        ..PLAIN
+    },
+    Field {
+        key: "validation_share",
+        kind: Kind::Float { min: 0.01, max: 0.9 },
+        default: Default::Float(0.2),
+        meaning: "Share of a training part at its end that chooses among models, where no record does.",
+        ..PLAIN
+    },
+    Field {
+        key: "hold",
+        kind: Kind::Choice(&["zero", "linear"]),
+        default: Default::Text("zero"),
+        meaning: "What the input does between samples: keep its value, or go straight to the next.",
+        ..PLAIN
+    },
+    Field {
+        key: "warm_up_s",
+        kind: Kind::Float { min: 1e-9, max: 1e9 },
+        unit: "s",
+        meaning: "Past that a prediction starts from; left open, a period.",
+        ..PLAIN
+    },
+    Field {
+        key: "period_s",
+        kind: Kind::Float { min: 1e-9, max: 1e9 },
+        unit: "s",
+        meaning: "Typical period of the motion; left open, read from the training records.",
+        ..PLAIN
+    },
+    Field {
+        key: "noise",
+        kind: Kind::Float { min: 1e-300, max: 1e9 },
+        unit: "unit of the positions",
+        meaning: "Standard deviation of the sensor's noise; left open, read from the training records.",
+        ..PLAIN
+    },
+];
+
+/// The keys of a problem: its own, and how its files are read.
+fn problem_fields() -> Vec<Field> {
+    let reading = DATA.iter().filter(|field| field.key != "path").copied();
+    PROBLEM.iter().copied().chain(reading).collect()
+}
+
+/// Whether a document asks for this task.
+#[must_use]
+pub fn is_learning(document: &Document) -> bool {
+    document.get("task").is_some_and(|leaf| leaf.value.as_str() == Some(TASK))
+}
+
+/// Checks a document with `task = "learn"`, overrides applied, against the schema and the learners there are.
+///
+/// # Errors
+/// [`SettingsError`], with file, line and column or the override that caused it.
+pub fn resolve_learning(document: &Document, learners: &[Entry]) -> Result<LearnStudy, SettingsError> {
+    let ids = document.tables_below("problem");
+    if ids.is_empty() {
+        return Err(SettingsError::Missing {
+            file: document.file().to_owned(),
+            key: "problem.NAME".to_owned(),
+            meaning: "A study needs data sets.".to_owned(),
+            expected: "a section [problem.NAME] for each, as in configs/learn.toml".to_owned(),
+        });
+    }
+    let names: Vec<String> = ids.iter().map(|id| format!("problem.{id}")).collect();
+    let (top_fields, problem) = (top(), problem_fields());
+    let mut sections =
+        vec![Section { name: "", fields: &top_fields }, Section { name: "learn", fields: LEARN }];
+    sections.extend(learners.iter().map(|entry| Section { name: entry.id, fields: entry.fields }));
+    sections.extend(names.iter().map(|name| Section { name, fields: &problem }));
+    let resolved = Resolved::new(document, &sections)?;
+
+    let top: Top = resolved.section("")?;
+    let settings: LearnSettings = resolved.section("learn")?;
+    let known: Vec<String> = learners.iter().map(|entry| entry.id.to_owned()).collect();
+    all_known(document, "learn.learners", "learner", settings.learners.as_deref(), &known)?;
+    let known: Vec<String> = BASELINES.iter().map(|baseline| baseline.id.to_owned()).collect();
+    all_known(document, "learn.baselines", "baseline", settings.baselines.as_deref(), &known)?;
+    all_known(document, "learn.problems", "problem", settings.problems.as_deref(), &ids)?;
+    for entry in learners {
+        (entry.build)(&resolved)?;
+    }
+    let wanted =
+        |id: &str| settings.problems.as_ref().is_none_or(|names| names.iter().any(|name| name == id));
+    let problems = ids
+        .iter()
+        .zip(&names)
+        .filter(|(id, _)| wanted(id))
+        .map(|(id, section)| read(document, &resolved, id, section))
+        .collect::<Result<_, _>>()?;
+    Ok(LearnStudy {
+        name: top.name.unwrap_or_else(|| TASK.to_owned()),
+        seed: top.seed,
+        settings,
+        problems,
+        resolved,
+    })
+}
+
+fn read(
+    document: &Document,
+    resolved: &Resolved,
+    id: &str,
+    section: &str,
+) -> Result<LearningProblem, SettingsError> {
+    let head: Head = resolved.section(section)?;
+    let source = match (head.simulation, head.folder.zip(head.records)) {
+        (Some(simulation), None) => LearnSource::Simulation(simulation),
+        (None, Some((folder, records))) => {
+            let reading = Box::new(reading(resolved, section)?);
+            LearnSource::Files { folder, records, reading }
+        }
+        _ => {
+            return Err(SettingsError::Missing {
+                file: document.file().to_owned(),
+                key: format!("{section}.simulation"),
+                meaning: "A data set comes from a simulation or from files.".to_owned(),
+                expected: "either simulation, or folder and records".to_owned(),
+            });
+        }
+    };
+    Ok(LearningProblem {
+        id: id.to_owned(),
+        title: head.title.unwrap_or_else(|| id.to_owned()),
+        source,
+        nominal: head.nominal,
+        every: head.every,
+        remove_mean: head.remove_mean,
+        split: resolved.section(section)?,
+    })
+}
+
+/// The keys of a problem that say how its files are read.
+fn reading(resolved: &Resolved, section: &str) -> Result<DataSettings, SettingsError> {
+    let own = resolved.settings().iter().filter(|setting| setting.section == section);
+    let of_reading = own.filter(|setting| DATA.iter().any(|field| field.key == setting.field.key));
+    let values =
+        of_reading.filter_map(|setting| Some((setting.field.key.to_owned(), setting.value.clone()?)));
+    let table: Table = values.chain([("path".to_owned(), toml::Value::String(String::new()))]).collect();
+    table.try_into().map_err(|error: toml::de::Error| SettingsError::Declaration {
+        section: section.to_owned(),
+        problem: error.message().to_owned(),
+    })
+}
+
+/// Refuses a name that is not known.
+fn all_known(
+    document: &Document,
+    key: &str,
+    what: &str,
+    names: Option<&[String]>,
+    known: &[String],
+) -> Result<(), SettingsError> {
+    let origin = || document.get(key).map_or(Origin::Default, |leaf| leaf.origin.clone());
+    match names.into_iter().flatten().find(|name| !known.contains(name)) {
+        Some(name) => Err(SettingsError::unknown_name(origin(), what, name, known.to_vec())),
+        None => Ok(()),
+    }
+}
+
+/// JSON Schema of `task = "learn"`, with the keys of each learner under its name.
+#[must_use]
+pub fn learn_schema(learners: &[Entry]) -> Value {
+    let (top_fields, problem) = (top(), problem_fields());
+    let mut sections =
+        vec![Section { name: "", fields: &top_fields }, Section { name: "learn", fields: LEARN }];
+    sections.extend(learners.iter().map(|entry| Section { name: entry.id, fields: entry.fields }));
+    let mut root = json_schema::tables(&sections);
+    json_schema::insert(&mut root, "", "task", json!({ "const": TASK }));
+    let problems = json!({ "type": "object", "additionalProperties": json_schema::table(&problem) });
+    json_schema::insert(&mut root, "", "problem", problems);
+    let mut required = asking_for_task(json_schema::requirements(&sections));
+    json_schema::require(&mut required, "", "problem");
+    if let Some(object) = required.as_object_mut() {
+        let each = json!({ "minProperties": 1 });
+        put(object.entry("properties").or_insert_with(|| json!({})), "problem", each);
+    }
+    json_schema::with_base(root, required)
+}

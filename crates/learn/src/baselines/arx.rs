@@ -1,0 +1,105 @@
+//! A linear autoregression with input, run freely: what linear system identification makes of the records.
+//!
+//! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of one step (Ljung, System Identification, 2nd ed. 1999, section 4.2).
+//! The order is that whose free run validates best.
+
+use crate::data::{DataSet, Trajectory};
+use crate::judge::validation_error;
+use crate::linear::least_squares;
+use crate::{Ahead, LearnError, Model, Past, Predicted};
+use nalgebra::{DMatrix, DVector};
+
+/// A linear autoregression with input.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Arx {
+    /// Weight of each earlier position, the latest first.
+    positions: Vec<f64>,
+    /// Weight of each earlier input, the latest first; none without an input.
+    inputs: Vec<f64>,
+    constant: f64,
+    bound: f64,
+}
+
+/// Orders that are tried.
+const ORDERS: [usize; 6] = [2, 4, 8, 16, 24, 32];
+
+/// Rows of a regression at most.
+const MOST_ROWS: usize = 8_000;
+
+impl Arx {
+    /// Fits every order that a warm-up has samples for, and keeps the one that validates best.
+    ///
+    /// # Errors
+    /// [`LearnError::Unsolvable`] where no order can be fitted.
+    pub fn fit(data: &DataSet) -> Result<Self, LearnError> {
+        let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
+        let fitted =
+            ORDERS.iter().filter(|order| **order < shortest.max(8)).filter_map(|&order| of(data, order));
+        let scored = fitted.map(|model| (validation_error(&model, data), model));
+        let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
+        best.map(|(_, model)| model).ok_or(LearnError::Unsolvable {
+            what: "arx",
+            problem: "no order could be fitted; give longer training records".to_owned(),
+        })
+    }
+}
+
+fn of(data: &DataSet, order: usize) -> Option<Arx> {
+    let driven = data.is_driven();
+    let width = order * (1 + usize::from(driven)) + 1;
+    let stride = (data.training_samples() / MOST_ROWS).max(1);
+    let (mut rows, mut right) = (Vec::new(), Vec::new());
+    for part in &data.train {
+        for now in (order..part.len()).step_by(stride) {
+            rows.extend(latest_first(part.values(), now, order));
+            if driven {
+                rows.extend(latest_first(part.input().unwrap_or_default(), now, order));
+            }
+            rows.push(1.0);
+            right.push(part.values().get(now).copied()?);
+        }
+    }
+    let rows = DMatrix::from_row_slice(right.len(), width, &rows);
+    let weights = least_squares(&rows, &DVector::from_vec(right))?;
+    let (positions, rest) = weights.as_slice().split_at_checked(order)?;
+    let (constant, inputs) = rest.split_last()?;
+    let bound = data.scale.center.abs() + 1e3 * data.scale.position;
+    Some(Arx { positions: positions.to_vec(), inputs: inputs.to_vec(), constant: *constant, bound })
+}
+
+/// The `count` values before `now`, the latest first.
+fn latest_first(values: &[f64], now: usize, count: usize) -> impl Iterator<Item = f64> + '_ {
+    values.get(now.saturating_sub(count)..now).unwrap_or_default().iter().rev().copied()
+}
+
+impl Model for Arx {
+    fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
+        let order = self.positions.len();
+        let known = past.values.len();
+        if known < order {
+            let name = "past".to_owned();
+            return Trajectory::new(name.clone(), Vec::new(), Vec::new(), None).and(Err(
+                LearnError::TooShort { record: name, samples: known, needed: order, warm_up_s: 0.0 },
+            ));
+        }
+        let mut values = past.values.to_vec();
+        let inputs = [past.input.unwrap_or_default(), ahead.input.unwrap_or_default()].concat();
+        let first = past.times_s.first().copied().unwrap_or_default();
+        for (number, time) in ahead.times_s.iter().enumerate() {
+            let now = known + number;
+            let sum = |weights: &[f64], from: &[f64]| -> f64 {
+                weights.iter().zip(latest_first(from, now, order)).map(|(weight, value)| weight * value).sum()
+            };
+            let value = self.constant + sum(&self.positions, &values) + sum(&self.inputs, &inputs);
+            if value.is_nan() || value.abs() > self.bound {
+                return Err(LearnError::Diverged { time_s: time - first, bound: self.bound });
+            }
+            values.push(value);
+        }
+        Ok(Predicted { values: values.split_off(known), std: None })
+    }
+
+    fn parameters(&self) -> usize {
+        self.positions.len() + self.inputs.len() + 1
+    }
+}

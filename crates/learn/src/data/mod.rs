@@ -1,0 +1,23 @@
+//! Sets of records, split by record or by time, with what every learner needs to know of them.
+
+mod period;
+mod set;
+mod smoothing;
+mod split;
+#[cfg(test)]
+mod tests;
+mod trajectory;
+mod windows;
+
+pub use period::{noise_floor, period};
+pub use set::{DataSet, Making, Scale};
+pub(crate) use smoothing::local_state;
+pub use smoothing::{LocalState, local_states};
+pub use split::{Split, SplitKind};
+pub use trajectory::{InputHold, Trajectory};
+pub use windows::{Window, windows};
+
+/// A count with its noun.
+pub(crate) fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("{count} {noun}") } else { format!("{count} {noun}s") }
+}

@@ -1,0 +1,202 @@
+//! A data set: split trajectories with scales learned from the training part only.
+
+use super::period::{noise_floor, period};
+use super::split::split;
+use super::{InputHold, Split, Trajectory, local_states};
+use crate::LearnError;
+use dynamics::NominalSimulator;
+use serde::{Deserialize, Serialize};
+
+/// Mean and spread of what models see, from the training part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Scale {
+    /// Mean position.
+    pub center: f64,
+    /// Standard deviation of the position.
+    pub position: f64,
+    /// Root mean square of the velocity.
+    pub velocity: f64,
+    /// Mean input; 0 without one.
+    pub input_center: f64,
+    /// Standard deviation of the input; 1 without one.
+    pub input: f64,
+    /// Root mean square of the acceleration.
+    pub acceleration: f64,
+}
+
+/// Trajectories to learn from, to validate on and to test on.
+#[derive(Debug, Clone)]
+pub struct DataSet {
+    /// Learned from.
+    pub train: Vec<Trajectory>,
+    /// Used to choose among models; never to judge them.
+    pub validation: Vec<Trajectory>,
+    /// Used to judge only.
+    pub test: Vec<Trajectory>,
+    /// Unit of the positions.
+    pub unit: String,
+    /// What is believed of the system, where something is.
+    pub nominal: Option<NominalSimulator>,
+    /// What inputs do between samples.
+    pub hold: InputHold,
+    /// Time at the start of a stretch that is given to a model as its past, in seconds.
+    pub warm_up_s: f64,
+    /// Typical period of the motion, in seconds.
+    pub period_s: f64,
+    /// Standard deviation of the sensor's white noise, in the unit of the positions.
+    pub noise: f64,
+    /// Scales of the training part.
+    pub scale: Scale,
+}
+
+/// What a data set is made from.
+#[derive(Debug, Clone)]
+pub struct Making {
+    /// How it is split.
+    pub split: Split,
+    /// Unit of the positions.
+    pub unit: String,
+    /// What is believed of the system.
+    pub nominal: Option<NominalSimulator>,
+    /// What inputs do between samples.
+    pub hold: InputHold,
+    /// Length of the past given to a model, in seconds; a period where it is left open.
+    pub warm_up_s: Option<f64>,
+    /// Typical period in seconds; read from the training part where it is left open.
+    pub period_s: Option<f64>,
+    /// Sensor noise; read from the training part where it is left open.
+    pub noise: Option<f64>,
+}
+
+/// Rates within a set differ by this much at most.
+const RATES: f64 = 1.05;
+
+impl DataSet {
+    /// Splits and checks records.
+    ///
+    /// # Errors
+    /// [`LearnError`] for a set that nothing can be learned from or judged on; the message says what to do.
+    pub fn new(records: &[Trajectory], making: Making) -> Result<Self, LearnError> {
+        check_inputs(records)?;
+        check_rates(records)?;
+        let parts = split(records, &making.split)?;
+        let period_s = match making.period_s {
+            Some(period) => period,
+            None => period(&parts.train).ok_or(LearnError::NoPeriod)?,
+        };
+        let warm_up_s = making.warm_up_s.unwrap_or(period_s);
+        for part in parts.train.iter().chain(&parts.validation).chain(&parts.test) {
+            let needed = ((3.0 * warm_up_s * part.rate_hz()).ceil() as usize).max(24);
+            if part.len() < needed {
+                let record = part.name().to_owned();
+                return Err(LearnError::TooShort { record, samples: part.len(), needed, warm_up_s });
+            }
+        }
+        let noise = making.noise.unwrap_or_else(|| noise_floor(&parts.train));
+        let scale = scale(&parts.train, period_s);
+        Ok(Self {
+            train: parts.train,
+            validation: parts.validation,
+            test: parts.test,
+            unit: making.unit,
+            nominal: making.nominal,
+            hold: making.hold,
+            warm_up_s,
+            period_s,
+            noise,
+            scale,
+        })
+    }
+
+    /// Whether the records have an input.
+    #[must_use]
+    pub fn is_driven(&self) -> bool {
+        self.train.iter().any(|part| part.input().is_some())
+    }
+
+    /// Samples of the training part.
+    #[must_use]
+    pub fn training_samples(&self) -> usize {
+        self.train.iter().map(Trajectory::len).sum()
+    }
+
+    /// Longest step of an integrator, in seconds: a sixtieth of a period.
+    #[must_use]
+    pub fn longest_step_s(&self) -> f64 {
+        self.period_s / 60.0
+    }
+
+    /// Training pieces of about `seconds`, together at most `samples`: evenly chosen ones where there are more.
+    #[must_use]
+    pub fn training_pieces(&self, seconds: f64, samples: usize) -> Vec<Trajectory> {
+        let pieces: Vec<Trajectory> = self.train.iter().flat_map(|part| part.pieces(seconds)).collect();
+        let all: usize = pieces.iter().map(Trajectory::len).sum();
+        let keep = (samples as f64 / all.max(1) as f64).min(1.0);
+        // Piece number n is taken where n·keep passes the next whole number.
+        let taken = |number: usize| ((number + 1) as f64 * keep).floor() > (number as f64 * keep).floor();
+        let chosen: Vec<Trajectory> = pieces
+            .iter()
+            .enumerate()
+            .filter(|(number, _)| keep >= 1.0 || taken(*number))
+            .map(|(_, piece)| piece.clone())
+            .collect();
+        if chosen.is_empty() {
+            let shortened = |piece: &Trajectory| piece.part(0, samples.max(8));
+            return pieces.first().map(shortened).into_iter().collect();
+        }
+        chosen
+    }
+}
+
+fn check_inputs(records: &[Trajectory]) -> Result<(), LearnError> {
+    let with = records.iter().find(|record| record.input().is_some());
+    let without = records.iter().find(|record| record.input().is_none());
+    match with.zip(without) {
+        None => Ok(()),
+        Some((with, without)) => {
+            Err(LearnError::MissingInput { without: without.name().to_owned(), with: with.name().to_owned() })
+        }
+    }
+}
+
+fn check_rates(records: &[Trajectory]) -> Result<(), LearnError> {
+    let by_rate = |a: &&Trajectory, b: &&Trajectory| a.rate_hz().total_cmp(&b.rate_hz());
+    let (slow, fast) = (records.iter().min_by(by_rate), records.iter().max_by(by_rate));
+    match slow.zip(fast) {
+        Some((slow, fast)) if fast.rate_hz() > RATES * slow.rate_hz() => Err(LearnError::MixedRates {
+            slow: slow.name().to_owned(),
+            slow_hz: slow.rate_hz(),
+            fast: fast.name().to_owned(),
+            fast_hz: fast.rate_hz(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+fn scale(train: &[Trajectory], period_s: f64) -> Scale {
+    let values = || train.iter().flat_map(|part| part.values().iter().copied());
+    let inputs = || train.iter().filter_map(Trajectory::input).flatten().copied();
+    let (center, position) = moments(values);
+    let (input_center, input) = moments(inputs);
+    let states: Vec<_> = train.iter().flat_map(|part| local_states(part, period_s / 8.0)).collect();
+    let rms = |of: &dyn Fn(&super::LocalState) -> f64| {
+        let sum: f64 = states.iter().map(|state| of(state).powi(2)).sum();
+        (sum / states.len().max(1) as f64).sqrt().max(f64::MIN_POSITIVE)
+    };
+    Scale {
+        center,
+        position: position.max(f64::MIN_POSITIVE),
+        velocity: rms(&|state| state.velocity),
+        input_center: if input > 0.0 { input_center } else { 0.0 },
+        input: if input > 0.0 { input } else { 1.0 },
+        acceleration: rms(&|state| state.acceleration),
+    }
+}
+
+/// Mean and standard deviation.
+fn moments<I: Iterator<Item = f64>>(values: impl Fn() -> I) -> (f64, f64) {
+    let count = values().count().max(1) as f64;
+    let mean = values().sum::<f64>() / count;
+    let square = values().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
+    (mean, square.sqrt())
+}

@@ -1,0 +1,88 @@
+//! Which part of which record is learned from, validated on, and tested on.
+
+use super::Trajectory;
+use crate::LearnError;
+use serde::{Deserialize, Serialize};
+
+/// What is held out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SplitKind {
+    /// Whole records, the last ones as listed.
+    #[default]
+    Record,
+    /// The end of every record.
+    Time,
+    /// Whole records, of which only the end is tested: other starts and later times than any learned from.
+    Both,
+}
+
+/// How a set is split.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Split {
+    /// What is held out.
+    pub kind: SplitKind,
+    /// Records to test on, the last ones as listed; by record only.
+    pub test_records: usize,
+    /// Records to validate on, before those. With 0, the end of the training records.
+    pub validation_records: usize,
+    /// Share of a record's time at its end that is tested on, by time.
+    pub test_share: f64,
+    /// Share of a training part's time at its end that is validated on, where no record is.
+    pub validation_share: f64,
+}
+
+/// Training, validation and test parts.
+pub(super) struct Parts {
+    pub(super) train: Vec<Trajectory>,
+    pub(super) validation: Vec<Trajectory>,
+    pub(super) test: Vec<Trajectory>,
+}
+
+/// Splits records; every part has at least one trajectory.
+pub(super) fn split(records: &[Trajectory], split: &Split) -> Result<Parts, LearnError> {
+    let Some(first) = records.first() else { return Err(LearnError::NoRecords) };
+    if split.kind == SplitKind::Time {
+        let (train, test): (Vec<_>, Vec<_>) =
+            records.iter().map(|record| at_share(record, split.test_share)).unzip();
+        return with_validation(train, test, split);
+    }
+    if records.len() == 1 {
+        return Err(LearnError::OneRecord { record: first.name().to_owned() });
+    }
+    if split.test_records == 0 {
+        return Err(LearnError::NoTest);
+    }
+    let held = split.test_records + split.validation_records;
+    let trained = records.len().checked_sub(held).filter(|&trained| trained > 0);
+    let trained = trained.ok_or(LearnError::NoTraining {
+        records: records.len(),
+        test: split.test_records,
+        validation: split.validation_records,
+    })?;
+    let (seen, test) = records.split_at(trained + split.validation_records);
+    let test = match split.kind {
+        SplitKind::Both => test.iter().map(|record| at_share(record, split.test_share).1).collect(),
+        _ => test.to_vec(),
+    };
+    let (train, validation) = seen.split_at(trained);
+    if validation.is_empty() {
+        return with_validation(train.to_vec(), test, split);
+    }
+    Ok(Parts { train: train.to_vec(), validation: validation.to_vec(), test })
+}
+
+fn with_validation(
+    train: Vec<Trajectory>,
+    test: Vec<Trajectory>,
+    split: &Split,
+) -> Result<Parts, LearnError> {
+    let (train, validation) = train.iter().map(|part| at_share(part, split.validation_share)).unzip();
+    Ok(Parts { train, validation, test })
+}
+
+/// All but the last share of the time, and that share.
+fn at_share(record: &Trajectory, share: f64) -> (Trajectory, Trajectory) {
+    let cut = record.samples_within((1.0 - share) * record.duration_s());
+    (record.part(0, cut), record.part(cut, record.len()))
+}

@@ -1,0 +1,16 @@
+//! Models that are differential equations, θ̈ = a(θ, θ̇, direction, u): integration with exact events and sensitivities,
+//! start states, and fits by multiple shooting.
+
+mod field;
+mod model;
+mod run;
+mod shooter;
+mod shooting;
+mod start;
+
+pub use field::{Field, Slope};
+pub use model::{FlowModel, Posterior, Running};
+pub use run::{Motion, Run};
+pub use shooter::FieldShooter;
+pub use shooting::{Fit, Penalty, Shooter, Shooting, Shot, fit};
+pub use start::{State, first_guess};

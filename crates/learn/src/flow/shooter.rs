@@ -1,0 +1,51 @@
+//! Shooting with a field.
+
+use super::field::Field;
+use super::run::Run;
+use super::shooting::{Shooter, Shot};
+use super::start::State;
+use crate::LearnError;
+use crate::data::{DataSet, InputHold, Trajectory};
+
+/// A field that predicts pieces.
+#[derive(Clone, Copy)]
+pub struct FieldShooter<'a> {
+    field: &'a dyn Field,
+    longest_step_s: f64,
+    hold: InputHold,
+    bound: f64,
+}
+
+/// Positions beyond so many standard deviations of the training part run away.
+const FAR: f64 = 1e3;
+
+impl<'a> FieldShooter<'a> {
+    /// Steps and bounds as a data set asks for.
+    #[must_use]
+    pub fn new(field: &'a dyn Field, data: &DataSet) -> Self {
+        let bound = data.scale.center.abs() + FAR * data.scale.position;
+        Self { field, longest_step_s: data.longest_step_s(), hold: data.hold, bound }
+    }
+}
+
+impl Shooter for FieldShooter<'_> {
+    fn weights(&self) -> usize {
+        self.field.weights()
+    }
+
+    fn shoot(&self, weights: &[f64], start: State, piece: &Trajectory) -> Result<Shot, LearnError> {
+        let run = Run {
+            field: self.field,
+            weights,
+            longest_step_s: self.longest_step_s,
+            hold: self.hold,
+            bound: self.bound,
+        };
+        let motion = run.motion(start, piece.times_s(), piece.input(), true)?;
+        let pairs = piece.values().iter().zip(&motion.positions);
+        Ok(Shot {
+            residuals: pairs.map(|(observed, predicted)| observed - predicted).collect(),
+            jacobian: motion.sensitivity,
+        })
+    }
+}

@@ -1,0 +1,189 @@
+//! Free run, horizon, one step, coverage.
+
+use crate::data::{DataSet, Trajectory};
+use crate::{Ahead, LearnError, Model, Past, Predicted};
+
+/// Free run of one test trajectory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Run {
+    /// Name of the trajectory.
+    pub name: String,
+    /// Times after the warm-up, in seconds.
+    pub times_s: Vec<f64>,
+    /// What was observed there.
+    pub observed: Vec<f64>,
+    /// What was predicted, or why nothing was.
+    pub predicted: Result<Predicted, LearnError>,
+}
+
+/// Scores over a test part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// Root mean square error of the free run over all test samples after the warm-ups; infinite where a run failed.
+    pub free_run_rmse: f64,
+    /// The same over the sensor's noise.
+    pub over_noise: f64,
+    /// Time until the error, over a quarter of a period, passes three times the noise: median over trajectories, in
+    /// seconds. A run that never does counts with its whole length.
+    pub horizon_s: f64,
+    /// Root mean square error one sample ahead of a moving past; infinite where a step failed.
+    pub one_step_rmse: f64,
+    /// Share of the observations within the stated 95 % band, where one is stated.
+    pub coverage_95: Option<f64>,
+}
+
+/// Places along a test trajectory at which one step is predicted.
+const STEPS: usize = 50;
+
+/// Noises that the error passes at the end of the horizon.
+const FLOORS: f64 = 3.0;
+
+fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
+    Past {
+        times_s: part.times_s().get(from..to).unwrap_or_default(),
+        values: part.values().get(from..to).unwrap_or_default(),
+        input: part.input().and_then(|input| input.get(from..to)),
+    }
+}
+
+fn ahead(part: &Trajectory, from: usize, to: usize) -> Ahead<'_> {
+    Ahead {
+        times_s: part.times_s().get(from..to).unwrap_or_default(),
+        input: part.input().and_then(|input| input.get(from..to)),
+    }
+}
+
+fn warm_up(part: &Trajectory, data: &DataSet) -> usize {
+    part.samples_within(data.warm_up_s).clamp(8, part.len().saturating_sub(1).max(8))
+}
+
+/// Free runs of the test part, each from its warm-up, with bands where the model states them.
+#[must_use]
+pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
+    let run = |part: &Trajectory| {
+        let (now, end) = (warm_up(part, data), part.len());
+        Run {
+            name: part.name().to_owned(),
+            times_s: ahead(part, now, end).times_s.to_vec(),
+            observed: part.values().get(now..).unwrap_or_default().to_vec(),
+            predicted: model.banded_run(&past(part, 0, now), &ahead(part, now, end)),
+        }
+    };
+    data.test.iter().map(run).collect()
+}
+
+/// Root mean square error of free runs over the validation part, without bands; infinite where one fails.
+#[must_use]
+pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for part in &data.validation {
+        let (now, end) = (warm_up(part, data), part.len());
+        let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
+            return f64::INFINITY;
+        };
+        let observed = part.values().get(now..).unwrap_or_default();
+        sum += observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        count += observed.len();
+    }
+    let error = (sum / count.max(1) as f64).sqrt();
+    if error.is_finite() { error } else { f64::INFINITY }
+}
+
+/// Scores of a model's free runs, and of single steps along the test part.
+#[must_use]
+pub fn score(model: &dyn Model, runs: &[Run], data: &DataSet) -> Score {
+    let (mut sum, mut count, mut covered, mut stated) = (0.0, 0_usize, 0_usize, 0_usize);
+    let mut horizons = Vec::new();
+    for run in runs {
+        count += run.observed.len();
+        let Ok(predicted) = &run.predicted else {
+            sum = f64::INFINITY;
+            horizons.push(0.0);
+            continue;
+        };
+        let errors: Vec<f64> = run.observed.iter().zip(&predicted.values).map(|(a, b)| a - b).collect();
+        sum += errors.iter().map(|error| error * error).sum::<f64>();
+        horizons.push(horizon(&run.times_s, &errors, FLOORS * data.noise, 0.25 * data.period_s));
+        if let Some(std) = &predicted.std {
+            stated += errors.len();
+            covered += errors.iter().zip(std).filter(|(error, std)| error.abs() <= 1.96 * **std).count();
+        }
+    }
+    let free_run_rmse = finite((sum / count.max(1) as f64).sqrt());
+    Score {
+        free_run_rmse,
+        over_noise: free_run_rmse / data.noise,
+        horizon_s: median(&mut horizons),
+        one_step_rmse: one_step(model, data),
+        coverage_95: (stated > 0).then(|| covered as f64 / stated as f64),
+    }
+}
+
+fn finite(error: f64) -> f64 {
+    if error.is_finite() { error } else { f64::INFINITY }
+}
+
+fn median(values: &mut [f64]) -> f64 {
+    values.sort_by(f64::total_cmp);
+    let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
+    let at = |place: usize| values.get(place).copied().unwrap_or(0.0);
+    0.5 * (at(low) + at(high))
+}
+
+/// Time from the first sample until the root mean square over the last `window_s` passes `bound`.
+fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
+    let Some(&first) = times_s.first() else { return 0.0 };
+    let (mut sum, mut oldest) = (0.0, 0);
+    let squares: Vec<f64> = errors.iter().map(|error| error * error).collect();
+    for (place, (&time, square)) in times_s.iter().zip(&squares).enumerate() {
+        sum += square;
+        while times_s.get(oldest).is_some_and(|&begin| begin < time - window_s) {
+            sum -= squares.get(oldest).copied().unwrap_or(0.0);
+            oldest += 1;
+        }
+        let full = time - first >= window_s;
+        let mean = sum / (place + 1 - oldest) as f64;
+        if (full && mean > bound * bound) || !mean.is_finite() {
+            return (time - first - window_s).max(0.0);
+        }
+    }
+    times_s.last().map_or(0.0, |last| last - first)
+}
+
+fn one_step(model: &dyn Model, data: &DataSet) -> f64 {
+    let (mut sum, mut count) = (0.0, 0_usize);
+    for part in &data.test {
+        let length = warm_up(part, data);
+        let places = part.len().saturating_sub(length);
+        for now in (length..part.len()).step_by((places / STEPS).max(1)) {
+            let found = model.free_run(&past(part, now - length, now), &ahead(part, now, now + 1));
+            let Some(value) = found.ok().and_then(|found| found.values.first().copied()) else {
+                return f64::INFINITY;
+            };
+            sum += part.values().get(now).map_or(0.0, |observed| (observed - value).powi(2));
+            count += 1;
+        }
+    }
+    finite((sum / count.max(1) as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_horizon_ends_where_the_error_passes_the_bound() {
+        let times: Vec<f64> = (0..1000).map(|at| f64::from(at) * 0.01).collect();
+        let errors: Vec<f64> = times.iter().map(|time| if *time < 5.0 { 0.1 } else { 1.0 }).collect();
+        let found = horizon(&times, &errors, 0.5, 0.2);
+        assert!((4.7..5.1).contains(&found), "{found}");
+        assert!((horizon(&times, &errors, 2.0, 0.2) - 9.99).abs() < 1e-9);
+    }
+
+    #[test]
+    fn one_outlier_does_not_end_a_horizon() {
+        let times: Vec<f64> = (0..1000).map(|at| f64::from(at) * 0.01).collect();
+        let errors: Vec<f64> = (0..1000).map(|at| if at == 300 { 1.0 } else { 0.1 }).collect();
+        assert!((horizon(&times, &errors, 0.3, 0.25) - 9.99).abs() < 1e-9);
+    }
+}

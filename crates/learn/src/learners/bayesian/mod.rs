@@ -1,0 +1,271 @@
+//! The posterior of the coefficients of a stated law, by the no-U-turn sampler.
+//!
+//! The law is a sum of stated terms. Its likelihood is that of whole trajectories with Gaussian noise; start states are
+//! profiled out (a Gauss–Newton step each, whose derivative drops out at the optimum), the noise is that of the best
+//! fit, widened for correlated residuals, and the prior of the coefficients is flat. Gradients come from exact
+//! sensitivities; the sampler works in the coordinates that make Laplace's approximation a standard normal.
+
+mod nuts;
+
+use super::library::{Library, Regression, Term, restore, thresholded};
+use super::sindy::SparseSettings;
+use super::torque::{Progress, progressive};
+use super::weak_sindy;
+use crate::data::{DataSet, Trajectory};
+use crate::flow::{FieldShooter, Fit, FlowModel, Penalty, Posterior, Running, Shooter, State};
+use crate::judge::validation_error;
+use crate::{Coefficient, Context, Entry, Fitted, Kind, LearnError, Learner};
+use estimator::Reached;
+use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
+use serde::Deserialize;
+use serde_json::json;
+use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
+
+/// Identifier.
+const ID: &str = "bayesian";
+
+/// The registry's line.
+pub const ENTRY: Entry = Entry {
+    id: ID,
+    title: "Bayesian coefficients (NUTS)",
+    summary: "Samples the posterior of the coefficients of a stated law from whole trajectories.",
+    reference: "Hoffman, Gelman, Journal of Machine Learning Research 15 (2014) 1593-1623",
+    kind: Kind::Regressor,
+    fields: FIELDS,
+    build: |resolved| Ok(Box::new(Bayesian::read(resolved)?) as Box<dyn Learner>),
+    restore: |stored| restore(ID, stored),
+};
+
+const PLAIN: Field =
+    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+const FIELDS: &[Field] = &[
+    Field {
+        key: "library",
+        kind: Value::Texts { at_least: 1, at_most: 10 },
+        default: Default::Texts(&[
+            "theta",
+            "theta_dot",
+            "sign(theta_dot)",
+            "theta_dot*|theta_dot|",
+            "theta^3",
+            "u",
+        ]),
+        meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
+                  have no input.",
+        ..PLAIN
+    },
+    Field {
+        key: "warm_up",
+        kind: Value::Integer { min: 1, max: 1_000_000 },
+        default: Default::Integer(60),
+        unit: "draws",
+        meaning: "Draws in which the step is adapted; none is kept.",
+        ..PLAIN
+    },
+    Field {
+        key: "draws",
+        kind: Value::Integer { min: 10, max: 1_000_000 },
+        default: Default::Integer(240),
+        unit: "draws",
+        meaning: "Draws that are kept.",
+        ..PLAIN
+    },
+    Field {
+        key: "samples",
+        kind: Value::Integer { min: 100, max: 10_000_000 },
+        default: Default::Integer(3_000),
+        unit: "samples",
+        meaning: "Most training samples; of more, evenly chosen pieces.",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Value::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(40),
+        unit: "steps",
+        meaning: "Most steps of the fit that the sampler begins at, on pieces of each length.",
+        ..PLAIN
+    },
+];
+
+/// The learner. Ranges and defaults stand in the registry's fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bayesian {
+    library: SparseSettings,
+    keys: Keys,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Keys {
+    library: Vec<String>,
+    warm_up: usize,
+    draws: usize,
+    samples: usize,
+    max_steps: u64,
+}
+
+impl Bayesian {
+    fn read(resolved: &Resolved) -> Result<Self, SettingsError> {
+        let keys: Keys = resolved.section(ID)?;
+        Ok(Self { library: SparseSettings::of_terms(resolved, ID, keys.library.clone())?, keys })
+    }
+}
+
+impl Learner for Bayesian {
+    fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
+        let terms = self.library.terms(data);
+        let library = Library::new(terms.clone());
+        let regression: Regression = weak_sindy::regression(data, &terms);
+        let start = thresholded(&regression, 0.0);
+        let flat = Penalty { mean: vec![0.0; terms.len()], precision: vec![0.0; terms.len()] };
+        let plain = |weights: &[f64]| {
+            model(&library, weights, None, Posterior::default(), Running::new(data, data.noise), data)
+        };
+        let validate = |weights: &[f64]| validation_error(&plain(weights), data);
+        let progress = Progress { samples: self.keys.samples, most_steps: self.keys.max_steps };
+        let (fit, steps) = progressive(&library, data, context, (&flat, progress), start, &validate)?;
+        let (draws, sampled) = self.sampled(&library, data, context, &fit)?;
+        let (mean, spread) = moments(&draws, terms.len());
+        let kept =
+            draws.iter().step_by((draws.len() / BAND).max(1)).map(|draw| draw.as_slice().to_vec()).collect();
+        let posterior = Posterior { draws: kept };
+        let running = Running::new(data, fit.rms());
+        let whole = model(&library, &mean, Some(&spread), posterior, running, data);
+        Ok(Fitted { model: Box::new(whole), reached: Reached::Converged, steps: steps + sampled })
+    }
+}
+
+/// Draws that bands are made from.
+const BAND: usize = 24;
+
+impl Bayesian {
+    fn sampled(
+        &self,
+        library: &Library,
+        data: &DataSet,
+        context: &Context<'_>,
+        fit: &Fit,
+    ) -> Result<(Vec<DVector<f64>>, u64), LearnError> {
+        let undetermined = || LearnError::Unsolvable {
+            what: ID,
+            problem: "the records leave some combination of the terms open; take one out of bayesian.library"
+                .to_owned(),
+        };
+        let root = fit.covariance().and_then(DMatrix::cholesky).ok_or_else(undetermined)?.l();
+        let center = DVector::from_column_slice(&fit.weights);
+        // As many pieces as the fit had start states, cut alike.
+        let pieces = pieces_of(data, self.keys.samples, fit);
+        let profile = Profile {
+            shooter: FieldShooter::new(library, data),
+            pieces: &pieces,
+            starts: &fit.starts,
+            variance: fit.variance(),
+        };
+        let target = |place: &DVector<f64>| {
+            if context.cancel.is_requested() {
+                return None;
+            }
+            let (log_density, gradient) = profile.at((&center + &root * place).as_slice())?;
+            Some((log_density, root.tr_mul(&gradient)))
+        };
+        let mut generator = context.seed.child("sampler").generator();
+        let counts = (self.keys.warm_up, self.keys.draws);
+        let draws = nuts::sample(&target, center.len(), counts, &mut generator);
+        context.check()?;
+        let draws = draws.ok_or_else(undetermined)?;
+        let steps = (counts.0 + counts.1) as u64;
+        Ok((draws.iter().map(|place| &center + &root * place).collect(), steps))
+    }
+}
+
+/// The pieces that a fit's start states belong to.
+fn pieces_of(data: &DataSet, samples: usize, fit: &Fit) -> Vec<Trajectory> {
+    let lengths = [2.0, 8.0, 1e6];
+    let cut = |periods: f64| data.training_pieces(periods * data.period_s, samples);
+    let matching = |pieces: &Vec<Trajectory>| {
+        pieces.len() == fit.starts.len() && pieces.iter().map(Trajectory::len).sum::<usize>() == fit.samples
+    };
+    lengths.into_iter().map(cut).find(matching).unwrap_or_default()
+}
+
+/// The likelihood of the weights with the start states at their best.
+struct Profile<'a> {
+    shooter: FieldShooter<'a>,
+    pieces: &'a [Trajectory],
+    starts: &'a [State],
+    variance: f64,
+}
+
+impl Profile<'_> {
+    /// Log likelihood and its gradient; `None` where the motion runs away.
+    fn at(&self, weights: &[f64]) -> Option<(f64, DVector<f64>)> {
+        let count = weights.len();
+        let (mut rss, mut pull) = (0.0, DVector::zeros(count));
+        for (piece, start) in self.pieces.iter().zip(self.starts) {
+            let mut state = *start;
+            // One Gauss–Newton step takes the start state to its best, up to what its second one would change.
+            for last in [false, true] {
+                let shot = self.shooter.shoot(weights, state, piece).ok()?;
+                let rows = shot.residuals.iter().zip(shot.jacobian.chunks(count + 2));
+                if last {
+                    for (residual, row) in rows {
+                        rss += residual * residual;
+                        for (slot, own) in pull.iter_mut().zip(row) {
+                            *slot += residual * own;
+                        }
+                    }
+                } else {
+                    let (mut normal, mut right) = (Matrix2::zeros(), Vector2::zeros());
+                    for (residual, row) in rows {
+                        let own: Vector2<f64> = Vector2::from_iterator(row.iter().skip(count).copied());
+                        normal += own * own.transpose();
+                        right += own * *residual;
+                    }
+                    let by = normal.try_inverse()? * right;
+                    state = State { position: state.position + by.x, velocity: state.velocity + by.y };
+                }
+            }
+        }
+        Some((-0.5 * rss / self.variance, pull / self.variance))
+    }
+}
+
+fn moments(draws: &[DVector<f64>], count: usize) -> (Vec<f64>, Vec<f64>) {
+    let number = draws.len().max(1) as f64;
+    let mean = draws.iter().fold(DVector::zeros(count), |sum, draw| sum + draw) / number;
+    let square = draws.iter().fold(DVector::zeros(count), |sum, draw| {
+        let away = draw - &mean;
+        sum + away.component_mul(&away)
+    }) / number;
+    (mean.as_slice().to_vec(), square.map(f64::sqrt).as_slice().to_vec())
+}
+
+fn model(
+    library: &Library,
+    weights: &[f64],
+    spread: Option<&[f64]>,
+    posterior: Posterior,
+    running: Running,
+    data: &DataSet,
+) -> FlowModel {
+    let errors = spread.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
+    let coefficients =
+        library.terms().iter().zip(weights).zip(errors).map(|((term, value), std_error)| Coefficient {
+            name: Term::name(*term).to_owned(),
+            value: *value,
+            unit: term.unit(&data.unit),
+            std_error,
+            inclusion: None,
+        });
+    FlowModel {
+        learner: ID,
+        coefficients: coefficients.collect(),
+        equation: Some(library.equation(weights)),
+        form: json!({ "terms": library.terms() }),
+        field: Box::new(library.clone()),
+        weights: weights.to_vec(),
+        posterior,
+        running,
+    }
+}

@@ -1,0 +1,30 @@
+//! How sure a term is, by an ensemble of resampled regressions.
+//!
+//! Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal Society A 478 (2022) 20210904.
+
+use super::{Regression, thresholded};
+use rand::RngExt;
+use seed::Seed;
+
+/// Share of `members` resampled regressions that keep each term, groups of rows drawn with replacement.
+#[must_use]
+pub fn inclusion(regression: &Regression, threshold: f64, members: usize, seed: &Seed) -> Vec<f64> {
+    let last = regression.groups.iter().max().map_or(0, |last| last + 1);
+    let mut by_group: Vec<Vec<usize>> = vec![Vec::new(); last];
+    for (row, &group) in regression.groups.iter().enumerate() {
+        if let Some(rows) = by_group.get_mut(group) {
+            rows.push(row);
+        }
+    }
+    let mut counts = vec![0_usize; regression.terms.len()];
+    let mut generator = seed.child("ensemble").generator();
+    for _ in 0..members {
+        let drawn = (0..by_group.len()).map(|_| generator.random_range(0..by_group.len()));
+        let rows: Vec<usize> = drawn.filter_map(|group| by_group.get(group)).flatten().copied().collect();
+        let weights = thresholded(&regression.selected(&rows), threshold);
+        for (count, weight) in counts.iter_mut().zip(&weights) {
+            *count += usize::from(*weight != 0.0);
+        }
+    }
+    counts.iter().map(|&count| count as f64 / members.max(1) as f64).collect()
+}

@@ -1,0 +1,208 @@
+//! From a regression's terms to a model: weights refitted to whole trajectories, superfluous terms taken out.
+
+use super::{Library, Term};
+use crate::data::{DataSet, Trajectory};
+use crate::flow::{Field, FieldShooter, Fit, FlowModel, Posterior, Running, Shooting, first_guess, fit};
+use crate::judge::validation_error;
+use crate::{Coefficient, Context, Fitted, LearnError, Model, Stored};
+use estimator::Reached;
+use nalgebra::DMatrix;
+use serde_json::json;
+
+/// How a regression's law is finished.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Finishing {
+    /// Whether weights are refitted to trajectories; otherwise they stay the regression's.
+    pub refit: bool,
+    /// Most training samples that a refit uses.
+    pub samples: usize,
+    /// Most steps of each refit.
+    pub most_steps: u64,
+}
+
+/// Lengths of the pieces that trajectories are refitted on, in periods; then whole parts.
+const LENGTHS: [f64; 3] = [2.0, 8.0, f64::INFINITY];
+
+/// A longer piece is preferred where it validates within this factor of the best.
+const AS_GOOD: f64 = 1.02;
+
+/// Makes a model of a law: `weights` and `inclusion` belong to the library's terms, weights of 0 to terms left out.
+///
+/// With a refit, pieces grow from two periods to whole parts, each fit beginning where the one before ended; the length
+/// that validates best stays. Terms whose weight is lost in its error are taken out one by one (the criterion of Schwarz,
+/// Annals of Statistics 6 (1978) 461, on as many samples as the correlation of the residuals leaves).
+///
+/// # Errors
+/// [`LearnError`] where no length can be fitted and the regression's own law runs away.
+pub fn finish(
+    learner: &'static str,
+    data: &DataSet,
+    context: &Context<'_>,
+    finishing: &Finishing,
+    start: (&[Term], &[f64], &[f64]),
+) -> Result<Fitted, LearnError> {
+    let (terms, weights, inclusion) = start;
+    let kept: Vec<(Term, f64)> =
+        terms.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0).collect();
+    let share =
+        |term: Term| terms.iter().zip(inclusion).find(|(own, _)| **own == term).map(|(_, share)| *share);
+    let (terms, weights): (Vec<Term>, Vec<f64>) = kept.into_iter().unzip();
+    let plain = || Law { terms: terms.clone(), weights: weights.clone(), fit: None };
+    let (law, steps, reached) = if finishing.refit {
+        match refitted(learner, data, context, finishing, plain())? {
+            Some((law, steps)) => {
+                let converged = law.fit.as_ref().is_some_and(|fit| fit.converged);
+                (law, steps, if converged { Reached::Converged } else { Reached::BudgetSpent })
+            }
+            None => (plain(), 0, Reached::Diverged),
+        }
+    } else {
+        (plain(), 1, Reached::Converged)
+    };
+    let mut model = law.model(learner, data, context)?;
+    for (coefficient, term) in model.coefficients.iter_mut().zip(&law.terms) {
+        coefficient.inclusion = share(*term);
+    }
+    Ok(Fitted { model: Box::new(model), reached, steps })
+}
+
+/// Terms with weights, and the fit that they come from.
+#[derive(Clone)]
+struct Law {
+    terms: Vec<Term>,
+    weights: Vec<f64>,
+    fit: Option<Fit>,
+}
+
+impl Law {
+    fn library(&self) -> Library {
+        Library::new(self.terms.clone())
+    }
+
+    fn model(
+        &self,
+        learner: &'static str,
+        data: &DataSet,
+        context: &Context<'_>,
+    ) -> Result<FlowModel, LearnError> {
+        let covariance = self.fit.as_ref().and_then(Fit::covariance);
+        let error =
+            |place: usize| covariance.as_ref().and_then(|all| all.get((place, place))).map(|own| own.sqrt());
+        let coefficients =
+            self.terms.iter().zip(&self.weights).enumerate().map(|(place, (term, weight))| Coefficient {
+                name: term.name().to_owned(),
+                value: *weight,
+                unit: term.unit(&data.unit),
+                std_error: error(place).filter(|error| error.is_finite()),
+                inclusion: None,
+            });
+        let drawn = |all: &DMatrix<f64>| Posterior::normal(&self.weights, all, &context.seed);
+        let library = self.library();
+        Ok(FlowModel {
+            learner,
+            coefficients: coefficients.collect(),
+            equation: Some(library.equation(&self.weights)),
+            form: json!({ "terms": self.terms }),
+            field: Box::new(library),
+            weights: self.weights.clone(),
+            posterior: covariance.as_ref().map(drawn).unwrap_or_default(),
+            running: Running::new(data, self.fit.as_ref().map_or(data.noise, Fit::rms)),
+        })
+    }
+
+    /// The same law fitted to pieces; `None` where the motion runs away.
+    fn fitted(
+        &self,
+        data: &DataSet,
+        pieces: &[Trajectory],
+        context: &Context<'_>,
+        shooting: &Shooting<'_>,
+    ) -> Result<Option<Self>, LearnError> {
+        let library = self.library();
+        let starts = pieces.iter().map(|piece| first_guess(piece, data.period_s)).collect();
+        let shooter = FieldShooter::new(&library, data);
+        match fit(&shooter, shooting, self.weights.clone(), starts, context) {
+            Ok(found) => {
+                Ok(Some(Self { terms: self.terms.clone(), weights: found.weights.clone(), fit: Some(found) }))
+            }
+            Err(LearnError::Diverged { .. }) => Ok(None),
+            Err(other) => Err(other),
+        }
+    }
+
+    /// The term whose weight is most lost in its error, where that is lost enough to be taken out.
+    fn superfluous(&self) -> Option<usize> {
+        let fit = self.fit.as_ref()?;
+        let covariance = fit.covariance()?;
+        let price = (fit.samples as f64 / fit.correlation).max(8.0).ln();
+        let sizes = self.weights.iter().zip(covariance.diagonal().iter().copied().collect::<Vec<_>>());
+        let (place, size) = sizes
+            .map(|(weight, variance)| weight * weight / variance)
+            .enumerate()
+            .min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (size < price && self.terms.len() > 1).then_some(place)
+    }
+
+    fn without(&self, place: usize) -> Self {
+        let mut shorter = Self { fit: None, ..self.clone() };
+        shorter.terms.remove(place);
+        shorter.weights.remove(place);
+        shorter
+    }
+}
+
+/// The law refitted on the length of pieces that validates best, without superfluous terms, and the steps it took.
+fn refitted(
+    learner: &'static str,
+    data: &DataSet,
+    context: &Context<'_>,
+    finishing: &Finishing,
+    plain: Law,
+) -> Result<Option<(Law, u64)>, LearnError> {
+    let (mut found, mut steps, mut from): (Vec<(f64, Law)>, u64, Law) = (Vec::new(), 0, plain);
+    for periods in LENGTHS {
+        let pieces = data.training_pieces(data.period_s * periods.min(1e6), finishing.samples);
+        let phase = if periods.is_finite() {
+            format!("pieces of {periods} periods")
+        } else {
+            "whole parts".to_owned()
+        };
+        let shooting = Shooting {
+            pieces: &pieces,
+            noise: data.noise,
+            penalty: None,
+            most_steps: finishing.most_steps,
+            phase: &phase,
+        };
+        let Some(mut law) = from.fitted(data, &pieces, context, &shooting)? else { break };
+        steps += law.fit.as_ref().map_or(0, |fit| fit.steps);
+        while let Some(place) = law.superfluous() {
+            let Some(shorter) = law.without(place).fitted(data, &pieces, context, &shooting)? else { break };
+            steps += shorter.fit.as_ref().map_or(0, |fit| fit.steps);
+            law = shorter;
+        }
+        let error = validation_error(&law.model(learner, data, context)?, data);
+        // The next length may have use for what this one is too short to tell.
+        let weight_of =
+            |term: &Term| law.terms.iter().zip(&law.weights).find(|(own, _)| *own == term).map(|(_, w)| *w);
+        from.weights = from.terms.iter().map(|term| weight_of(term).unwrap_or(0.0)).collect();
+        found.push((error, law));
+    }
+    let best = found.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
+    let chosen = found.into_iter().rev().find(|(error, _)| *error <= AS_GOOD * best || !best.is_finite());
+    Ok(chosen.map(|(_, law)| (law, steps)))
+}
+
+/// The model of a sparse learner from a file.
+///
+/// # Errors
+/// [`LearnError::Stored`] for a file of another form.
+pub fn restore(learner: &'static str, stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
+    let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
+        let terms = form.get("terms").cloned().unwrap_or_default();
+        let terms: Vec<Term> = serde_json::from_value(terms)
+            .map_err(|error| LearnError::Stored { problem: format!("the terms of the law: {error}") })?;
+        Ok(Box::new(Library::new(terms)))
+    };
+    Ok(Box::new(FlowModel::restore(learner, stored, field)?))
+}

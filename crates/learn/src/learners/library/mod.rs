@@ -1,0 +1,11 @@
+//! Laws that are sums of stated terms, shared by the sparse learners.
+
+mod ensemble;
+mod finish;
+mod terms;
+mod thresholding;
+
+pub use ensemble::inclusion;
+pub use finish::{Finishing, finish, restore};
+pub use terms::{Library, Term};
+pub use thresholding::{Regression, thresholded};

@@ -1,0 +1,195 @@
+//! Terms of a law and the field they make.
+
+use crate::Place;
+use crate::flow::{Field, Slope};
+use serde::{Deserialize, Serialize};
+
+/// A term of the acceleration.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Term {
+    /// 1: a constant torque, a rest position.
+    #[serde(rename = "1")]
+    Constant,
+    /// θ: a spring.
+    #[serde(rename = "theta")]
+    Position,
+    /// θ̇: viscous friction.
+    #[serde(rename = "theta_dot")]
+    Velocity,
+    /// θ²: a spring that differs from side to side.
+    #[serde(rename = "theta^2")]
+    Square,
+    /// θ³: a spring that stiffens.
+    #[serde(rename = "theta^3")]
+    Cube,
+    /// sign θ̇: dry friction.
+    #[serde(rename = "sign(theta_dot)")]
+    Direction,
+    /// θ̇·|θ̇|: drag.
+    #[serde(rename = "theta_dot*|theta_dot|")]
+    Drag,
+    /// sin θ: a weight.
+    #[serde(rename = "sin(theta)")]
+    Sine,
+    /// cos θ: a weight beside its hanging position.
+    #[serde(rename = "cos(theta)")]
+    Cosine,
+    /// u: the input.
+    #[serde(rename = "u")]
+    Input,
+}
+
+impl Term {
+    /// Every term.
+    pub const ALL: [Self; 10] = [
+        Self::Constant,
+        Self::Position,
+        Self::Velocity,
+        Self::Square,
+        Self::Cube,
+        Self::Direction,
+        Self::Drag,
+        Self::Sine,
+        Self::Cosine,
+        Self::Input,
+    ];
+
+    /// Name in configurations and tables.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Constant => "1",
+            Self::Position => "theta",
+            Self::Velocity => "theta_dot",
+            Self::Square => "theta^2",
+            Self::Cube => "theta^3",
+            Self::Direction => "sign(theta_dot)",
+            Self::Drag => "theta_dot*|theta_dot|",
+            Self::Sine => "sin(theta)",
+            Self::Cosine => "cos(theta)",
+            Self::Input => "u",
+        }
+    }
+
+    /// Unit of its coefficient, for positions in `unit`.
+    #[must_use]
+    pub fn unit(self, unit: &str) -> String {
+        match self {
+            Self::Constant | Self::Direction | Self::Sine | Self::Cosine => format!("{unit}/s^2"),
+            Self::Position => "1/s^2".to_owned(),
+            Self::Velocity => "1/s".to_owned(),
+            Self::Square => format!("1/(s^2 {unit})"),
+            Self::Cube => format!("1/(s^2 {unit}^2)"),
+            Self::Drag => format!("1/{unit}"),
+            Self::Input => format!("{unit}/s^2 per unit of u"),
+        }
+    }
+
+    /// Its value at a place.
+    #[must_use]
+    pub fn value(self, place: &Place) -> f64 {
+        let Place { position: x, velocity: v, direction, input } = *place;
+        match self {
+            Self::Constant => 1.0,
+            Self::Position => x,
+            Self::Velocity => v,
+            Self::Square => x * x,
+            Self::Cube => x * x * x,
+            Self::Direction => direction,
+            Self::Drag => direction * v * v,
+            Self::Sine => x.sin(),
+            Self::Cosine => x.cos(),
+            Self::Input => input,
+        }
+    }
+
+    /// Its derivatives with respect to position and velocity.
+    #[must_use]
+    pub fn slope(self, place: &Place) -> [f64; 2] {
+        let Place { position: x, velocity: v, direction, .. } = *place;
+        match self {
+            Self::Constant | Self::Direction | Self::Input => [0.0, 0.0],
+            Self::Position => [1.0, 0.0],
+            Self::Velocity => [0.0, 1.0],
+            Self::Square => [2.0 * x, 0.0],
+            Self::Cube => [3.0 * x * x, 0.0],
+            Self::Drag => [0.0, 2.0 * direction * v],
+            Self::Sine => [x.cos(), 0.0],
+            Self::Cosine => [-x.sin(), 0.0],
+        }
+    }
+
+    /// Whether it depends on the direction of the motion.
+    #[must_use]
+    pub fn is_directed(self) -> bool {
+        matches!(self, Self::Direction | Self::Drag)
+    }
+}
+
+/// A sum of terms, each with a weight.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Library {
+    terms: Vec<Term>,
+}
+
+impl Library {
+    /// A law with these terms.
+    #[must_use]
+    pub fn new(terms: Vec<Term>) -> Self {
+        Self { terms }
+    }
+
+    /// Its terms.
+    #[must_use]
+    pub fn terms(&self) -> &[Term] {
+        &self.terms
+    }
+
+    /// The law as text.
+    #[must_use]
+    pub fn equation(&self, weights: &[f64]) -> String {
+        let mut text = "theta_ddot =".to_owned();
+        for (number, (term, weight)) in self.terms.iter().zip(weights).enumerate() {
+            let sign = match (number, *weight < 0.0) {
+                (0, true) => " -",
+                (0, false) => " ",
+                (_, true) => " - ",
+                (_, false) => " + ",
+            };
+            let size = weight.abs();
+            text.push_str(&match term {
+                Term::Constant => format!("{sign}{size:.5}"),
+                _ => format!("{sign}{size:.5}*{}", term.name()),
+            });
+        }
+        if self.terms.is_empty() { text + " 0" } else { text }
+    }
+}
+
+impl Field for Library {
+    fn weights(&self) -> usize {
+        self.terms.len()
+    }
+
+    fn is_directed(&self) -> bool {
+        self.terms.iter().any(|term| term.is_directed())
+    }
+
+    fn acceleration(&self, weights: &[f64], place: &Place) -> f64 {
+        self.terms.iter().zip(weights).map(|(term, weight)| weight * term.value(place)).sum()
+    }
+
+    fn sloped(&self, weights: &[f64], place: &Place, slope: &mut Slope) -> f64 {
+        (slope.position, slope.velocity) = (0.0, 0.0);
+        let mut sum = 0.0;
+        for ((term, weight), own) in self.terms.iter().zip(weights).zip(&mut slope.weights) {
+            let value = term.value(place);
+            let [position, velocity] = term.slope(place);
+            *own = value;
+            sum += weight * value;
+            slope.position += weight * position;
+            slope.velocity += weight * velocity;
+        }
+        sum
+    }
+}

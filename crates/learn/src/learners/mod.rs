@@ -1,0 +1,24 @@
+//! The learners there are, one line each; one method, one file.
+
+pub mod bayesian;
+pub mod gaussian_process;
+pub mod library;
+pub mod neural_ode;
+pub mod sindy;
+pub mod torque;
+pub mod weak_sindy;
+
+use crate::Entry;
+
+/// Every learner, in the order of tables.
+pub static LEARNERS: &[Entry] =
+    &[sindy::ENTRY, weak_sindy::ENTRY, neural_ode::ENTRY, gaussian_process::ENTRY, bayesian::ENTRY];
+
+/// The learner with an id.
+#[must_use]
+pub fn find(id: &str) -> Option<&'static Entry> {
+    LEARNERS.iter().find(|entry| entry.id == id)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,251 @@
+//! Sparse identification of the dynamics from states.
+//!
+//! Velocity and acceleration are read from local polynomials; the acceleration is regressed on a library of terms with
+//! sequential thresholding; an ensemble of resampled regressions says how sure each term is; the weights are refitted to
+//! trajectories, which removes the bias that noise in the regressors leaves.
+//!
+//! Brunton, Proctor, Kutz, PNAS 113 (2016) 3932; Fasel, Kutz, Brunton, Brunton, Proceedings of the Royal Society A 478
+//! (2022) 20210904 (ensembles).
+
+use super::library::{Finishing, Regression, Term, finish, inclusion, restore, thresholded};
+use crate::data::{DataSet, local_states};
+use crate::linear::least_squares;
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Place};
+use nalgebra::{DMatrix, DVector};
+use serde::Deserialize;
+use settings::{Default, Field, Kind as Value, Origin, Resolved, SettingsError};
+
+/// Identifier.
+const ID: &str = "sindy";
+
+/// The registry's line.
+pub const ENTRY: Entry = Entry {
+    id: ID,
+    title: "Sparse identification (SINDy)",
+    summary: "Finds the terms of the torque in a library by thresholded regression of accelerations, then refits their \
+              weights to trajectories.",
+    reference: "Brunton, Proctor, Kutz, PNAS 113 (2016) 3932-3937",
+    kind: Kind::Regressor,
+    fields: FIELDS,
+    build: |resolved| {
+        Ok(Box::new(Sindy { settings: SparseSettings::read(resolved, ID)? }) as Box<dyn Learner>)
+    },
+    restore: |stored| restore(ID, stored),
+};
+
+/// Settings that the sparse learners share. Ranges and defaults stand in the registry's fields.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct SparseSettings {
+    /// Candidate terms by name.
+    pub library: Vec<String>,
+    /// Contribution to the acceleration below which a term is left out, relative to the whole.
+    pub threshold: f64,
+    /// Members of the ensemble.
+    pub members: usize,
+    /// Whether weights are refitted to trajectories.
+    pub refit: bool,
+    /// Most training samples of a refit.
+    pub refit_samples: usize,
+    /// Most steps of a refit.
+    pub max_steps: u64,
+}
+
+const PLAIN: Field =
+    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+/// The keys that the sparse learners share.
+pub(crate) const FIELDS: &[Field] = &[
+    Field {
+        key: "library",
+        kind: Value::Texts { at_least: 1, at_most: 10 },
+        default: Default::Texts(&[
+            "1",
+            "theta",
+            "theta_dot",
+            "theta^2",
+            "theta^3",
+            "sign(theta_dot)",
+            "theta_dot*|theta_dot|",
+            "sin(theta)",
+            "u",
+        ]),
+        meaning: "Candidate terms of the acceleration; besides those of the default there is \"cos(theta)\". \"u\" is left \
+                  out where records have no input.",
+        ..PLAIN
+    },
+    Field {
+        key: "threshold",
+        kind: Value::Float { min: 0.0, max: 1.0 },
+        default: Default::Float(0.002),
+        unit: "share of the acceleration",
+        meaning: "Terms that contribute less are left out, again and again.",
+        source: "small, since the refit tells true terms from others by their errors",
+    },
+    Field {
+        key: "members",
+        kind: Value::Integer { min: 0, max: 10_000 },
+        default: Default::Integer(50),
+        meaning: "Resampled regressions that inclusion probabilities are counted from; 0 states none.",
+        source: "Fasel et al. 2022",
+        ..PLAIN
+    },
+    Field {
+        key: "refit",
+        kind: Value::Boolean,
+        default: Default::Boolean(true),
+        meaning: "Whether weights are refitted to whole trajectories and superfluous terms taken out.",
+        ..PLAIN
+    },
+    Field {
+        key: "refit_samples",
+        kind: Value::Integer { min: 100, max: 10_000_000 },
+        default: Default::Integer(20_000),
+        unit: "samples",
+        meaning: "Most training samples that a refit uses; of more, evenly chosen pieces.",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Value::Integer { min: 1, max: 1_000_000 },
+        default: Default::Integer(40),
+        unit: "steps",
+        meaning: "Most steps of each refit.",
+        ..PLAIN
+    },
+];
+
+impl SparseSettings {
+    /// The settings of a learner's section.
+    ///
+    /// # Errors
+    /// [`SettingsError::UnknownName`] for a term that is not known.
+    pub(crate) fn read(resolved: &Resolved, section: &str) -> Result<Self, SettingsError> {
+        Self::checked(resolved, section, resolved.section(section)?)
+    }
+
+    /// As [`Self::read`], of a law whose terms are stated and not searched.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub(crate) fn of_terms(
+        resolved: &Resolved,
+        section: &str,
+        library: Vec<String>,
+    ) -> Result<Self, SettingsError> {
+        let settings =
+            Self { library, threshold: 0.0, members: 0, refit: true, refit_samples: 0, max_steps: 0 };
+        Self::checked(resolved, section, settings)
+    }
+
+    fn checked(resolved: &Resolved, section: &str, settings: Self) -> Result<Self, SettingsError> {
+        let is_known = |name: &String| Term::ALL.iter().any(|term| term.name() == name);
+        if let Some(unknown) = settings.library.iter().find(|name| !is_known(name)) {
+            let key = format!("{section}.library");
+            let own = resolved.settings().iter().find(|setting| setting.key() == key);
+            let origin = own.map_or(Origin::Default, |setting| setting.origin.clone());
+            let known = Term::ALL.iter().map(|term| term.name().to_owned()).collect();
+            return Err(SettingsError::unknown_name(origin, "library term", unknown, known));
+        }
+        Ok(settings)
+    }
+
+    /// The terms that the data can have: no input without one, no sine of a displacement, and no sine where the swings
+    /// are so small that a spring and its cube make the same.
+    pub(crate) fn terms(&self, data: &DataSet) -> Vec<Term> {
+        let has = |term: Term| self.library.iter().any(|name| name == term.name());
+        let same = has(Term::Position) && has(Term::Cube) && sine_is_cubic(data);
+        let applies = |term: &Term| match term {
+            Term::Input => data.is_driven(),
+            Term::Sine => data.unit == "rad" && !same,
+            Term::Cosine => data.unit == "rad",
+            _ => true,
+        };
+        Term::ALL.into_iter().filter(|term| has(*term)).filter(applies).collect()
+    }
+
+    pub(crate) fn finishing(&self) -> Finishing {
+        Finishing { refit: self.refit, samples: self.refit_samples, most_steps: self.max_steps }
+    }
+
+    /// From a regression to a model.
+    pub(crate) fn learn(
+        &self,
+        learner: &'static str,
+        regression: &Regression,
+        data: &DataSet,
+        context: &Context<'_>,
+    ) -> Result<Fitted, LearnError> {
+        let weights = thresholded(regression, self.threshold);
+        let inclusion = if self.members > 0 {
+            inclusion(regression, self.threshold, self.members, &context.seed)
+        } else {
+            Vec::new()
+        };
+        finish(learner, data, context, &self.finishing(), (&regression.terms, &weights, &inclusion))
+    }
+}
+
+/// What is left of a sine without its part along θ and θ³, relative to it, below which it is no term of its own.
+const SAME: f64 = 2e-4;
+
+/// Whether sin θ is a sum of θ and θ³ at the positions learned from.
+fn sine_is_cubic(data: &DataSet) -> bool {
+    let stride = (data.training_samples() / 1000).max(1);
+    let positions: Vec<f64> =
+        data.train.iter().flat_map(|part| part.values().iter().copied()).step_by(stride).collect();
+    let rows: Vec<f64> = positions.iter().flat_map(|x| [*x, x * x * x]).collect();
+    let rows = DMatrix::from_row_slice(positions.len(), 2, &rows);
+    let sines = DVector::from_iterator(positions.len(), positions.iter().map(|x| x.sin()));
+    let Some(weights) = least_squares(&rows, &sines) else { return true };
+    (&rows * weights - &sines).norm() < SAME * sines.norm()
+}
+
+/// The learner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sindy {
+    /// Its settings.
+    pub settings: SparseSettings,
+}
+
+impl Learner for Sindy {
+    fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
+        let regression = regression(data, self.settings.terms(data));
+        self.settings.learn(ID, &regression, data, context)
+    }
+}
+
+/// Half width of the local polynomials, in periods: wide enough to average noise, narrow enough for degree 4.
+const HALF_WIDTH: f64 = 1.0 / 8.0;
+
+/// Rows that a regression has at most.
+const MOST_ROWS: usize = 20_000;
+
+/// The regression of local accelerations on terms. Groups are half periods.
+fn regression(data: &DataSet, terms: Vec<Term>) -> Regression {
+    let stride = (data.training_samples() / MOST_ROWS).max(1);
+    let (mut rows, mut right, mut groups, mut group) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for part in &data.train {
+        let mut begun = f64::NEG_INFINITY;
+        for state in local_states(part, HALF_WIDTH * data.period_s).into_iter().step_by(stride) {
+            if state.time_s - begun > 0.5 * data.period_s {
+                begun = state.time_s;
+                group += 1;
+            }
+            let place = Place {
+                position: state.position,
+                velocity: state.velocity,
+                direction: state.velocity.signum(),
+                input: state.input,
+            };
+            rows.extend(terms.iter().map(|term| term.value(&place)));
+            right.push(state.acceleration);
+            groups.push(group);
+        }
+    }
+    Regression {
+        rows: DMatrix::from_row_slice(right.len(), terms.len(), &rows),
+        right: DVector::from_vec(right),
+        terms,
+        groups,
+    }
+}

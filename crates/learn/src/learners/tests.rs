@@ -1,0 +1,179 @@
+//! What each learner reaches on simulated systems whose law is known.
+
+use super::library::Term;
+use crate::baselines::{exact, recalibrated};
+use crate::judge::{Truth, runs, score};
+use crate::testing::{context, data_set, drag_and_cubic, friction_and_gravity, learner};
+
+/// Root mean square over terms of error over the exact fit's standard error is not defined for terms that the exact fit
+/// has in other words, so free runs and true weights are compared.
+#[test]
+fn sindy_finds_friction_and_gravity() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    for id in ["sindy", "weak-sindy"] {
+        let fitted = learner(id, &[]).fit(&data, &context()).unwrap();
+        let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+        assert_eq!(
+            names,
+            ["theta", "theta_dot", "sign(theta_dot)", "sin(theta)"],
+            "{id}: {:?}",
+            fitted.model.equation()
+        );
+        let truth = Truth::new(&system, &data).unwrap().unwrap();
+        for error in truth.coefficient_errors(fitted.model.as_ref()).unwrap() {
+            assert!(error.std_errors.unwrap().abs() < 4.0, "{id}: {error:?}");
+        }
+        let scores = score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data);
+        assert!(scores.over_noise < 1.1, "{id}: {scores:?}");
+        assert!((0.9..=1.0).contains(&scores.coverage_95.unwrap()), "{id}: {scores:?}");
+        assert!(truth.torque_error(fitted.model.as_ref()).unwrap() < 0.01);
+    }
+}
+
+#[test]
+fn sindy_finds_drag_and_a_stiffening_spring_under_an_input() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    let fitted = learner("sindy", &["members=10"]).fit(&data, &context()).unwrap();
+    let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+    let expected = ["theta", "theta_dot", "theta^3", "theta_dot*|theta_dot|", "u"];
+    assert_eq!(names, expected, "{:?}", fitted.model.equation());
+    let scores = score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data);
+    let best = exact(&system, &data, &context()).unwrap();
+    let ceiling = score(best.model.as_ref(), &runs(best.model.as_ref(), &data), &data);
+    assert!(scores.free_run_rmse < 1.05 * ceiling.free_run_rmse, "{scores:?} {ceiling:?}");
+}
+
+#[test]
+fn without_a_refit_noise_leaves_a_bias() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let error = |refit: &str| {
+        let fitted = learner("sindy", &[refit, "members=0"]).fit(&data, &context()).unwrap();
+        score(fitted.model.as_ref(), &runs(fitted.model.as_ref(), &data), &data).free_run_rmse
+    };
+    assert!(error("refit=false") > 1.5 * error("refit=true"));
+}
+
+#[test]
+fn the_true_coefficients_are_those_of_the_law() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    let found = truth.coefficients(&Term::ALL).unwrap();
+    let of = |term: Term| found.iter().find(|(own, _)| *own == term).map(|(_, value)| *value);
+    assert!((of(Term::Cube).unwrap() + 30.0).abs() < 1e-3 && (of(Term::Drag).unwrap() + 0.2).abs() < 1e-6);
+}
+
+/// What a learner makes of systems whose nominal oscillator is known; the torque is judged where the test records go.
+fn torque_within_five_percent(id: &str, overrides: &[&str], systems: usize) {
+    let free = friction_and_gravity();
+    let driven = drag_and_cubic();
+    let all = [(&free, data_set(&free, false, 1e-3)), (&driven, data_set(&driven, true, 2e-3))];
+    for (system, data) in all.into_iter().take(systems) {
+        let truth = Truth::new(system, &data).unwrap().unwrap();
+        let best = recalibrated(&data, &context()).unwrap().model;
+        let linear = score(best.as_ref(), &runs(best.as_ref(), &data), &data).free_run_rmse;
+        let fitted = learner(id, overrides).fit(&data, &context()).unwrap();
+        let model = fitted.model.as_ref();
+        let (error, scores) = (truth.torque_error(model).unwrap(), score(model, &runs(model, &data), &data));
+        assert!(scores.free_run_rmse < 0.5 * linear, "{scores:?} against {linear}");
+        assert!(error < 0.05, "torque {error}, {scores:?}");
+    }
+}
+
+#[test]
+fn a_neural_ode_learns_the_torque_within_five_percent() {
+    torque_within_five_percent("neural-ode", &["samples=1500", "restarts=2"], 1);
+}
+
+#[test]
+fn a_gaussian_process_learns_the_torque_within_five_percent() {
+    torque_within_five_percent("gaussian-process", &["samples=1500"], 2);
+}
+
+/// The posterior is nearly normal here, so that Laplace's approximation of the exact fit is its check.
+#[test]
+fn a_posterior_has_the_exact_fits_center_and_width() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let law = r#"library=["theta","theta_dot","sign(theta_dot)","sin(theta)"]"#;
+    let fitted = learner("bayesian", &[law, "warm_up=30", "draws=120"]).fit(&data, &context()).unwrap();
+    let best = exact(&system, &data, &context()).unwrap();
+    // In the order of the library; the exact fit has damping, stiffness, friction, weight.
+    let of = |name: &str| best.model.coefficients().iter().find(|own| own.name == name).unwrap().clone();
+    let names = ["stiffness", "damping", "coulomb_friction.torque", "gravity.torque"];
+    for (own, expected) in fitted.model.coefficients().iter().zip(names.map(of)) {
+        let (error, width) = (expected.std_error.unwrap(), own.std_error.unwrap());
+        assert!((own.value + expected.value).abs() < 0.5 * error, "{own:?} {expected:?}");
+        assert!((0.7..1.4).contains(&(width / error)), "{own:?} {expected:?}");
+    }
+}
+
+/// What the training does is in the weights: without a step they are the nominal simulator's.
+#[test]
+fn an_untrained_network_is_the_nominal_simulator() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let fitted =
+        learner("neural-ode", &["max_steps=0", "pretraining_steps=0"]).fit(&data, &context()).unwrap();
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    assert!((truth.torque_error(fitted.model.as_ref()).unwrap() - 1.0).abs() < 1e-9);
+}
+
+#[test]
+fn a_model_predicts_the_same_from_its_file() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    for entry in super::LEARNERS {
+        let fitted = learner(entry.id, quick(entry)).fit(&data, &context()).unwrap();
+        let bytes = fitted.model.stored().unwrap().to_bytes().unwrap();
+        let again = (entry.restore)(&crate::Stored::from_bytes(&bytes).unwrap()).unwrap();
+        assert_eq!(runs(again.as_ref(), &data), runs(fitted.model.as_ref(), &data), "{}", entry.id);
+    }
+}
+
+#[test]
+fn the_same_seed_gives_the_same_bits() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    for entry in super::LEARNERS {
+        let run =
+            || runs(learner(entry.id, quick(entry)).fit(&data, &context()).unwrap().model.as_ref(), &data);
+        assert_eq!(run(), run(), "{}", entry.id);
+    }
+}
+
+/// Settings that make a learner quick, by what it can be set to.
+fn quick(entry: &crate::Entry) -> &'static [&'static str] {
+    let has = |key: &str| entry.fields.iter().any(|field| field.key == key);
+    if has("refit") {
+        &["members=5", "refit_samples=1500"]
+    } else if has("draws") {
+        &["samples=600", "warm_up=5", "draws=10"]
+    } else {
+        &["samples=600", "max_steps=2"]
+    }
+}
+
+/// A meter has no sine, and a small swing none that its cube does not make.
+#[test]
+fn a_sine_is_a_term_only_where_it_can_be_told() {
+    let system = friction_and_gravity();
+    let large = data_set(&system, false, 1e-3);
+    let has_sine = |data: &crate::data::DataSet| {
+        let fitted =
+            learner("sindy", &["refit=false", "members=0", "threshold=0"]).fit(data, &context()).unwrap();
+        fitted.model.coefficients().iter().any(|own| own.name == "sin(theta)")
+    };
+    assert!(has_sine(&large));
+    let displacement = crate::data::DataSet { unit: "m".to_owned(), ..large.clone() };
+    assert!(!has_sine(&displacement));
+    let tenth = |part: &crate::data::Trajectory| {
+        let values = part.values().iter().map(|value| 0.1 * value).collect();
+        crate::data::Trajectory::new(part.name(), part.times_s().to_vec(), values, None).unwrap()
+    };
+    let small = crate::data::DataSet { train: large.train.iter().map(tenth).collect(), ..large };
+    assert!(!has_sine(&small));
+}

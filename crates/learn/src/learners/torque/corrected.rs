@@ -1,0 +1,119 @@
+//! A nominal oscillator with a learned correction.
+
+use crate::Place;
+use crate::data::{DataSet, Scale};
+use crate::flow::{Field, Slope};
+use serde::{Deserialize, Serialize};
+
+/// A learned function of the scaled position, velocity and input, smooth in all of them.
+pub trait Correction: Send + Sync {
+    /// Number of weights.
+    fn weights(&self) -> usize;
+
+    /// Its value.
+    fn value(&self, weights: &[f64], z: [f64; 3]) -> f64;
+
+    /// Its value and its derivatives with respect to scaled position and velocity; those with respect to each weight go
+    /// into `slope`, which is as long as the weights.
+    fn sloped(&self, weights: &[f64], z: [f64; 3], slope: &mut [f64]) -> (f64, [f64; 2]);
+}
+
+/// What a correction is added to: the nominal oscillator per inertia, and trained linear terms and dry friction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Base {
+    /// Nominal stiffness, damping, rest position and input gain, over the inertia; zeros without a nominal simulator.
+    pub nominal: [f64; 4],
+    /// Scales of the training part.
+    pub scale: Scale,
+    /// Whether there is an input.
+    pub driven: bool,
+    /// Whether dry friction of a size to be learned is among the terms.
+    pub friction: bool,
+}
+
+impl Base {
+    /// Of a data set.
+    #[must_use]
+    pub fn new(data: &DataSet, friction: bool) -> Self {
+        let nominal = data.nominal.as_ref().map_or([0.0; 4], |simulator| {
+            let own = simulator.nominal();
+            let inertia = own.inertia();
+            [own.stiffness() / inertia, own.damping() / inertia, own.rest_angle(), own.input_gain() / inertia]
+        });
+        Self { nominal, scale: data.scale, driven: data.is_driven(), friction }
+    }
+
+    /// Number of trained weights of the base: constant, position, velocity, and as they apply input and dry friction.
+    #[must_use]
+    pub fn weights(&self) -> usize {
+        3 + usize::from(self.driven) + usize::from(self.friction)
+    }
+
+    fn scaled(&self, place: &Place) -> [f64; 3] {
+        let scale = &self.scale;
+        let input = if self.driven { (place.input - scale.input_center) / scale.input } else { 0.0 };
+        [(place.position - scale.center) / scale.position, place.velocity / scale.velocity, input]
+    }
+
+    fn known(&self, place: &Place) -> f64 {
+        let [stiffness, damping, rest, gain] = self.nominal;
+        let input = if self.driven { gain * place.input } else { 0.0 };
+        input - stiffness * (place.position - rest) - damping * place.velocity
+    }
+
+    /// Features of the trained linear terms.
+    fn features(&self, place: &Place, [x, v, u]: [f64; 3]) -> impl Iterator<Item = f64> {
+        let input = self.driven.then_some(u);
+        let friction = self.friction.then_some(place.direction);
+        [1.0, x, v].into_iter().chain(input).chain(friction)
+    }
+}
+
+/// A nominal oscillator with trained linear terms, dry friction and a correction. Weights: those of the base, then those
+/// of the correction, all in units of the training part's acceleration.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Corrected<C> {
+    /// The base.
+    pub base: Base,
+    /// The correction.
+    pub correction: C,
+}
+
+impl<C: Correction> Field for Corrected<C> {
+    fn weights(&self) -> usize {
+        self.base.weights() + self.correction.weights()
+    }
+
+    fn is_directed(&self) -> bool {
+        self.base.friction
+    }
+
+    fn acceleration(&self, weights: &[f64], place: &Place) -> f64 {
+        let (linear, own) = weights.split_at_checked(self.base.weights()).unwrap_or((weights, &[]));
+        let z = self.base.scaled(place);
+        let sum: f64 =
+            linear.iter().zip(self.base.features(place, z)).map(|(weight, value)| weight * value).sum();
+        self.base.known(place) + self.base.scale.acceleration * (sum + self.correction.value(own, z))
+    }
+
+    fn sloped(&self, weights: &[f64], place: &Place, slope: &mut Slope) -> f64 {
+        let (linear, own) = weights.split_at_checked(self.base.weights()).unwrap_or((weights, &[]));
+        let scale = &self.base.scale;
+        let z = self.base.scaled(place);
+        let Some((by_linear, by_own)) = slope.weights.split_at_mut_checked(self.base.weights()) else {
+            return self.acceleration(weights, place);
+        };
+        let (value, [by_x, by_v]) = self.correction.sloped(own, z, by_own);
+        by_own.iter_mut().for_each(|own| *own *= scale.acceleration);
+        let mut sum = value;
+        for ((slot, weight), feature) in by_linear.iter_mut().zip(linear).zip(self.base.features(place, z)) {
+            *slot = scale.acceleration * feature;
+            sum += weight * feature;
+        }
+        let [_, weight_x, weight_v] = linear.first_chunk::<3>().copied().unwrap_or_default();
+        let [stiffness, damping, ..] = self.base.nominal;
+        slope.position = scale.acceleration * (by_x + weight_x) / scale.position - stiffness;
+        slope.velocity = scale.acceleration * (by_v + weight_v) / scale.velocity - damping;
+        self.base.known(place) + scale.acceleration * sum
+    }
+}

@@ -1,0 +1,9 @@
+//! Torques learned as functions: the nominal oscillator, what is linear, dry friction, and a correction of any form.
+
+mod corrected;
+mod pretraining;
+mod progressive;
+
+pub use corrected::{Base, Corrected, Correction};
+pub use pretraining::pretrained;
+pub use progressive::{Progress, progressive};

@@ -1,0 +1,113 @@
+//! A first guess of a field's weights without integrating: accelerations matched at states read from the records.
+
+use crate::Place;
+use crate::data::{DataSet, InputHold, LocalState, Trajectory, local_states};
+use crate::flow::{Field, Penalty, Slope};
+use crate::linear::{raised, solve};
+use nalgebra::{DMatrix, DVector};
+
+/// States that are matched at most.
+const MOST_STATES: usize = 1_500;
+
+/// First guess of the error of an acceleration read from noisy positions, relative to the accelerations' spread.
+const ERROR: f64 = 0.05;
+
+/// Least error that is believed, relative to the same.
+const LEAST: f64 = 1e-3;
+
+/// Weights by Levenberg–Marquardt on accelerations, and the root mean square error they leave, relative to the spread of
+/// accelerations. The prior is weighed against the error that a first round leaves. Gradient matching: Varah, SIAM Journal
+/// on Scientific and Statistical Computing 3 (1982) 28.
+pub fn pretrained(
+    field: &dyn Field,
+    data: &DataSet,
+    penalty: &Penalty,
+    start: Vec<f64>,
+    steps: u64,
+) -> (Vec<f64>, f64) {
+    let states: Vec<(Place, f64)> = data.train.iter().flat_map(|part| matched(part, data)).collect();
+    let stride = states.len().div_ceil(MOST_STATES).max(1);
+    let chosen: Vec<(Place, f64)> = states.into_iter().step_by(stride).collect();
+    let scale = data.scale.acceleration;
+    let (mut weights, mut error) = (start, ERROR);
+    for _ in 0..2 {
+        let problem = Matching { field, chosen: &chosen, penalty, error: error * scale };
+        weights = problem.solved(weights, steps);
+        error = (problem.rms(&weights) / scale).max(LEAST);
+    }
+    (weights, error)
+}
+
+/// States of a part with their accelerations. An input that is held jumps at the sample, where its mean acts.
+fn matched(part: &Trajectory, data: &DataSet) -> Vec<(Place, f64)> {
+    let of_state = |state: LocalState| {
+        let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1))).copied();
+        let input = match data.hold {
+            InputHold::Zero => 0.5 * (state.input + before.unwrap_or(state.input)),
+            InputHold::Linear => state.input,
+        };
+        let direction = state.velocity.signum();
+        (Place { position: state.position, velocity: state.velocity, direction, input }, state.acceleration)
+    };
+    local_states(part, data.period_s / 8.0).into_iter().map(of_state).collect()
+}
+
+struct Matching<'a> {
+    field: &'a dyn Field,
+    chosen: &'a [(Place, f64)],
+    penalty: &'a Penalty,
+    error: f64,
+}
+
+impl Matching<'_> {
+    /// Weights after Levenberg–Marquardt.
+    fn solved(&self, start: Vec<f64>, steps: u64) -> Vec<f64> {
+        let (mut weights, mut damping) = (start, 1e-3);
+        let (mut objective, mut normal, mut right) = self.at(&weights);
+        for _ in 0..steps {
+            let Some(change) = solve(&raised(&normal, damping), &right) else { break };
+            let next: Vec<f64> = weights.iter().zip(change.iter()).map(|(old, by)| old + by).collect();
+            let found = self.at(&next);
+            if found.0 < objective {
+                let small = objective - found.0 < 1e-7 * objective;
+                weights = next;
+                (objective, normal, right) = found;
+                damping = (damping * 0.1).max(1e-12);
+                if small {
+                    break;
+                }
+            } else {
+                damping *= 10.0;
+                if damping > 1e8 {
+                    break;
+                }
+            }
+        }
+        weights
+    }
+
+    /// Root mean square error of the accelerations.
+    fn rms(&self, weights: &[f64]) -> f64 {
+        let off = |(place, wanted): &(Place, f64)| (wanted - self.field.acceleration(weights, place)).powi(2);
+        (self.chosen.iter().map(off).sum::<f64>() / self.chosen.len().max(1) as f64).sqrt()
+    }
+
+    /// Objective, normal matrix and right side at weights.
+    fn at(&self, weights: &[f64]) -> (f64, DMatrix<f64>, DVector<f64>) {
+        let count = weights.len();
+        let mut slope = Slope { weights: vec![0.0; count], ..Slope::default() };
+        let (mut rows, mut residuals) = (Vec::new(), Vec::new());
+        for (place, wanted) in self.chosen {
+            let value = self.field.sloped(weights, place, &mut slope);
+            residuals.push((wanted - value) / self.error);
+            rows.extend(slope.weights.iter().map(|own| own / self.error));
+        }
+        let rows = DMatrix::from_row_slice(residuals.len(), count, &rows);
+        let residuals = DVector::from_vec(residuals);
+        let precision = DVector::from_column_slice(&self.penalty.precision);
+        let away = DVector::from_column_slice(weights) - DVector::from_column_slice(&self.penalty.mean);
+        let objective = residuals.norm_squared() + away.dot(&precision.component_mul(&away));
+        let normal = rows.tr_mul(&rows) + DMatrix::from_diagonal(&precision);
+        (objective, normal, rows.tr_mul(&residuals) - precision.component_mul(&away))
+    }
+}

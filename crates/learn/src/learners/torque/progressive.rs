@@ -1,0 +1,62 @@
+//! Fits on pieces that grow from two periods to whole parts.
+
+use crate::data::DataSet;
+use crate::flow::{Field, FieldShooter, Fit, Penalty, Shooting, first_guess, fit};
+use crate::{Context, LearnError};
+
+/// Lengths of the pieces in periods.
+const LENGTHS: [f64; 3] = [2.0, 8.0, 1e6];
+
+/// A longer piece is preferred where it validates within this factor of the best.
+const AS_GOOD: f64 = 1.02;
+
+/// How far a progressive fit may go.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Progress {
+    /// Most training samples.
+    pub samples: usize,
+    /// Most steps of each fit.
+    pub most_steps: u64,
+}
+
+/// Fits a field on growing pieces, each fit beginning with the weights of the one before, and gives the fit whose model
+/// validates best, with the steps of all.
+///
+/// # Errors
+/// [`LearnError::Diverged`] where not even the shortest pieces can be followed, [`LearnError::Interrupted`].
+pub fn progressive(
+    field: &dyn Field,
+    data: &DataSet,
+    context: &Context<'_>,
+    (penalty, progress): (&Penalty, Progress),
+    start: Vec<f64>,
+    validate: &dyn Fn(&[f64]) -> f64,
+) -> Result<(Fit, u64), LearnError> {
+    let shooter = FieldShooter::new(field, data);
+    let (mut found, mut steps, mut weights): (Vec<(f64, Fit)>, u64, Vec<f64>) = (Vec::new(), 0, start);
+    for periods in LENGTHS {
+        let pieces = data.training_pieces(data.period_s * periods, progress.samples);
+        let phase =
+            if periods < 1e6 { format!("pieces of {periods} periods") } else { "whole parts".to_owned() };
+        let shooting = Shooting {
+            pieces: &pieces,
+            noise: data.noise,
+            penalty: Some(penalty),
+            most_steps: progress.most_steps,
+            phase: &phase,
+        };
+        let starts = pieces.iter().map(|piece| first_guess(piece, data.period_s)).collect();
+        match fit(&shooter, &shooting, weights.clone(), starts, context) {
+            Ok(own) => {
+                steps += own.steps;
+                weights.clone_from(&own.weights);
+                found.push((validate(&own.weights), own));
+            }
+            Err(LearnError::Diverged { .. }) if !found.is_empty() => break,
+            Err(other) => return Err(other),
+        }
+    }
+    let best = found.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
+    let chosen = found.into_iter().rev().find(|(error, _)| *error <= AS_GOOD * best || !best.is_finite());
+    chosen.map(|(_, fit)| (fit, steps)).ok_or(LearnError::Interrupted)
+}

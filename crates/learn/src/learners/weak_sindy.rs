@@ -1,0 +1,141 @@
+//! Sparse identification in weak form.
+//!
+//! Both sides of θ̈ = Σ wᵢ·fᵢ are integrated against test functions that vanish with their derivatives at the ends of a
+//! window, and the derivatives are moved over to them: ∫φ̈·θ = Σ wᵢ·∫φ·fᵢ, ∫φ·θ̇ = −∫φ̇·θ. No observation is
+//! differentiated; a velocity is read from local polynomials only where a term is not linear in it.
+//!
+//! Messenger, Bortz, Multiscale Modeling and Simulation 19 (2021) 1474.
+
+use super::library::{Regression, Term, restore};
+use super::sindy::{FIELDS, SparseSettings};
+use crate::data::{DataSet, LocalState, Trajectory, local_states};
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Place};
+use nalgebra::{DMatrix, DVector};
+
+/// Identifier.
+const ID: &str = "weak-sindy";
+
+/// The registry's line.
+pub const ENTRY: Entry = Entry {
+    id: ID,
+    title: "Weak-form sparse identification",
+    summary: "As SINDy, with a regression in weak form, in which no observation is differentiated.",
+    reference: "Messenger, Bortz, Multiscale Modeling and Simulation 19 (2021) 1474",
+    kind: Kind::Regressor,
+    fields: FIELDS,
+    build: |resolved| {
+        Ok(Box::new(WeakSindy { settings: SparseSettings::read(resolved, ID)? }) as Box<dyn Learner>)
+    },
+    restore: |stored| restore(ID, stored),
+};
+
+/// The learner.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WeakSindy {
+    /// Its settings.
+    pub settings: SparseSettings,
+}
+
+impl Learner for WeakSindy {
+    fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
+        let regression = regression(data, &self.settings.terms(data));
+        self.settings.learn(ID, &regression, data, context)
+    }
+}
+
+/// Windows that a regression has at most.
+const MOST_WINDOWS: usize = 4_000;
+
+/// Exponent of the test functions (1 − s²)⁴: smooth enough that sums over samples are integrals.
+const EXPONENT: i32 = 4;
+
+/// The regression in weak form: a row for each window of one period, every eighth of a period; groups are periods.
+pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
+    let whole: f64 = data.train.iter().map(Trajectory::duration_s).sum();
+    let step = (whole / MOST_WINDOWS as f64).max(data.period_s / 8.0);
+    let half = 0.5 * data.period_s;
+    let (mut rows, mut right, mut groups, mut group) = (Vec::new(), Vec::new(), Vec::new(), 0);
+    for part in &data.train {
+        let states = local_states(part, data.period_s / 8.0);
+        let (Some(first), Some(last)) = (states.first(), states.last()) else { continue };
+        let count = ((last.time_s - first.time_s - 2.0 * half) / step).floor().max(0.0) as usize;
+        for window in 0..count {
+            let center = first.time_s + half + window as f64 * step;
+            let from = states.partition_point(|state| state.time_s < center - half);
+            let to = states.partition_point(|state| state.time_s <= center + half);
+            let inside = states.get(from..to).unwrap_or_default();
+            let (row, sum) = weak_row(part, inside, center, half, terms);
+            rows.extend(row);
+            right.push(sum);
+            groups.push(group + window / 8);
+        }
+        group += count / 8 + 1;
+    }
+    Regression {
+        rows: DMatrix::from_row_slice(right.len(), terms.len(), &rows),
+        right: DVector::from_vec(right),
+        terms: terms.to_vec(),
+        groups,
+    }
+}
+
+/// Integrals of the terms and of the acceleration over one window, by the trapezoidal rule on the samples.
+fn weak_row(
+    part: &Trajectory,
+    inside: &[LocalState],
+    center: f64,
+    half: f64,
+    terms: &[Term],
+) -> (Vec<f64>, f64) {
+    let (mut row, mut sum) = (vec![0.0; terms.len()], 0.0);
+    let times = part.times_s();
+    for state in inside {
+        let s = (state.time_s - center) / half;
+        let [value, slope, curvature] = test_function(s);
+        let (slope, curvature) = (slope / half, curvature / (half * half));
+        let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
+        let weight = 0.5 * (time(state.sample + 1) - time(state.sample.saturating_sub(1)));
+        let observed = part.values().get(state.sample).copied().unwrap_or(state.position);
+        sum += weight * curvature * observed;
+        let place = Place {
+            position: observed,
+            velocity: state.velocity,
+            direction: state.velocity.signum(),
+            input: state.input,
+        };
+        for (own, term) in row.iter_mut().zip(terms) {
+            *own += weight
+                * match term {
+                    Term::Velocity => -slope * observed,
+                    other => value * other.value(&place),
+                };
+        }
+    }
+    (row, sum)
+}
+
+/// (1 − s²)ⁿ with its first two derivatives with respect to s; 0 outside of −1 to 1.
+fn test_function(s: f64) -> [f64; 3] {
+    let (n, base) = (f64::from(EXPONENT), 1.0 - s * s);
+    if base <= 0.0 {
+        return [0.0; 3];
+    }
+    let (low, middle) = (base.powi(EXPONENT - 2), base.powi(EXPONENT - 1));
+    [base.powi(EXPONENT), -2.0 * n * s * middle, -2.0 * n * middle + 4.0 * n * (n - 1.0) * s * s * low]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::test_function;
+
+    #[test]
+    fn a_test_function_has_the_derivatives_it_states() {
+        for s in [-0.9, -0.3, 0.0, 0.5, 0.99] {
+            let at = |s: f64| test_function(s);
+            let slope = (at(s + 1e-6)[0] - at(s - 1e-6)[0]) / 2e-6;
+            let curvature = (at(s + 1e-6)[1] - at(s - 1e-6)[1]) / 2e-6;
+            assert!((at(s)[1] - slope).abs() < 1e-7 && (at(s)[2] - curvature).abs() < 1e-7, "{s}");
+        }
+        assert_eq!(test_function(1.5), [0.0; 3]);
+    }
+}

@@ -1,0 +1,31 @@
+//! Learning the dynamics of an oscillator from records, and judging what was learned on records never seen.
+//!
+//! A [`data::DataSet`] holds trajectories split into training, validation and test parts. A [`Learner`] turns it into a
+//! [`Model`], which predicts freely from a stretch of the past and the input, and may state a torque, coefficients with
+//! intervals, and an equation. [`judge`] scores models on the test part beside the [`baselines`]. The learners there are
+//! stand in [`learners::LEARNERS`], one line each.
+//!
+//! # Units
+//! SI throughout: seconds; positions in rad or m. Accelerations stand for torques: rad/s² is a torque divided by the
+//! inertia, the only one that motion alone reveals.
+
+#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+
+pub mod baselines;
+pub mod data;
+mod error;
+pub mod flow;
+pub mod judge;
+mod learner;
+pub mod learners;
+mod linear;
+mod model;
+mod stored;
+#[cfg(test)]
+mod testing;
+pub mod training;
+
+pub use error::LearnError;
+pub use learner::{Context, Entry, Fitted, Kind, Learner, Step};
+pub use model::{Ahead, Coefficient, Model, Past, Place, Predicted, Torque};
+pub use stored::{Stored, Tensor};

@@ -1,0 +1,48 @@
+//! Dense linear algebra on the few matrices of a fit.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Solution of a symmetric positive semidefinite system, its diagonal raised by a part of itself until it is definite.
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let mut factor = 1e-14;
+    while factor < 1e-3 {
+        if let Some(decomposed) = raised(matrix, factor).cholesky() {
+            return Some(decomposed.solve(right));
+        }
+        factor *= 100.0;
+    }
+    None
+}
+
+/// Inverse of a symmetric positive semidefinite matrix, as [`solve`].
+pub(crate) fn inverse(matrix: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let mut factor = 1e-14;
+    while factor < 1e-3 {
+        if let Some(decomposed) = raised(matrix, factor).cholesky() {
+            return Some(decomposed.inverse());
+        }
+        factor *= 100.0;
+    }
+    None
+}
+
+/// A matrix whose diagonal is raised by a part of itself; an empty entry becomes 1.
+pub(crate) fn raised(matrix: &DMatrix<f64>, factor: f64) -> DMatrix<f64> {
+    let diagonal = matrix.diagonal().map(|own| if own > 0.0 { own * (1.0 + factor) } else { 1.0 });
+    let mut raised = matrix.clone();
+    raised.set_diagonal(&diagonal);
+    raised
+}
+
+/// Least squares of `rows · x ≈ right` through the normal equations of columns scaled to unit length.
+pub(crate) fn least_squares(rows: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    let lengths: Vec<f64> = rows.column_iter().map(|column| column.norm().max(f64::MIN_POSITIVE)).collect();
+    let mut scaled = rows.clone();
+    for (mut column, length) in scaled.column_iter_mut().zip(&lengths) {
+        column /= *length;
+    }
+    let decomposed = scaled.svd(true, true);
+    let solved = decomposed.solve(right, 1e-12).ok()?;
+    let lengths = DVector::from_vec(lengths);
+    Some(solved.component_div(&lengths))
+}

@@ -1,0 +1,210 @@
+//! The training loop that sequence models share: windows in batches, Adam, a schedule, clipping, early stopping, and a
+//! state that resumes to the bit.
+//!
+//! A sequence model implements [`Trainable`]: its number of weights, their start, and the loss of a batch with its
+//! gradient. [`train`] does the rest. Kingma, Ba, ICLR 2015 (Adam); Loshchilov, Hutter, ICLR 2017 and 2019 (cosine
+//! schedule, decoupled weight decay); Pascanu, Mikolov, Bengio, ICML 2013 (clipping).
+
+mod schedule;
+#[cfg(test)]
+mod tests;
+
+pub use schedule::Schedule;
+
+use crate::data::Window;
+use crate::{Context, LearnError, Step};
+use rand::seq::SliceRandom;
+use seed::Seed;
+use serde::{Deserialize, Serialize};
+
+/// A model with a loss.
+pub trait Trainable {
+    /// Weights to begin from, drawn from a seed.
+    fn initial(&self, seed: &Seed) -> Vec<f64>;
+
+    /// Mean loss of a batch of windows, and its gradient into `gradient`, which is as long as the weights and zero.
+    ///
+    /// # Errors
+    /// [`LearnError`] where the batch cannot be computed.
+    fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError>;
+
+    /// Error on the validation part, which decides when to stop and which weights to keep.
+    ///
+    /// # Errors
+    /// [`LearnError`] where it cannot be computed.
+    fn validation(&self, weights: &[f64]) -> Result<f64, LearnError>;
+}
+
+/// How a model is trained.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Training {
+    /// Passes over the windows.
+    pub epochs: u64,
+    /// Windows in a batch.
+    pub batch: usize,
+    /// Learning rate, and how it falls.
+    pub schedule: Schedule,
+    /// Norm that a gradient is cut to.
+    pub clip: f64,
+    /// Decay of the weights per step, over the learning rate.
+    pub weight_decay: f64,
+    /// Epochs without a better validation after which training stops.
+    pub patience: u64,
+}
+
+/// Where a training stands: all that it needs to go on to the same bits.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Weights.
+    pub weights: Vec<f64>,
+    /// Weights of the best validation so far.
+    pub best: Vec<f64>,
+    /// Their validation error.
+    pub best_validation: f64,
+    /// Epochs since.
+    pub waited: u64,
+    /// Epochs done.
+    pub epoch: u64,
+    /// Steps done.
+    pub steps: u64,
+    first: Vec<f64>,
+    second: Vec<f64>,
+}
+
+/// A finished training.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Trained {
+    /// The state at the end; `best` holds the weights to use.
+    pub state: State,
+    /// Whether validation stopped getting better before the epochs ran out.
+    pub stopped_early: bool,
+}
+
+/// Decay of Adam's averages of gradients and of their squares.
+const DECAYS: [f64; 2] = [0.9, 0.999];
+
+/// Keeps Adam's denominator from vanishing.
+const SMALL: f64 = 1e-8;
+
+/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch.
+///
+/// The order of the windows in an epoch follows from the seed and the epoch's number alone, so that a resumed training
+/// sees what an uninterrupted one would.
+///
+/// # Errors
+/// [`LearnError::Interrupted`], and what the model refuses; [`LearnError::Unsolvable`] where there is no window.
+pub fn train(
+    model: &dyn Trainable,
+    windows: &[Window],
+    training: &Training,
+    from: Option<State>,
+    context: &Context<'_>,
+    keep: &mut dyn FnMut(&State),
+) -> Result<Trained, LearnError> {
+    if windows.is_empty() {
+        let problem =
+            "no training record is as long as a past and a future together; shorten them".to_owned();
+        return Err(LearnError::Unsolvable { what: "training", problem });
+    }
+    let mut state = match from {
+        Some(state) => state,
+        None => State::new(model, context)?,
+    };
+    let of_epoch = windows.len().div_ceil(training.batch.max(1)) as u64;
+    let budget = context.steps(training.epochs * of_epoch);
+    while state.steps < budget && state.waited < training.patience {
+        let loss = state.epoch(model, windows, training, (of_epoch, budget), context)?;
+        let validation = model.validation(&state.weights)?;
+        state.judge(validation);
+        let phase = format!("epoch {}", state.epoch);
+        (context.observe)(&Step {
+            step: state.steps,
+            phase,
+            train: loss.sqrt(),
+            validation: Some(validation),
+        });
+        keep(&state);
+    }
+    let stopped_early = state.waited >= training.patience;
+    Ok(Trained { state, stopped_early })
+}
+
+impl State {
+    fn new(model: &dyn Trainable, context: &Context<'_>) -> Result<Self, LearnError> {
+        let weights = model.initial(&context.seed.child("initial weights"));
+        let best_validation = model.validation(&weights)?;
+        let zeros = vec![0.0; weights.len()];
+        let best = weights.clone();
+        Ok(Self {
+            best_validation,
+            best,
+            waited: 0,
+            epoch: 0,
+            steps: 0,
+            first: zeros.clone(),
+            second: zeros,
+            weights,
+        })
+    }
+
+    /// One pass over the windows; gives the mean loss.
+    fn epoch(
+        &mut self,
+        model: &dyn Trainable,
+        windows: &[Window],
+        training: &Training,
+        (of_epoch, budget): (u64, u64),
+        context: &Context<'_>,
+    ) -> Result<f64, LearnError> {
+        let mut order = windows.to_vec();
+        let seed = context.seed.child("batches").child(&self.epoch.to_string());
+        order.shuffle(&mut seed.generator());
+        let (mut sum, mut count) = (0.0, 0_usize);
+        for batch in order.chunks(training.batch.max(1)) {
+            if self.steps >= budget {
+                break;
+            }
+            context.check()?;
+            let mut gradient = vec![0.0; self.weights.len()];
+            sum += model.loss(&self.weights, batch, &mut gradient)?;
+            count += 1;
+            let rate = training.schedule.rate(self.steps, training.epochs * of_epoch);
+            self.step(&mut gradient, rate, training);
+        }
+        self.epoch += 1;
+        Ok(sum / count.max(1) as f64)
+    }
+
+    /// One step of Adam with decoupled weight decay.
+    fn step(&mut self, gradient: &mut [f64], rate: f64, training: &Training) {
+        let norm = gradient.iter().map(|own| own * own).sum::<f64>().sqrt();
+        if !norm.is_finite() {
+            // A batch that blew up teaches nothing; the step counts, so that the schedule goes on.
+            self.steps += 1;
+            return;
+        }
+        let cut = (training.clip / norm.max(f64::MIN_POSITIVE)).min(1.0);
+        self.steps += 1;
+        let [of_first, of_second] = DECAYS;
+        let power = i32::try_from(self.steps).unwrap_or(i32::MAX);
+        let (unbias, unbias_square) = (1.0 - of_first.powi(power), 1.0 - of_second.powi(power));
+        let moments = self.first.iter_mut().zip(&mut self.second);
+        for ((weight, own), (first, second)) in self.weights.iter_mut().zip(gradient).zip(moments) {
+            let own = *own * cut;
+            *first = of_first * *first + (1.0 - of_first) * own;
+            *second = of_second * *second + (1.0 - of_second) * own * own;
+            let direction = (*first / unbias) / ((*second / unbias_square).sqrt() + SMALL);
+            *weight -= rate * (direction + training.weight_decay * *weight);
+        }
+    }
+
+    fn judge(&mut self, validation: f64) {
+        if validation < self.best_validation {
+            self.best_validation = validation;
+            self.best.clone_from(&self.weights);
+            self.waited = 0;
+        } else {
+            self.waited += 1;
+        }
+    }
+}

@@ -1,0 +1,209 @@
+//! The page on learned dynamics: learners and baselines on records they never saw.
+
+mod figures;
+#[cfg(test)]
+mod tests;
+
+use askama::Template;
+use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
+
+use crate::figures::Figure;
+use crate::format::{fixed, quantity, significant};
+use crate::frame::{Frame, finish};
+use crate::parse::Learning;
+use crate::plot::Hue;
+use crate::tables::{Fact, fact, whole};
+use crate::verdict::{self, Origin, Tone, Verdict};
+use crate::{ReportError, RunTexts};
+
+/// Columns of a table of scores, beside the method's name.
+const COLUMNS: [&str; 8] =
+    ["Free run", "× noise", "Horizon (s)", "One step", "In 95 % band", "Torque off", "Numbers", "Time (s)"];
+
+/// How to read the tables.
+const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest without seeing another \
+     observation. The free run’s error is the root mean square over all test records, in their unit and over the sensor’s \
+     noise; the horizon is the median time until the error, over a quarter of a period, passes three times the noise. One \
+     step is the error a sample ahead of a moving past. The torque’s error is relative to what the nominal simulator lacks. \
+     Baselines know nothing, or what a simulator knows; the true law fitted exactly is what nobody can do better.";
+
+/// A row of scores.
+struct RowView<'a> {
+    title: &'a str,
+    is_learner: bool,
+    cells: Vec<String>,
+    reason: String,
+}
+
+/// One coefficient of a law.
+struct CoefficientView<'a> {
+    method: &'a str,
+    cells: Vec<String>,
+}
+
+/// One data set as it stands on the page.
+struct ProblemView<'a> {
+    id: String,
+    title: &'a str,
+    origin: Origin,
+    absent: &'a str,
+    facts: Vec<Fact>,
+    rows: Vec<RowView<'a>>,
+    laws: Vec<String>,
+    coefficients: Vec<CoefficientView<'a>>,
+    figures: Vec<Figure>,
+}
+
+#[derive(Template)]
+#[template(path = "learning.html")]
+struct LearningPage<'a> {
+    frame: Frame<'a>,
+    reading: &'static str,
+    columns: [&'static str; 8],
+    problems: Vec<ProblemView<'a>>,
+}
+
+pub(crate) fn render(texts: &RunTexts<'_>, learning: &Learning) -> Result<String, ReportError> {
+    let result = &learning.result;
+    let page = LearningPage {
+        frame: Frame {
+            hues: &Hue::ALL,
+            name: texts.name,
+            kicker: "dynamics learned from records",
+            verdict: headline(result),
+            origin: origin(result),
+            warnings: result.problems.iter().filter_map(|problem| problem.absent.clone()).collect(),
+            next: Vec::new(),
+            pipelines: Vec::new(),
+            data: Vec::new(),
+            findings: Vec::new(),
+            files: [
+                ("Resolved configuration (config.toml)", texts.config),
+                ("Environment (environment.json)", texts.environment),
+                ("Every number, unrounded (result.json)", texts.result),
+            ],
+        },
+        reading: READING,
+        columns: COLUMNS,
+        problems: result.problems.iter().map(|problem| view(problem, learning)).collect(),
+    };
+    finish(&page)
+}
+
+fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a> {
+    let rows: Vec<&LearnRow> =
+        learning.result.results.iter().filter(|row| row.problem == problem.id).collect();
+    let id: String =
+        problem.id.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect();
+    let id = format!("problem-{id}");
+    let law = |row: &&LearnRow| row.equation.as_ref().map(|equation| format!("{}: {equation}", row.title));
+    ProblemView {
+        title: &problem.title,
+        origin: verdict::origin(&problem.origin),
+        absent: problem.absent.as_deref().unwrap_or_default(),
+        facts: if problem.absent.is_some() { Vec::new() } else { facts(problem) },
+        laws: rows.iter().filter_map(law).collect(),
+        coefficients: rows.iter().flat_map(|row| coefficients(row)).collect(),
+        figures: figures::figures(&id, problem, &rows, learning),
+        rows: rows.into_iter().map(row_view).collect(),
+        id,
+    }
+}
+
+fn facts(problem: &LearnProblem) -> Vec<Fact> {
+    let data = &problem.data;
+    vec![
+        fact("Records", whole(data.records)),
+        fact(
+            "Stretches",
+            format!(
+                "{} to learn from, {} to choose among models, {} to test on",
+                data.train, data.validation, data.test
+            ),
+        ),
+        fact("Samples learned from", whole(problem.training_samples)),
+        fact("Sampling rate", quantity(&significant(problem.rate_hz, 5), "Hz")),
+        fact("Typical period", quantity(&significant(problem.period_s, 4), "s")),
+        fact("Warm-up", quantity(&significant(problem.warm_up_s, 4), "s")),
+        fact("Predicted after it", quantity(&significant(problem.test_s, 4), "s")),
+        fact("Sensor noise", quantity(&significant(problem.noise, 3), &problem.unit)),
+    ]
+}
+
+fn row_view(row: &LearnRow) -> RowView<'_> {
+    let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), |value| significant(value, 3));
+    let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
+        vec![
+            number(test.free_run_rmse),
+            number(test.over_noise),
+            significant(test.horizon_s, 3),
+            number(test.one_step_rmse),
+            test.coverage_95.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 1))),
+            row.torque_error.map_or_else(String::new, |error| format!("{} %", significant(100.0 * error, 2))),
+            whole(row.parameters),
+            significant(row.seconds, 2),
+        ]
+    });
+    let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
+    RowView { title: &row.title, is_learner: row.kind == LearnKind::Learner, cells, reason }
+}
+
+fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {
+    let one = |(name, own): (&String, &results::LearnCoefficient)| {
+        let interval = own.interval_95.map_or_else(String::new, |[low, high]| {
+            format!("{} to {}", significant(low, 4), significant(high, 4))
+        });
+        let cells = vec![
+            name.clone(),
+            significant(own.value, 5),
+            interval,
+            own.truth.map_or_else(String::new, |truth| significant(truth, 5)),
+            own.inclusion.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 0))),
+            own.unit.clone(),
+        ];
+        CoefficientView { method: &row.title, cells }
+    };
+    row.coefficients.iter().flatten().map(one).collect()
+}
+
+/// The verdict counts on how many data sets a learner predicts better than every baseline but the repaired simulator.
+fn headline(result: &LearnResult) -> Verdict {
+    let present: Vec<&LearnProblem> =
+        result.problems.iter().filter(|problem| problem.absent.is_none()).collect();
+    let error =
+        |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
+    let least = |problem: &LearnProblem, kind: LearnKind| {
+        let own = result.results.iter().filter(|row| row.problem == problem.id && row.kind == kind);
+        own.filter(|row| row.id != "repaired").map(error).fold(f64::INFINITY, f64::min)
+    };
+    let better = present
+        .iter()
+        .filter(|problem| least(problem, LearnKind::Learner) < least(problem, LearnKind::Baseline))
+        .count();
+    let (tone, label) = match (present.len(), better) {
+        (0, _) => (Tone::Bad, "Nothing learned"),
+        (all, better) if all == better => (Tone::Good, "Learning helps on every data set"),
+        (_, 0) => (Tone::Bad, "Learning helps nowhere"),
+        _ => (Tone::Caution, "Learning helps on some data sets"),
+    };
+    let sentence = format!(
+        "On {better} of {} data sets some learner predicts records it never saw better than persistence, the nominal and \
+         the recalibrated simulator, and a linear autoregression.",
+        present.len()
+    );
+    Verdict { tone, label, sentence }
+}
+
+fn origin(result: &LearnResult) -> Origin {
+    let mut origins: Vec<&str> = result.problems.iter().map(|problem| problem.origin.as_str()).collect();
+    origins.sort_unstable();
+    origins.dedup();
+    match origins[..] {
+        [one] => verdict::origin(one),
+        _ => Origin {
+            class: "simulated",
+            label: "Simulated and measured",
+            note: "Each section says which of the two its data set is.",
+        },
+    }
+}

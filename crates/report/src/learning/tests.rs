@@ -1,0 +1,99 @@
+use crate::{RunTexts, render};
+use results::{
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest,
+    RESULT_SCHEMA,
+};
+use std::collections::BTreeMap;
+
+fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
+    LearnRow {
+        problem: "swing".to_owned(),
+        id: id.to_owned(),
+        title: format!("Method {id}"),
+        kind,
+        test: error.map(|error| LearnTest {
+            free_run_rmse: Some(error),
+            unit: "rad".to_owned(),
+            over_noise: Some(error / 1e-3),
+            horizon_s: 4.0,
+            one_step_rmse: None,
+            coverage_95: Some(0.947),
+        }),
+        coefficients: Some(BTreeMap::from([(
+            "theta".to_owned(),
+            LearnCoefficient {
+                value: -16.02,
+                unit: "1/s^2".to_owned(),
+                interval_95: Some([-16.1, -15.9]),
+                inclusion: Some(1.0),
+                truth: Some(-16.0),
+            },
+        )])),
+        equation: None,
+        torque_error: Some(0.012),
+        parameters: 4,
+        seconds: 0.2,
+        reached: LearnEnd::Converged,
+        failure: error.is_none().then(|| "needs <a> nominal simulator".to_owned()),
+        model: None,
+    }
+}
+
+fn page(learner: f64) -> String {
+    let problem = LearnProblem {
+        id: "swing".to_owned(),
+        title: "A swing".to_owned(),
+        origin: "simulated".to_owned(),
+        absent: None,
+        unit: "rad".to_owned(),
+        data: LearnData { records: 6, train: 3, validation: 1, test: 2 },
+        training_samples: 1500,
+        rate_hz: 50.0,
+        period_s: 1.0,
+        warm_up_s: 1.0,
+        noise: 1e-3,
+        test_s: 9.0,
+    };
+    let result = LearnResult {
+        schema: RESULT_SCHEMA.to_owned(),
+        task: "learn".to_owned(),
+        seed: 0,
+        data: problem.data,
+        problems: vec![problem],
+        results: vec![
+            row("sindy", LearnKind::Learner, Some(learner)),
+            row("arx", LearnKind::Baseline, Some(0.1)),
+            row("nominal", LearnKind::Baseline, None),
+        ],
+        seconds: 1.0,
+    };
+    let result = serde_json::to_string(&result).unwrap();
+    let predictions = "problem,method,record,time_s,observed,predicted,std\nswing,sindy,r,1,0.1,0.1,\nswing,sindy,r,2,0.2,0.2,\n";
+    let series = "problem,method,position,velocity,input,truth,learned,std\nswing,sindy,0.1,0.2,0,-1.6,-1.61,\nswing,sindy,0.2,0.2,0,-3.2,-3.21,\n";
+    let trace =
+        "problem,method,step,phase,train,validation\nswing,sindy,1,whole,0.1,\nswing,sindy,2,whole,0.01,\n";
+    render(&RunTexts { name: "run", result: &result, predictions, series, trace, ..RunTexts::default() })
+        .unwrap()
+}
+
+#[test]
+fn a_page_shows_scores_coefficients_and_plots_and_says_where_a_row_failed() {
+    let page = page(0.002);
+    for words in [
+        "Learning helps on every data set",
+        "94.7 %",
+        "−16.02",
+        "needs &#60;a&#62; nominal simulator",
+        "Free runs: A swing (simulated)",
+        "Learned torque: A swing (simulated)",
+        "Training: A swing (simulated)",
+        "problem-swing-errors",
+    ] {
+        assert!(page.contains(words), "no {words}");
+    }
+}
+
+#[test]
+fn a_learner_behind_a_baseline_is_no_success() {
+    assert!(page(0.2).contains("Learning helps nowhere"));
+}

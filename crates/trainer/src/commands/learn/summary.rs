@@ -1,0 +1,85 @@
+//! The terminal's answer to `task = "learn"`: a table for each data set.
+
+use crate::terminal::table::table;
+use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
+use std::path::Path;
+use workflow::guess::two_digits;
+
+const HEADER: [&str; 9] =
+    ["method", "free run", "× noise", "horizon s", "one step", "in 95 %", "torque off", "numbers", "s"];
+
+/// The result as a person wants to read it.
+pub(super) fn summary(result: &LearnResult, folder: &Path) -> String {
+    let mut parts = vec![
+        "errors are RMS on records never seen, in the record's unit; the horizon ends where the error passes three times \
+         the noise; the torque's error is relative to what the nominal simulator lacks"
+            .to_owned(),
+    ];
+    parts.extend(result.problems.iter().map(|problem| described(problem, result)));
+    let shown = folder.display();
+    parts.push(format!("{:.1} s\nrun: {shown}\nreport: {shown}/report.html", result.seconds));
+    parts.join("\n\n")
+}
+
+fn described(problem: &LearnProblem, result: &LearnResult) -> String {
+    let head = format!("{} ({})", problem.title, problem.origin.to_uppercase());
+    if let Some(reason) = &problem.absent {
+        return format!("{head}\nABSENT: {reason}");
+    }
+    let data = &problem.data;
+    let facts = format!(
+        "{head}: {} records, {} stretches learned from ({} samples at {:.4} Hz), {} to choose, {} to test on; noise {} {}, \
+         predictions from {:.3} s over {:.2} s",
+        data.records,
+        data.train,
+        problem.training_samples,
+        problem.rate_hz,
+        data.validation,
+        data.test,
+        two_digits(problem.noise),
+        problem.unit,
+        problem.warm_up_s,
+        problem.test_s,
+    );
+    let own: Vec<&LearnRow> = result.results.iter().filter(|row| row.problem == problem.id).collect();
+    let mut lines = vec![facts, table(&HEADER, own.iter().map(|row| cells(row)).collect())];
+    for row in &own {
+        if let Some(failure) = &row.failure {
+            lines.push(format!("{}: {failure}", row.id));
+        }
+        if let Some(equation) = &row.equation {
+            lines.push(format!("{}: {equation}", row.id));
+        }
+    }
+    lines.join("\n")
+}
+
+fn cells(row: &LearnRow) -> Vec<String> {
+    let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
+    let name = if row.kind == LearnKind::Learner {
+        row.id.clone()
+    } else {
+        format!("{} ({})", row.id, row.kind.name())
+    };
+    let mut cells = vec![name];
+    match &row.test {
+        None => cells.extend(vec![
+            row.reached.name().to_owned(),
+            String::new(),
+            String::new(),
+            String::new(),
+            String::new(),
+        ]),
+        Some(test) => cells.extend([
+            number(test.free_run_rmse),
+            number(test.over_noise),
+            format!("{:.2}", test.horizon_s),
+            number(test.one_step_rmse),
+            test.coverage_95.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
+        ]),
+    }
+    cells.push(row.torque_error.map_or_else(String::new, |error| format!("{} %", two_digits(100.0 * error))));
+    cells.push(row.parameters.to_string());
+    cells.push(format!("{:.2}", row.seconds));
+    cells
+}

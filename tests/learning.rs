@@ -1,0 +1,155 @@
+//! `task = "learn"` and `trainer predict`: dynamics learned from records, judged on records never seen.
+
+use crate::support::{measured, number, result, root, trainer};
+use serde_json::Value;
+use std::path::Path;
+
+/// One sparse learner beside the quick baselines.
+const QUICK: [&str; 3] = ["configs/learn/sindy.toml", "sindy.members=10", "sindy.refit_samples=2000"];
+
+fn row<'a>(result: &'a Value, id: &str) -> &'a Value {
+    let rows = result["results"].as_array().unwrap();
+    rows.iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("no {id}"))
+}
+
+#[test]
+fn a_study_leaves_scores_models_tables_and_a_page() {
+    let (code, result, folder) = result(&QUICK);
+    assert_eq!(code, 0, "{result}");
+    assert_eq!((&result["schema"], &result["task"]), (&"ringdown.result/1".into(), &"learn".into()));
+    assert_eq!(result["data"], serde_json::json!({ "records": 20, "train": 12, "validation": 3, "test": 5 }));
+    let error = |id: &str| number(row(&result, id), "/test/free_run_rmse");
+    assert!(error("sindy") < 1.2 * error("exact"), "{result}");
+    assert!(10.0 * error("sindy") < error("recalibrated") && error("recalibrated") < error("nominal"));
+    assert!(error("arx") < error("persistence"));
+    let sindy = row(&result, "sindy");
+    assert_eq!(sindy["kind"], "learner");
+    assert_eq!(row(&result, "exact")["kind"], "reference");
+    let friction = &sindy["coefficients"]["sign(theta_dot)"];
+    assert!(
+        (number(friction, "/value") + 0.15).abs() < 0.01 && (number(friction, "/truth") + 0.15).abs() < 1e-6
+    );
+    assert!(number(friction, "/interval_95/0") < number(friction, "/value"));
+    for file in ["report.html", "predictions.csv", "series.csv", "trace.csv", "config.toml", "events.jsonl"] {
+        assert!(folder.path().join(file).is_file(), "{file}");
+    }
+    let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("Free runs: Friction and gravity, free (simulated)"));
+
+    let model = folder.path().join(sindy["model"].as_str().unwrap());
+    predicts_a_record(&model);
+}
+
+/// The model of friction and gravity on a record of that system drawn with another seed.
+fn predicts_a_record(model: &Path) {
+    let (code, _, records) =
+        result(&["simulate", "configs/learn/systems/friction-gravity.toml", "seed=77", "simulate.records=1"]);
+    assert_eq!(code, 0);
+    let record = records.path().join("records/record-000.csv");
+    let out = records.path().join("predicted");
+    let arguments = [
+        "predict",
+        model.to_str().unwrap(),
+        record.to_str().unwrap(),
+        "--json",
+        "--out",
+        out.to_str().unwrap(),
+    ];
+    let output = trainer(&arguments);
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    // Another system of the same priors: its numbers are the same, its starts are not.
+    assert!(number(&said, "/over_noise") < 2.0, "{said}");
+    assert!(out.join("predictions.csv").is_file());
+    let refused = trainer(&["predict", record.to_str().unwrap(), record.to_str().unwrap()]);
+    assert_eq!(refused.status.code(), Some(2));
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("expected a model that `task = \"learn\"` wrote"), "{message}");
+}
+
+/// Runs a study with these overrides and expects a refusal with these words.
+fn refused(overrides: &[&str], words: &str) {
+    let out = tempfile::tempdir().unwrap();
+    let out = out.path().join("run");
+    let arguments = [&["configs/learn/sindy.toml", "--out", out.to_str().unwrap()], overrides].concat();
+    let output = trainer(&arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+    assert!(message.contains(words), "no `{words}` in: {message}");
+}
+
+#[test]
+fn what_nothing_can_be_learned_from_is_refused() {
+    let of = |key: &str| format!("problem.friction-gravity.{key}");
+    refused(&[&of("test_records=0")], "no record is left to test on");
+    refused(&[&of("test_records=20")], "leave none to train on");
+    refused(&[&of("warm_up_s=5")], "too few for a part of its own");
+    refused(&["learn.learners=sindi"], "did you mean `sindy`?");
+    refused(&["learn.baselines=arks"], "baseline");
+    refused(&["sindy.library=theta,thetta"], "library term");
+    refused(&[&of("simulation=configs/pinn.toml")], "pinn.toml");
+}
+
+#[test]
+fn files_that_do_not_go_together_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let swing = |rate: f64, column: &str, more: &str| -> String {
+        let row = |at: usize| {
+            let time = at as f64 / rate;
+            format!("{time:.4},{:.6}{more}\n", (6.0 * time).cos())
+        };
+        format!("time_s,{column}\n") + &(0..(10.0 * rate) as usize).map(row).collect::<String>()
+    };
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("a.csv", &swing(50.0, "angle_rad", ""));
+    write("fast.csv", &swing(100.0, "angle_rad", ""));
+    write("driven.csv", &swing(50.0, "angle_rad,torque_nm", ",1"));
+    write("meters.csv", &swing(50.0, "displacement_m", ""));
+    let config = folder.path().join("learn.toml");
+    let text = "task = \"learn\"\n[learn]\nlearners = [\"sindy\"]\nbaselines = []\n[problem.p]\nfolder = \".\"\nrecords = ";
+    for (records, words) in [
+        ("[\"a.csv\"]", "a is the only record"),
+        ("[\"a.csv\", \"fast.csv\"]", "a set needs one rate"),
+        ("[\"a.csv\", \"driven.csv\"]", "a has no input column, driven has one"),
+        ("[\"a.csv\", \"meters.csv\"]", "a is in rad, meters in m"),
+        ("[\"none-*.csv\"]", "is called none-*.csv"),
+    ] {
+        std::fs::write(&config, format!("{text}{records}\n")).unwrap();
+        let out = folder.path().join("out");
+        let output = trainer(&[config.to_str().unwrap(), "--out", out.to_str().unwrap()]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{records}: {message}");
+        assert!(message.contains(words), "no `{words}` in: {message}");
+    }
+}
+
+/// A spring that the disc's nominal simulator has, dry friction that it lacks (KNOWN.md), in a law stated by the user.
+#[test]
+fn dry_friction_of_a_measured_disc_is_learned_from_one_release_and_helps_on_another() {
+    if measured("disc-oscillator/free-a.csv").is_none() {
+        return;
+    }
+    let law = "sindy.library=theta,theta_dot,sign(theta_dot)";
+    let problem = "learn.problems=disc-oscillator";
+    let (code, result, _) = result(&["configs/learn/measured.toml", problem, "learn.learners=sindy", law]);
+    assert_eq!(code, 0, "{result}");
+    assert_eq!(result["problems"][0]["origin"], "measured");
+    let error = |id: &str| number(row(&result, id), "/test/free_run_rmse");
+    assert!(
+        error("sindy") < 0.95 * error("recalibrated") && error("recalibrated") < error("nominal"),
+        "{result}"
+    );
+    let friction = number(row(&result, "sindy"), "/coefficients/sign(theta_dot)/value");
+    assert!((-3.0..-2.0).contains(&friction), "{friction}");
+}
+
+#[test]
+fn absent_records_leave_their_rows_out_and_say_so() {
+    let folder = root().join("no-such-folder");
+    let folder = format!("problem.air-disc.folder={}", folder.display());
+    let arguments = ["configs/learn/measured.toml", "learn.problems=air-disc", &folder];
+    let (code, result, _) = result(&arguments);
+    assert_eq!(code, 0, "{result}");
+    assert!(result["problems"][0]["absent"].as_str().unwrap().contains("its rows are left out"));
+    assert_eq!(result["results"].as_array().unwrap().len(), 0);
+}
