@@ -170,7 +170,8 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Probability that one of two classes acts that take each other's place; none where they do not.
+    /// Probability that one of two classes acts that take each other's place, and that nothing else is left; none where they do
+    /// not. Where something is left, there is always one of several that takes some of it.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, doubt: Doubt) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| holds(fit, one))?;
@@ -185,7 +186,7 @@ impl<'a> Inclusion<'a> {
         let error = |at: usize| self.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let shown = ClassEvidence { replacement, half_swings: None };
-        Some(probability(&shown, error(neither) / error(best), doubt))
+        Some((1.0 - doubt.left_over) * probability(&shown, error(neither) / error(best), doubt))
     }
 
     fn class(
