@@ -3,7 +3,7 @@
 use crate::unit::{TimeUnit, Unit};
 use serde::{Deserialize, Serialize};
 
-/// Which columns to read and how. What is left open is found from the file and kept in [`Reading`].
+/// Which columns to read and how. What is left open is found from the file and kept in [`Reading`](crate::Reading).
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct CsvColumns {
     /// The time column.
