@@ -123,7 +123,8 @@ pub(crate) fn gap(
         last_third: last_third.map(f64::sqrt),
         held_out: "segments of about six periods (without a spring: three time constants), fitted to the even ones and \
                    scored on the odd ones and the other way round; on the scored segments only the start states are \
-                   fitted"
+                   fitted. Fewer than eight segments: blocks of at least three quarters of a period, a quarter of \
+                   them held out at a time, nothing fitted to these"
             .to_owned(),
     }
 }
