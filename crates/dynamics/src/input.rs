@@ -144,3 +144,17 @@ impl Input {
         self.times.partition_point(|&knot| knot <= time)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Hold, Input};
+
+    /// A straight line stays one, and so does its integral.
+    #[test]
+    fn fewer_samples_of_a_straight_line_lie_on_it() {
+        let times: Vec<f64> = (0..9).map(f64::from).collect();
+        let line = Input::new(times.clone(), times, Hold::Linear).unwrap().averaged(4);
+        assert_eq!(line.times(), [0.0, 4.0, 8.0]);
+        assert!((line.values()[1] - 4.0).abs() < 1e-12);
+    }
+}

@@ -34,3 +34,53 @@ impl Data {
         Self { inputs: inputs.collect(), ..self.clone() }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::data::observations::Observations;
+    use crate::data::segments::cut;
+    use crate::fit::calibrate::baseline;
+    use crate::fit::levenberg_marquardt::residuals;
+    use dynamics::reference::{Tolerance, simulate};
+    use dynamics::{Hold, Input, Nominal, Start, System};
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice, Quantity, Record};
+    use seed::Seed;
+
+    /// A swing at 0.5 Hz that a sine of 0.2 Hz drives, both 500 times a second, or one that a fast input drives too.
+    fn observed(fast: f64) -> Observations {
+        let nominal = Nominal::new(1.0, 0.4, 10.0, 0.0).unwrap();
+        let times: Vec<f64> = (0..10_000).map(|i| f64::from(i) * 0.002).collect();
+        let torque: Vec<f64> = times.iter().map(|t| (1.26 * t).sin() + fast * (700.0 * t).sin()).collect();
+        let input = Input::new(times.clone(), torque.clone(), Hold::Linear).unwrap();
+        let system = System::new(nominal, Vec::new()).unwrap();
+        let motion =
+            simulate(&system, Start::release(0.1), Some(&input), &times, &Tolerance::default()).unwrap();
+        let noise = StandardNormal.sample_iter(Seed::new(3).child("noise").generator());
+        let values =
+            motion.position.iter().zip(noise).map(|(x, noise): (&f64, f64)| x + 1e-3 * noise).collect();
+        let record = Record::new(times, values, Some(torque), Quantity::Position, "rad").unwrap();
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        Observations::new(&record, &clock)
+    }
+
+    fn spare(fast: f64) -> usize {
+        let nominal = Nominal::new(1.0, 0.4, 10.0, 0.0).unwrap();
+        let record = observed(fast);
+        let data =
+            cut(std::slice::from_ref(&record), &[vec![true; record.len()]], &(&nominal).into()).unwrap();
+        let fit = baseline(&data, &(&nominal).into()).unwrap().calibrated;
+        let count = data.spare_knots(&fit);
+        let square =
+            |data| residuals(data, &fit).unwrap().iter().map(nalgebra::DVector::norm_squared).sum::<f64>();
+        let ratio = square(&data.averaged(count)) / square(&data);
+        assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
+        count
+    }
+
+    #[test]
+    fn a_slow_input_needs_few_knots_and_a_fast_one_all() {
+        assert!(spare(0.0) >= 8);
+        assert_eq!(spare(2000.0), 1);
+    }
+}

@@ -181,3 +181,30 @@ impl Both<'_> {
         Ok(mean_square(&scored, self.fitted.hypothesis.start_length()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use crate::fixtures::record;
+    use crate::{Observations, Settings, diagnose};
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use record::{Clock, ClockChoice};
+
+    /// Seven swings whose amplitude falls to a third: one segment and a bit, of which no half could foretell the other.
+    #[test]
+    fn a_short_swing_is_judged_by_blocks() {
+        let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
+        let effects = [("coulomb_friction", 6.0), ("cubic_stiffness", -60.0)];
+        let effects = effects.map(|(id, value)| Active::new(id, &[value]).unwrap()).to_vec();
+        let system = System::new(nominal, effects).unwrap();
+        let chain = Chain::new(Observed::Position, 5e-4, Vec::new()).unwrap();
+        let record = record(&system, 0.6, 520, &chain, 1);
+        let clock = Clock::new(&record, ClockChoice::Host).unwrap();
+        let observations = [Observations::new(&record, &clock)];
+        let answer = diagnose(&observations, &nominal, &Settings::default(), &|| 0.0).unwrap();
+        let of =
+            |id: &str| answer.classes.iter().find(|class| class.id == id).map_or(0.0, |own| own.probability);
+        assert!(of("friction") > 0.9 && of("restoring") > 0.9, "{:?}", answer.classes);
+        assert!(answer.gap.repaired < 1.1 * answer.gap.noise_floor.value, "{:?}", answer.gap);
+    }
+}
