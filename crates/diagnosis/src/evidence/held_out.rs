@@ -110,8 +110,10 @@ impl Both<'_> {
             return None;
         }
         let period = TAU / self.longer.facts.frequency;
-        let span: f64 = self.longer.segments.iter().map(Segment::span).sum();
-        let length = (span / FEWEST as f64).max(BLOCK * period);
+        let spans = || self.longer.segments.iter().map(Segment::span);
+        // Every segment has blocks of all turns: its start state follows from the others.
+        let shortest = spans().fold(f64::INFINITY, f64::min) / TURNS as f64;
+        let length = (spans().sum::<f64>() / FEWEST as f64).min(shortest).max(BLOCK * period);
         let of = |segment: &Segment| {
             let first = segment.times.first().copied().unwrap_or_default();
             segment.times.iter().map(|time| ((time - first) / length) as usize % TURNS).collect()
