@@ -2,13 +2,14 @@
 
 use crate::experiment::DataSettings;
 use crate::json_schema::{asking_for_task, put};
+use crate::prediction::all_known;
 use crate::schema::{DATA, PLAIN, TOP};
 use learn::Entry;
 use learn::baselines::BASELINES;
 use learn::data::{InputHold, Making, Split, SplitKind};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use settings::{Default, Document, Field, Kind, Origin, Resolved, Section, SettingsError, json_schema};
+use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError, json_schema};
 use toml::Table;
 
 /// The name of the task.
@@ -375,21 +376,6 @@ fn reading(resolved: &Resolved, section: &str) -> Result<DataSettings, SettingsE
         section: section.to_owned(),
         problem: error.message().to_owned(),
     })
-}
-
-/// Refuses a name that is not known.
-fn all_known(
-    document: &Document,
-    key: &str,
-    what: &str,
-    names: Option<&[String]>,
-    known: &[String],
-) -> Result<(), SettingsError> {
-    let origin = || document.get(key).map_or(Origin::Default, |leaf| leaf.origin.clone());
-    match names.into_iter().flatten().find(|name| !known.contains(name)) {
-        Some(name) => Err(SettingsError::unknown_name(origin(), what, name, known.to_vec())),
-        None => Ok(()),
-    }
 }
 
 /// JSON Schema of `task = "learn"`, with the keys of each learner under its name.

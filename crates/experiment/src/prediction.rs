@@ -397,7 +397,7 @@ fn problem(resolved: &Resolved, id: &str, section: &str) -> Result<Problem, Sett
 }
 
 /// Refuses a name that is not known.
-fn all_known(
+pub(crate) fn all_known(
     document: &Document,
     key: &str,
     what: &str,
