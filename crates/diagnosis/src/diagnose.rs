@@ -3,10 +3,17 @@
 use crate::answer::Diagnosis;
 use crate::data::observations::Observations;
 use crate::error::DiagnosisError;
+use crate::measurement::clock_rates::ClockRates;
 use crate::settings::Settings;
 use crate::stages::{Judged, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer};
 use dynamics::NominalSimulator;
 use std::cell::OnceCell;
+
+/// What explains a part of the records already where clocks are asked for.
+enum Beside {
+    Nothing,
+    TheBest,
+}
 
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
@@ -26,11 +33,31 @@ pub fn diagnose(
     seconds: &dyn Fn() -> f64,
 ) -> Result<Diagnosis, DiagnosisError> {
     let simulator = &simulator.into();
-    let request = Request { records, simulator, settings };
     let mut watch = Stopwatch::new(seconds);
-    let measured = watch.after("measurement chain", Measured::of(&request)?);
-    let question = watch.after("calibration", Question::of(&request, &measured)?);
-    let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole));
+    let mut clocks = ClockRates::as_stamped(records);
+    let mut search = |clocks: &ClockRates| -> Result<_, DiagnosisError> {
+        let request = Request { records: &clocks.records, simulator, settings };
+        let measured = watch.after("measurement chain", Measured::of(&request)?);
+        let question = watch.after("calibration", Question::of(&request, &measured)?);
+        let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole));
+        Ok((measured, question, searched))
+    };
+    let (mut measured, mut question, mut searched) = search(&clocks)?;
+    // Clocks that show beside the calibrated simulator, and then those that the best set leaves.
+    for beside in [Beside::Nothing, Beside::TheBest] {
+        let (data, fit) = match beside {
+            Beside::Nothing => (&question.coarse, &question.coarse_base),
+            Beside::TheBest => (&searched.interval.data, searched.best()),
+        };
+        let Some(corrected) = clocks.corrected(data, fit)? else { continue };
+        let other = search(&corrected)?;
+        if other.2.is_closer(&searched, corrected.price) {
+            (measured, question, searched) = other;
+            clocks = corrected;
+        }
+    }
+    measured.findings.extend(clocks.finding());
+    let request = Request { records: &clocks.records, simulator, settings };
     let refined = watch.after("fits", Refined::of(question, searched)?);
     let work = refined.context(&request);
     let completed = OnceCell::new();

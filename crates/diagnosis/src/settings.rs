@@ -24,6 +24,6 @@ impl Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { false_alarm: 0.01, most_effects: 3, without: Vec::new(), seed: Seed::new(0) }
+        Self { false_alarm: 0.01, most_effects: 5, without: Vec::new(), seed: Seed::new(0) }
     }
 }

@@ -49,11 +49,11 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     asked
 }
 
-/// Probability that something is left beside a set: certain where its error is above the white noise, whatever the spectrum
-/// of that.
-fn left_over(data: &Data, set: &Fit) -> Result<f64, DynamicsError> {
-    let noise = floor::floor(data, &set.residuals);
-    let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise.interval_95[1];
+/// Probability that something is left beside a set: certain where its error, or that on the parts which were held out, is
+/// above the white noise, whatever the spectrum of that.
+fn left_over(data: &Data, set: &Fit, held_out: f64) -> Result<f64, DynamicsError> {
+    let noise = floor::floor(data, &set.residuals).interval_95[1];
+    let is_white = (set.squares / set.freedom()).sqrt() <= WHITE * noise && held_out <= PREDICTED * noise;
     Ok(if is_white { acts(unexplained(data, set)?.evidence) } else { 1.0 })
 }
 
@@ -89,6 +89,9 @@ struct Left {
 
 /// Error over the upper end of the white noise's interval up to which a residual counts as white.
 const WHITE: f64 = 1.05;
+
+/// The same on held-out parts, where coefficients are not quite those of the other parts.
+const PREDICTED: f64 = 1.2;
 
 /// Draws of segments for a class's stability.
 const DRAWS: usize = 200;
@@ -129,7 +132,8 @@ impl<'a> Inclusion<'a> {
         let of_certain =
             |own: &(Weighed<'_>, Left)| own.0.evidence - price(segments, own.0.fit, vocabulary, 0.0);
         let closest = all.iter().max_by(|a, b| of_certain(a).total_cmp(&of_certain(b)));
-        let left_over = left_over(data, closest.map_or(bare, |own| own.0.fit))?;
+        let (fit, error) = closest.map_or((bare, 0.0), |own| (own.0.fit, own.1.error));
+        let left_over = left_over(data, fit, error)?;
         for (set, left) in &mut all {
             left.price = price(segments, set.fit, vocabulary, left_over);
             set.evidence -= left.price;

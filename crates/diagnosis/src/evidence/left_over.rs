@@ -97,31 +97,55 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
     if weight > 0.0 { (real * real + imaginary * imaginary) / weight } else { 0.0 }
 }
 
-/// Bands about every half harmonic, from half the swing's frequency up, summed over the segments as they were cut.
-fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
-    let mut bands = vec![Band::default(); 2 * HARMONICS];
-    let highest = below_images(data.interval());
+/// Stretches of the residual that are long enough to tell a harmonic from its neighbors: the segments as they were cut or,
+/// where these are too short for that, the records.
+fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>)> {
+    let is_long = |times: &[f64]| {
+        let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        span * data.facts.frequency >= 0.8 * TAU * PERIODS
+    };
+    let mut cut = Vec::new();
+    let mut records: Vec<(Vec<f64>, Vec<f64>)> = Vec::new();
     for (segment, residual) in data.segments.iter().zip(residuals) {
         for part in segment.part_ranges() {
             let Some(times) = segment.times.get(part.clone()) else { continue };
             let Some(values) = residual.as_slice().get(part) else { continue };
-            let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
-            // A stretch cut short has no bins between the harmonics.
-            if length * data.facts.frequency < 0.8 * TAU * PERIODS {
+            cut.push((times.to_vec(), values.to_vec()));
+            if segment.record >= records.len() {
+                records.resize_with(segment.record + 1, Default::default);
+            }
+            if let Some((own_times, own_values)) = records.get_mut(segment.record) {
+                own_times.extend_from_slice(times);
+                own_values.extend_from_slice(values);
+            }
+        }
+    }
+    // A stretch cut short has no bins between the harmonics.
+    cut.retain(|(times, _)| is_long(times));
+    if cut.is_empty() {
+        records.retain(|(times, _)| is_long(times));
+        return records;
+    }
+    cut
+}
+
+/// Bands about every half harmonic, from half the swing's frequency up, summed over the stretches.
+fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
+    let mut bands = vec![Band::default(); 2 * HARMONICS];
+    let highest = below_images(data.interval());
+    for (times, values) in stretches(data, residuals) {
+        let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
+        let bin = TAU / length;
+        for (at, band) in bands.iter_mut().enumerate() {
+            let middle = 0.5 * (at + 1) as f64 * data.facts.frequency;
+            if middle + bin > highest {
                 continue;
             }
-            let bin = TAU / length;
-            for (at, band) in bands.iter_mut().enumerate() {
-                let middle = 0.5 * (at + 1) as f64 * data.facts.frequency;
-                if middle + bin > highest {
-                    continue;
-                }
-                for beside in -BESIDE..=BESIDE {
-                    band.power += periodogram(times, values, middle + f64::from(beside) * bin);
-                    band.bins += 1.0;
-                }
-                band.worth += WORTH;
+            for beside in -BESIDE..=BESIDE {
+                band.power += periodogram(&times, &values, middle + f64::from(beside) * bin);
+                band.bins += 1.0;
             }
+            band.worth += WORTH;
         }
     }
     bands
@@ -136,7 +160,8 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     // Start states take noise out of the swing's own band, which is therefore nobody's measure.
     let lower = |index: usize| at(if index == SWING + 1 { Some(SWING - 1) } else { index.checked_sub(1) });
     let upper = |index: usize| at(Some(if index + 1 == SWING { SWING + 1 } else { index + 1 }));
-    for (index, band) in bands.iter().enumerate() {
+    // Below the lowest band there is no other: a red noise stands out there as much as a slow torque.
+    for (index, band) in bands.iter().enumerate().skip(1) {
         let beside = lower(index).with(upper(index));
         let own = larger(band.mean(), band.worth, beside.mean(), beside.worth);
         evidence = evidence.max(own);

@@ -76,7 +76,7 @@ fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
 }
 
 /// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
-const WHITE: f64 = 1.5;
+pub(crate) const WHITE: f64 = 1.5;
 
 /// Part of the threshold that the linearized gain has to promise at a white residual.
 const PROMISE: f64 = 0.5;
@@ -97,7 +97,7 @@ fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> b
 }
 
 /// Whether a linearized gain would count by itself, however much structure is left beside it.
-fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
     let left = (base.squares - gain).max(f64::MIN_POSITIVE);
     let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
     score > PROMISE * threshold + looked.ln()

@@ -6,8 +6,10 @@ use crate::data::shooting_interval::ShootingInterval;
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
-use crate::search::beam::{Breadth, search};
+use crate::search::beam::{Breadth, WHITE, search};
+use crate::search::chains::chains;
 use crate::search::plain::plain_family;
+use std::cmp::Ordering;
 
 /// Most effects that a set can hold.
 const MOST_EFFECTS: usize = 5;
@@ -36,7 +38,46 @@ impl Searched {
         let Question { candidates, coarse, coarse_base, enough, .. } = question;
         let (interval, mut found) = explore(coarse, coarse_base, candidates, &breadth, *enough, is_whole);
         plain_family(&interval.data, &interval.calibrated, candidates, &mut found);
+        further(&interval, candidates, &breadth, *enough, &mut found);
         Self { interval, found, breadth }
+    }
+
+    /// The best set by what it gains.
+    pub(crate) fn best(&self) -> &Fit {
+        let ranked = self.found.ranked(self.found.autocorrelation_time());
+        ranked.first().map_or(&self.interval.calibrated, |best| *best)
+    }
+
+    /// Whether this search, on other clocks of the same records, has come closer than another by so much log evidence.
+    pub(crate) fn is_closer(&self, other: &Self, price: f64) -> bool {
+        let time = self.found.autocorrelation_time().min(other.found.autocorrelation_time());
+        match self.interval.by.cmp(&other.interval.by) {
+            Ordering::Equal => self.found.highest(time) - price > other.found.highest(time),
+            // Only a model that is right follows the motion further.
+            longer => longer == Ordering::Greater,
+        }
+    }
+}
+
+/// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
+fn further(
+    interval: &ShootingInterval,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+    threshold: f64,
+    found: &mut Archive,
+) {
+    let (data, calibrated) = (&interval.data, &interval.calibrated);
+    let best = found.ranked(found.autocorrelation_time()).first().map(|best| best.autocorrelation_time());
+    if best.is_none_or(|time| time <= WHITE) {
+        return;
+    }
+    chains(data, calibrated, candidates, breadth.most_effects, threshold, found);
+    let ranked = found.ranked(found.autocorrelation_time()).into_iter();
+    let named = ranked.filter(|set| !set.hypothesis.candidates.is_empty());
+    let known: Vec<Fit> = named.take(breadth.beam).cloned().collect();
+    for fit in search(data, calibrated, known, candidates, breadth, threshold).fits {
+        found.admit(data, fit);
     }
 }
 

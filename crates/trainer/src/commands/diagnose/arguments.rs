@@ -61,7 +61,7 @@ pub(crate) struct DiagnoseArguments {
     pub(crate) resume: bool,
     #[command(flatten)]
     pub(crate) reading: Reading,
-    /// Most effects named together, 1 to 5 [default: 3]
+    /// Most effects named together, 1 to 5 [default: 5]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(1..=5))]
     pub(crate) most_effects: Option<u8>,
     /// Effects that are not considered, by id, with commas between (`trainer list effects`)

@@ -1,0 +1,91 @@
+//! Chains: sets that grow by one effect at a time, from every class that could be the first.
+//!
+//! A search that goes on from its best sets follows one line: where two effects together gain less than a third that
+//! stands in for both, neither is gone on from. A chain asks how far one gets with a given class in the set, whatever else
+//! leads, and takes at every step what gains most to first order.
+
+use crate::data::segments::Data;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::Dictionary;
+use crate::search::archive::Archive;
+use crate::search::beam::{singles, stands_out};
+use crate::search::proposals::{Proposal, additions, left_over, proposal};
+use rayon::prelude::*;
+
+/// Chains that are grown, each from another class.
+const MOST: usize = 6;
+
+/// Grows chains to at most `longest` effects and takes every set on the way into an archive.
+pub(crate) fn chains(
+    data: &Data,
+    calibrated: &Fit,
+    candidates: &[Candidate],
+    longest: usize,
+    threshold: f64,
+    archive: &mut Archive,
+) {
+    let first: Vec<Vec<Proposal>> =
+        next(data, calibrated, candidates, threshold).into_iter().take(MOST).map(|own| vec![own]).collect();
+    let grown: Vec<Vec<Fit>> = first
+        .into_par_iter()
+        .map(|mut begun| {
+            let mut chain: Vec<Fit> = Vec::new();
+            while let Some(set) = begun.pop() {
+                let Some(ended) = fitted(data, set) else { break };
+                let size = ended.hypothesis.candidates.iter().filter(|own| own.counts()).count();
+                let is_known = chain.iter().any(|own| own.hypothesis == ended.hypothesis);
+                chain.push(ended);
+                if let Some(last) = chain.last().filter(|_| size < longest && !is_known) {
+                    begun = next(data, last, candidates, threshold);
+                    begun.truncate(1);
+                }
+            }
+            chain
+        })
+        .collect();
+    for own in grown.into_iter().flatten() {
+        archive.admit(data, own);
+    }
+}
+
+/// A fit of a set without those of its members that end at no size.
+fn fitted(data: &Data, set: Proposal) -> Option<Fit> {
+    let ended = fit(data, &set.hypothesis, set.point, Moving::All, Stopping::SEARCH).ok()?;
+    match left_over(data, &ended) {
+        Some(left) => fit(data, &left.hypothesis, left.point, Moving::All, Stopping::SEARCH).ok(),
+        None => Some(ended),
+    }
+}
+
+/// What could be added to a set and stands out there: of each class the best, the most gain first.
+fn next(data: &Data, set: &Fit, candidates: &[Candidate], threshold: f64) -> Vec<Proposal> {
+    let own = &set.hypothesis.candidates;
+    let others: Vec<Candidate> =
+        candidates.iter().copied().filter(|other| other.counts() && !own.contains(other)).collect();
+    let Ok(dictionary) = Dictionary::at(data, set, &others) else { return Vec::new() };
+    let time = set.autocorrelation_time();
+    let mut begun: Vec<(f64, Candidate, Proposal)> = Vec::new();
+    for gain in singles(&dictionary) {
+        let Some(candidate) = dictionary.candidate(&gain) else { continue };
+        if stands_out(set, time, gain.squares, threshold, dictionary.looked(&gain)) {
+            let added = additions(&data.facts, &dictionary, &gain);
+            begun.push((gain.squares, candidate, proposal(data, set, &[], &added)));
+        }
+    }
+    for (candidate, parameters, gain) in &dictionary.further {
+        if stands_out(set, time, *gain, threshold, dictionary.frequencies) {
+            let added = [(*candidate, parameters.clone())];
+            begun.push((*gain, *candidate, proposal(data, set, &[], &added)));
+        }
+    }
+    begun.sort_by(|a, b| b.0.total_cmp(&a.0));
+    let mut classes = Vec::new();
+    begun.retain(|(_, candidate, _)| {
+        let class = candidate.evidence_class();
+        let is_new = !classes.contains(&class);
+        classes.push(class);
+        is_new
+    });
+    begun.into_iter().map(|(_, _, proposal)| proposal).collect()
+}
