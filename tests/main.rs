@@ -42,6 +42,7 @@ mod run_folders;
 mod rust_interface;
 mod schema;
 mod simulation;
+mod slurm;
 mod support;
 mod sweep;
 mod trials;
