@@ -6,7 +6,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 /// An oscillator of 3.5 Hz; per unit of inertia.
-const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
+pub(crate) const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
 
 /// A configuration of a short decay with dry friction that the nominal simulator lacks.
 const FRICTION: &str = r#"
@@ -27,7 +27,7 @@ id = "coulomb_friction"
 parameters.torque = 2.0
 "#;
 
-fn write(folder: &Path, name: &str, text: &str) -> String {
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(&path, text).unwrap();
@@ -309,108 +309,8 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     assert!(message.contains("there is no case in it"), "{message}");
 }
 
-/// A fleet of short records, with what the third says of itself.
-fn fleet(cases: &Path, count: usize) {
-    for number in 0..count {
-        let name = |file: &str| format!("case-{number}/{file}");
-        write(cases, &name("record-000.csv"), &decay(500, 0.7 + 0.01 * number as f64));
-        write(cases, &name("nominal.toml"), NOMINAL);
-    }
-    write(cases, "case-2/case.toml", "robot = \"r7\"\njoint = \"elbow\"\n");
-}
-
-/// Starts a batch; its result is what it prints.
-fn batch(cases: &Path, answers: &Path, options: &[&str]) -> std::process::Child {
-    let words =
-        ["diagnose", "--batch", cases.to_str().unwrap(), "--out", answers.to_str().unwrap(), "--json"];
-    std::process::Command::new(env!("CARGO_BIN_EXE_trainer"))
-        .args([&words, options].concat())
-        .stdout(std::process::Stdio::piped())
-        .stderr(std::process::Stdio::piped())
-        .spawn()
-        .unwrap()
-}
-
-fn batch_result(child: std::process::Child) -> (Option<i32>, Value) {
-    let output = child.wait_with_output().unwrap();
-    let message = String::from_utf8(output.stderr).unwrap();
-    (
-        output.status.code(),
-        serde_json::from_slice(&output.stdout).unwrap_or_else(|error| panic!("{error}: {message}")),
-    )
-}
-
-/// Two batches on one folder at the same time share its cases; shares are disjoint, and a repeated one finds nothing to do.
-#[test]
-fn batches_and_shares_on_one_folder_diagnose_every_case_once() {
-    let scratch = tempfile::tempdir().unwrap();
-    let (cases, answers) = (scratch.path().join("cases"), scratch.path().join("answers"));
-    fleet(&cases, 6);
-    let both = [(); 2].map(|()| batch(&cases, &answers, &["--threads", "1"])).map(batch_result);
-    let count = |found: &Value, name: &str| found[name].as_u64().unwrap();
-    assert!(both.iter().all(|(code, found)| *code == Some(0) && found["complete"] == true), "{both:?}");
-    assert_eq!(both.iter().map(|(_, found)| count(found, "diagnosed")).sum::<u64>(), 6, "{both:?}");
-    assert_eq!(both.iter().map(|(_, found)| count(found, "skipped")).sum::<u64>(), 6, "{both:?}");
-    let case: Value =
-        serde_json::from_slice(&std::fs::read(answers.join("case-2/case.json")).unwrap()).unwrap();
-    assert_eq!(case["labels"], serde_json::json!({ "joint": "elbow", "robot": "r7" }));
-
-    let shared = scratch.path().join("shared");
-    let shares =
-        ["1/3", "2/3", "3/3"].map(|share| batch_result(batch(&cases, &shared, &["--shard", share])).1);
-    assert_eq!(shares.iter().map(|found| count(found, "diagnosed")).sum::<u64>(), 6, "{shares:?}");
-    let again = batch_result(batch(&cases, &shared, &["--shard", "2/3"])).1;
-    assert_eq!((count(&again, "diagnosed"), &again["skipped"]), (0, &shares[1]["cases"]));
-    let answer = |folder: &Path, id: &str| {
-        let mut answer: Value =
-            serde_json::from_slice(&std::fs::read(folder.join(id).join("diagnosis.json")).unwrap()).unwrap();
-        answer.as_object_mut().unwrap().retain(|key, _| key != "seconds" && key != "stages");
-        answer
-    };
-    for number in 0..6 {
-        let id = format!("case-{number}");
-        assert_eq!(answer(&answers, &id), answer(&shared, &id));
-    }
-
-    // Asked for with other options, or answered by another version, an answer is not taken for the one asked for.
-    let (code, found) = batch_result(batch(&cases, &answers, &["--without", "backlash"]));
-    assert_eq!((code, count(&found, "diagnosed")), (Some(1), 0));
-    assert!(found["failed"][0]["message"].as_str().unwrap().contains("with another without: []"), "{found}");
-    let file = answers.join("case-0/case.json");
-    let text = std::fs::read_to_string(&file).unwrap().replace("\"version\": \"", "\"version\": \"9");
-    std::fs::write(&file, text).unwrap();
-    let (code, found) = batch_result(batch(&cases, &answers, &[]));
-    assert_eq!((code, count(&found, "skipped")), (Some(1), 5));
-    assert!(found["failed"][0]["message"].as_str().unwrap().contains("with another version: \"9"), "{found}");
-}
-
-/// The cases of a batch that is killed are free at once for the next one.
-#[test]
-fn a_killed_batch_leaves_its_cases_to_the_next() {
-    let scratch = tempfile::tempdir().unwrap();
-    let (cases, answers) = (scratch.path().join("cases"), scratch.path().join("answers"));
-    fleet(&cases, 4);
-    let mut first = batch(&cases, &answers, &["--threads", "1"]);
-    while !(0..4).any(|number| answers.join(format!("case-{number}/diagnosis.json")).exists()) {
-        assert!(first.try_wait().unwrap().is_none());
-        std::thread::sleep(std::time::Duration::from_millis(2));
-    }
-    first.kill().unwrap();
-    first.wait().unwrap();
-    let (code, found) = batch_result(batch(&cases, &answers, &[]));
-    assert_eq!(code, Some(0), "{found}");
-    assert_eq!(found["diagnosed"].as_u64().unwrap() + found["skipped"].as_u64().unwrap(), 4);
-    assert!(found["skipped"].as_u64().unwrap() >= 1);
-}
-
-#[test]
-fn a_share_of_one_diagnosis_is_refused() {
-    let message = refusal(&["diagnose", "a.csv", "--nominal", "b.toml", "--out", "c", "--shard", "1/2"]);
-    assert!(message.contains("--shard shares the cases of a batch"), "{message}");
-}
-
 /// Runs the program and expects exit code 2, one line on standard error and nothing on standard output.
-fn refusal(arguments: &[&str]) -> String {
+pub(crate) fn refusal(arguments: &[&str]) -> String {
     let output = trainer(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -434,7 +334,7 @@ fn refused(record: &str, nominal: &str, options: &[&str], expected: &str) {
 }
 
 /// A decay of 22 rad/s, 130 samples a second.
-fn decay(samples: usize, amplitude: f64) -> String {
+pub(crate) fn decay(samples: usize, amplitude: f64) -> String {
     let rows = (0..samples).map(|index| {
         let t = index as f64 / 130.0;
         format!("{t:.6},{:.6}\n", amplitude * (-0.15 * t).exp() * (22.0 * t).cos())

@@ -125,6 +125,17 @@ fn logs(out: &str) -> BTreeMap<PathBuf, String> {
     files.map(|file| file.path()).filter(is_log).map(read).collect()
 }
 
+/// The processes whose command line names a folder.
+fn working_in(out: &str) -> Vec<String> {
+    let processes = std::fs::read_dir("/proc").unwrap().flatten();
+    let names =
+        |path: PathBuf| String::from_utf8_lossy(&std::fs::read(path).unwrap_or_default()).contains(out);
+    processes
+        .filter(|process| names(process.path().join("cmdline")))
+        .map(|process| process.file_name().to_string_lossy().into_owned())
+        .collect()
+}
+
 /// More shares than one array may have, on a partition that holds two tasks: the numbers are those of one process, and a
 /// second launch finds nothing to do.
 #[test]
@@ -200,8 +211,12 @@ fn killed_tasks_leave_a_table_and_the_next_array_makes_the_rest() {
             .count()
     };
     until("no run comes to its end", || done() >= 1);
-    slurm("scancel", &["--full", "--signal=KILL", &job.to_string()]);
+    // Not by scancel, which asks first: the programs themselves, as the kernel does when memory runs out.
+    for process in working_in(&out) {
+        assert!(Command::new("kill").args(["-9", &process]).status().unwrap().success());
+    }
     through(&[job]);
+    assert_eq!(ended(job), ["FAILED"; 2]);
     let done = done();
     assert!(done < 4, "killed too late");
     let report = trainer(&["report", &out]);

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 /// Runs that take a moment each: a few steps of a network that have no tolerance to meet.
-const SLOW: &[&str] = &[
+pub(crate) const SLOW: &[&str] = &[
     "sweep",
     "configs/pinn.toml",
     "seed=0..5",
@@ -19,26 +19,26 @@ const SLOW: &[&str] = &[
     "estimator.hidden=[16,16]",
 ];
 
-fn scratch() -> (TempDir, String) {
+pub(crate) fn scratch() -> (TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("sweep").to_str().unwrap().to_owned();
     (folder, out)
 }
 
 /// Runs a sweep into a folder.
-fn sweep(arguments: &[&str], out: &str, options: &[&str]) -> Output {
+pub(crate) fn sweep(arguments: &[&str], out: &str, options: &[&str]) -> Output {
     trainer(&[arguments, &["--out", out], options].concat())
 }
 
-fn code(output: &Output) -> i32 {
+pub(crate) fn code(output: &Output) -> i32 {
     output.status.code().unwrap()
 }
 
-fn said(output: &Output) -> String {
+pub(crate) fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-fn json(path: &Path) -> Value {
+pub(crate) fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -46,7 +46,7 @@ fn lines(out: &str) -> Vec<Value> {
     json(&Path::new(out).join("sweep.json"))["runs"].as_array().unwrap().clone()
 }
 
-fn states(out: &str) -> Vec<String> {
+pub(crate) fn states(out: &str) -> Vec<String> {
     lines(out).iter().map(|line| line["state"].as_str().unwrap().to_owned()).collect()
 }
 
@@ -67,7 +67,7 @@ fn timeless(mut value: Value) -> Value {
 }
 
 /// Every run's result by digest, wall times taken away.
-fn results(out: &str) -> BTreeMap<String, Value> {
+pub(crate) fn results(out: &str) -> BTreeMap<String, Value> {
     let of = |line: &Value| {
         let run = Path::new(out).join(line["run"].as_str().unwrap());
         (line["digest"].as_str().unwrap().to_owned(), timeless(json(&run.join("result.json"))))
@@ -76,7 +76,7 @@ fn results(out: &str) -> BTreeMap<String, Value> {
 }
 
 /// When each run that came to its end did so.
-fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
+pub(crate) fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
     let entries = std::fs::read_dir(Path::new(out).join("state")).into_iter().flatten();
     entries
         .map(|entry| entry.unwrap().path())
@@ -85,7 +85,7 @@ fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
         .collect()
 }
 
-fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
+pub(crate) fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_trainer"))
         .args([arguments, &["--out", out], options].concat())
         .current_dir(root())
@@ -96,7 +96,7 @@ fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
 }
 
 /// Waits until so many runs came to their end.
-fn wait_for(child: &mut Child, out: &str, runs: usize) {
+pub(crate) fn wait_for(child: &mut Child, out: &str, runs: usize) {
     let since = Instant::now();
     while ends(out).len() < runs {
         if let Some(status) = child.try_wait().unwrap() {
@@ -294,7 +294,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
 }
 
 /// The lines of a run's log by name.
-fn events(run: &Path) -> Vec<String> {
+pub(crate) fn events(run: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap_or_default();
     let named = |line: &str| Some(serde_json::from_str::<Value>(line).ok()?["event"].as_str()?.to_owned());
     text.lines().filter_map(named).collect()
@@ -437,203 +437,4 @@ fn refused_in(folder: &Path, config: &str) -> String {
     let output = sweep(&["sweep", config, "seed=0,1"], folder.to_str().unwrap(), &["--resume"]);
     assert_eq!(code(&output), 2);
     said(&output)
-}
-
-/// Two processes on one folder, neither of which knows of the other: they share the runs, and none is made twice.
-#[test]
-fn a_second_process_beside_a_live_one_shares_its_runs() {
-    let (_whole, whole) = scratch();
-    assert_eq!(code(&sweep(SLOW, &whole, &["--quiet"])), 0);
-    let (_folder, out) = scratch();
-    let mut first = start(SLOW, &out, &["--threads", "1"]);
-    wait_for(&mut first, &out, 1);
-    let second = sweep(SLOW, &out, &["--resume", "--threads", "1"]);
-    assert_eq!(code(&second), 0, "{}", said(&second));
-    // It comes back once everything is there, whoever made it.
-    assert_eq!(states(&out), ["done"; 6]);
-    assert!(first.wait().unwrap().success());
-    assert_eq!(results(&out), results(&whole));
-    let runs: Vec<_> = std::fs::read_dir(Path::new(&out).join("runs")).unwrap().flatten().collect();
-    assert_eq!(runs.len(), 6);
-    for run in runs {
-        assert_eq!(events(&run.path()), ["start", "end"], "{:?}", run.path());
-    }
-}
-
-/// What a live process is at is waited for; once that process is killed, the one that waited makes it.
-#[test]
-fn runs_of_a_killed_process_are_taken_over_by_one_that_waits() {
-    let (_folder, out) = scratch();
-    let arguments = [SLOW, &["seed=0..1", "fit.seeds=20", "checkpoint.interval_s=0"]].concat();
-    let arguments: Vec<&str> = arguments.into_iter().filter(|word| *word != "seed=0..5").collect();
-    let mut first = start(&arguments, &out, &["--threads", "2"]);
-    let runs = Path::new(&out).join("runs");
-    let begun = || {
-        std::fs::read_dir(&runs).into_iter().flatten().flatten().filter(|run| !events(&run.path()).is_empty())
-    };
-    let since = Instant::now();
-    while begun().count() < 2 {
-        assert!(first.try_wait().unwrap().is_none() && since.elapsed() < Duration::from_secs(120));
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    let log = format!("{out}.second");
-    let mut second = Command::new(env!("CARGO_BIN_EXE_trainer"))
-        .args([&arguments[..], &["--out", &out, "--resume"]].concat())
-        .current_dir(root())
-        .stdout(Stdio::null())
-        .stderr(File::create(&log).unwrap())
-        .spawn()
-        .unwrap();
-    while !std::fs::read_to_string(&log).unwrap().contains("waiting for runs that another process is making")
-    {
-        assert!(second.try_wait().unwrap().is_none() && since.elapsed() < Duration::from_secs(120));
-        std::thread::sleep(Duration::from_millis(5));
-    }
-    first.kill().unwrap();
-    first.wait().unwrap();
-    assert!(second.wait().unwrap().success(), "{}", std::fs::read_to_string(&log).unwrap());
-    assert_eq!(states(&out), ["done"; 2]);
-    let logs: Vec<Vec<String>> = begun().map(|run| events(&run.path())).collect();
-    assert_eq!(logs, [["start", "resume", "end"], ["start", "resume", "end"]]);
-}
-
-/// Every task was killed before one could make the table: `trainer report` makes that of what there is.
-#[test]
-fn a_report_on_a_killed_sweep_has_the_table_of_what_there_is() {
-    let (_folder, out) = scratch();
-    let mut child = start(SLOW, &out, &["--threads", "1"]);
-    wait_for(&mut child, &out, 2);
-    child.kill().unwrap();
-    child.wait().unwrap();
-    let done = ends(&out).len();
-    assert!(!Path::new(&out).join("result.json").exists());
-    let report = trainer(&["report", &out]);
-    assert_eq!(code(&report), 0, "{}", said(&report));
-    let table = json(&Path::new(&out).join("result.json"));
-    assert_eq!((&table["done"], &table["open"]), (&done.into(), &(6 - done).into()));
-    assert_eq!(std::fs::read_to_string(Path::new(&out).join("table.csv")).unwrap().lines().count(), 7);
-    assert!(std::fs::read_to_string(Path::new(&out).join("report.html")).unwrap().contains("Not finished"));
-}
-
-#[test]
-fn a_task_has_done_its_work_whatever_its_runs_say() {
-    let (_folder, out) = scratch();
-    let arguments = ["sweep", "configs/pinn.toml", "estimator=baseline", "seed=0,1"];
-    assert_eq!(code(&sweep(&arguments, &out, &["--shard", "1/2", "--as-task", "--quiet"])), 0);
-    assert_eq!(code(&sweep(&arguments, &out, &["--resume", "--quiet"])), 1, "it is outside of its tolerance");
-}
-
-/// Hands a sweep of five runs to Slurm in three shares, with these folders to look for programs in.
-fn launch(out: &str, path: &str, options: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trainer"))
-        .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", out, "--launcher", "slurm"])
-        .args([&["--shards", "3"], options].concat())
-        .env("PATH", path)
-        .current_dir(root())
-        .output()
-        .unwrap()
-}
-
-/// A folder for stand-ins of Slurm's programs, to be looked for there alone.
-#[cfg(unix)]
-struct Tools(TempDir);
-
-#[cfg(unix)]
-impl Tools {
-    fn path(&self) -> &str {
-        self.0.path().to_str().unwrap()
-    }
-
-    fn set(&self, name: &str, text: &str) {
-        use std::os::unix::fs::PermissionsExt;
-        let program = self.0.path().join(name);
-        std::fs::write(&program, format!("#!/bin/sh\n{text}")).unwrap();
-        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-    }
-}
-
-/// Submits nothing and runs the tasks of an array at once; a job's number is that of its first share.
-#[cfg(unix)]
-const SBATCH: &str = "for word; do script=$offset; offset=$word; case $word in --array=1-*) tasks=${word#--array=1-};; esac; done\n\
-                      tasks=${tasks%%%*}; task=1\n\
-                      while [ $task -le $tasks ]; do\n\
-                      SLURM_ARRAY_TASK_ID=$task /bin/sh \"$script\" \"$offset\" >/dev/null 2>&1 || exit 1; task=$((task + 1)); done\n\
-                      echo \"$((offset + 1));cluster\"\n";
-
-/// A machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
-#[cfg(unix)]
-#[test]
-fn a_slurm_array_has_one_task_for_each_share() {
-    let (_folder, out) = scratch();
-    let tools = Tools(tempfile::tempdir().unwrap());
-    let absent = launch(&out, tools.path(), &[]);
-    assert_eq!(code(&absent), 2);
-    assert!(said(&absent).contains("there is no sbatch on this machine"), "{}", said(&absent));
-    assert!(said(&absent).contains("submit it with: sbatch --parsable --array=1-3 "), "{}", said(&absent));
-    let script = Path::new(&out).join("slurm.sh");
-    assert!(script.is_file() && states(&out) == ["pending"; 5]);
-
-    // What was refused is not advised again.
-    tools.set("sbatch", "echo 'invalid partition' >&2\nexit 1\n");
-    let refused = launch(&out, tools.path(), &["--resume"]);
-    assert_eq!(code(&refused), 2);
-    let message = said(&refused);
-    assert!(
-        message.contains("sbatch refused ") && message.contains("slurm.sh: invalid partition."),
-        "{message}"
-    );
-    assert!(
-        message.contains("--slurm-option NAME=VALUE") && !message.contains("sbatch --parsable"),
-        "{message}"
-    );
-
-    tools.set("sbatch", SBATCH);
-    let submitted = launch(&out, tools.path(), &["--resume", "--json", "--slurm-option", "partition=long"]);
-    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
-    let told: Value = serde_json::from_slice(&submitted.stdout).unwrap();
-    assert_eq!((&told["schema"], &told["shares"]), (&"ringdown.launch/1".into(), &3.into()));
-    assert_eq!((&told["arrays"][0]["job"], &told["submitted"]), (&1.into(), &true.into()));
-    let text = std::fs::read_to_string(&script).unwrap();
-    assert!(text.contains("#SBATCH --array=1-3\n") && text.contains("#SBATCH --partition=long\n"), "{text}");
-    assert!(text.contains("#SBATCH --open-mode=append\n"), "{text}");
-    assert_eq!(states(&out), ["done"; 5]);
-}
-
-/// The largest index of an array is one less than the cluster's `MaxArraySize`.
-#[cfg(unix)]
-#[test]
-fn more_shares_than_an_array_may_have_are_several_arrays() {
-    let (_folder, out) = scratch();
-    let tools = Tools(tempfile::tempdir().unwrap());
-    tools.set("scontrol", "echo 'MaxArraySize            = 3'\n");
-    let options = ["--shards", "5", "--slurm-at-once", "1", "--json"];
-    let launch = |options: &[&str]| {
-        let arguments =
-            [&["sweep", "configs/ols.toml", "seed=0..4", "--out", &out, "--launcher", "slurm"], options]
-                .concat();
-        let output = Command::new(env!("CARGO_BIN_EXE_trainer"))
-            .args(arguments)
-            .env("PATH", tools.path())
-            .current_dir(root())
-            .output()
-            .unwrap();
-        assert_eq!(code(&output), 0, "{}", said(&output));
-        serde_json::from_slice::<Value>(&output.stdout).unwrap()
-    };
-    // Written only: nothing is asked for, and there is no number yet.
-    let written = launch(&[&options[..], &["--write-only"]].concat());
-    assert_eq!((&written["submitted"], &written["arrays"][2]["job"]), (&false.into(), &Value::Null));
-    assert_eq!(states(&out), ["pending"; 5]);
-
-    tools.set("sbatch", SBATCH);
-    let submitted = launch(&[&options[..], &["--resume"]].concat());
-    let arrays = submitted["arrays"].as_array().unwrap();
-    let of = |name: &str| arrays.iter().map(|array| array[name].as_u64().unwrap()).collect::<Vec<_>>();
-    assert_eq!((of("job"), of("tasks"), of("first_share")), (vec![1, 3, 5], vec![2, 2, 1], vec![1, 3, 5]));
-    let last = arrays[2]["command"].as_str().unwrap();
-    assert!(
-        last.starts_with("sbatch --parsable --array=1-1%1 --dependency=afterany:3 ") && last.ends_with(" 4"),
-        "{last}"
-    );
-    assert_eq!(states(&out), ["done"; 5]);
 }

@@ -6,7 +6,7 @@
 #
 # Takes munge, slurmctld and slurmd from Debian's packages. Where these are not installed and cannot be (no root, no
 # apt-get, no package server), or the daemons do not come up, it says SKIPPED and ends with 0. Nothing of it stays but
-# the packages: no service is started, and /etc/slurm and /etc/munge are not read.
+# the packages; /etc/slurm and /etc/munge are not read.
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 
@@ -19,7 +19,7 @@ skip() {
 for program in munged slurmctld slurmd sbatch; do
     command -v "$program" >/dev/null && continue
     command -v apt-get >/dev/null || skip "$program is not installed, and there is no apt-get"
-    # The packages would start services; the daemons here are this script's own.
+    # Services of the packages are not needed: the daemons here are this script's own.
     { apt-get update && RUNLEVEL=1 DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends \
         munge slurm-client slurmctld slurmd; } >/dev/null 2>&1 || skip "its packages cannot be installed"
 done

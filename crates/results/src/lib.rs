@@ -11,6 +11,7 @@ mod calibration;
 mod comparison;
 mod diagnosis;
 mod estimation;
+mod fleet;
 mod interval;
 mod launch;
 mod learning;
@@ -33,6 +34,7 @@ pub use estimation::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
 };
+pub use fleet::{FLEET_SCHEMA, FleetCase, FleetClass, FleetGroup, FleetNumber, FleetOutlier, FleetResult};
 pub use interval::WithInterval;
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{

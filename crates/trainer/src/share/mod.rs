@@ -8,7 +8,7 @@ use clap::{Args, ValueEnum};
 use experiment::sweep::Shard;
 use script::SlurmOption;
 
-pub(crate) use slurm::{Problem, Work, launch};
+pub(crate) use slurm::{Work, launch};
 
 /// Shares and who runs them.
 #[derive(Debug, Clone, Default, Args)]

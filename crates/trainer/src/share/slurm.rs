@@ -43,6 +43,7 @@ pub(crate) fn launch(
 ) -> Result<Outcome, TrainerError> {
     let shares = usize::from(options.shards).min(work.parts.max(1));
     let arrays = split(shares, largest_array(), options.slurm_at_once);
+    work.folder.write("slurm/README", b"What each task printed: <job>_<task>.log\n")?;
     let folder = absolute(work.folder.path())?;
     let script = Script {
         name: work.name,
@@ -58,7 +59,6 @@ pub(crate) fn launch(
         prefix: options.slurm_prefix.as_deref(),
     };
     work.folder.write(SCRIPT, script.text().as_bytes())?;
-    work.folder.write("slurm/README", b"What each task printed: <job>_<task>.log\n")?;
     let script = folder.join(SCRIPT);
     let launched = submitted(&arrays, &script, options)?;
     let result = LaunchResult {
@@ -134,9 +134,7 @@ fn submitted(
         let command = words.iter().map(|word| quoted(word)).collect::<Vec<_>>().join(" ");
         let job = match options.write_only {
             true => None,
-            false => Some(
-                submit(&words).map_err(|problem| LaunchError::new(problem, script, &command, &launched))?,
-            ),
+            false => Some(submit(&words).map_err(|problem| refused(problem, script, &command, &launched))?),
         };
         launched.push(LaunchedArray { job, tasks: array.tasks, first_share: array.offset + 1, command });
     }
@@ -145,11 +143,26 @@ fn submitted(
 
 /// Why an array was not submitted.
 #[derive(Debug)]
-pub(crate) enum Problem {
+enum Problem {
     /// There is no `sbatch`.
     Absent,
     /// It did not take the script.
     Refused(String),
+}
+
+/// The message for an array of this script, after some others were submitted.
+fn refused(problem: Problem, script: &Path, command: &str, before: &[LaunchedArray]) -> LaunchError {
+    let script = script.display().to_string();
+    let complaint = match problem {
+        Problem::Absent => return LaunchError::NoSlurm { script, command: command.to_owned() },
+        Problem::Refused(complaint) => complaint,
+    };
+    let jobs: Vec<String> = before.iter().filter_map(|array| array.job).map(|job| job.to_string()).collect();
+    let submitted = match jobs.is_empty() {
+        true => String::new(),
+        false => format!("; job {} before it is submitted and goes on", jobs.join(", ")),
+    };
+    LaunchError::Refused { script, complaint, submitted }
 }
 
 /// Submits an array; gives the job's number.

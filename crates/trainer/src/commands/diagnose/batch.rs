@@ -188,7 +188,8 @@ fn fate(arguments: &DiagnoseArguments, case: &Case, place: &Path) -> Fate {
 /// Writes the answer to a case, and before it what was asked.
 fn diagnosed(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Result<(), TrainerError> {
     let question = Question::read(&case.records, &case.nominal, &arguments.reading.plain())?;
-    let labels = labels::read(case)?;
+    let first = case.records.first().unwrap_or(&case.nominal);
+    let labels = labels::read(&case.folder, first)?;
     let answer = question.answer(&settings(arguments), arguments.seed)?;
     let asked = kept::asked_by_batch(arguments, &question);
     let file = CaseFile { schema: CASE_SCHEMA.to_owned(), asked, labels };

@@ -1,8 +1,8 @@
 //! What a case says of itself, for the report on a fleet: `case.toml`, or columns of its record.
 
-use super::batch::Case;
 use crate::error::TrainerError;
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// The file in a case's folder.
 const FILE: &str = "case.toml";
@@ -10,10 +10,10 @@ const FILE: &str = "case.toml";
 /// Columns of a record that say what it is of, where they hold one value throughout.
 const COLUMNS: [&str; 3] = ["robot", "joint", "date"];
 
-/// Labels by name. Those of `case.toml` displace those of the record's columns.
-pub(super) fn read(case: &Case) -> Result<BTreeMap<String, String>, TrainerError> {
-    let mut labels = case.records.first().map(|path| columns(path)).unwrap_or_default();
-    let path = case.folder.join(FILE);
+/// Labels by name, of a case's folder and its first record. Those of `case.toml` displace those of the record's columns.
+pub(super) fn read(folder: &Path, record: &Path) -> Result<BTreeMap<String, String>, TrainerError> {
+    let mut labels = columns(record);
+    let path = folder.join(FILE);
     if !path.exists() {
         return Ok(labels);
     }
@@ -37,7 +37,7 @@ pub(super) fn read(case: &Case) -> Result<BTreeMap<String, String>, TrainerError
 }
 
 /// The labels in a record's columns. A record that cannot be read this way has none: reading it as a record says why.
-fn columns(path: &std::path::Path) -> BTreeMap<String, String> {
+fn columns(path: &Path) -> BTreeMap<String, String> {
     let text = std::fs::read_to_string(path).unwrap_or_default();
     let header = text.lines().next().unwrap_or_default();
     let separator = [b',', b';', b'\t'].into_iter().find(|separator| header.contains(char::from(*separator)));
@@ -67,8 +67,7 @@ fn columns(path: &std::path::Path) -> BTreeMap<String, String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Case, read};
-    use std::path::Path;
+    use super::read;
 
     fn labels(record: &str, toml: Option<&str>) -> Result<String, String> {
         let folder = tempfile::tempdir().unwrap();
@@ -77,8 +76,8 @@ mod tests {
         if let Some(toml) = toml {
             write("case.toml", toml);
         }
-        let case = Case::read(Path::new(folder.path())).unwrap();
-        let labels = read(&case).map_err(|error| error.to_string())?;
+        let labels =
+            read(folder.path(), &folder.path().join("record-000.csv")).map_err(|error| error.to_string())?;
         Ok(labels.iter().map(|(key, value)| format!("{key}={value}")).collect::<Vec<_>>().join(" "))
     }
 

@@ -29,6 +29,7 @@ use runs::{Disk, RunError, RunFolder, to_csv};
 use serde_json::json;
 use settings::Document;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::time::Instant;
 use trials::{Gate, TrialPlan, Trials, case_rows, misses_a_bar, misses_the_gate, most_common};
 
@@ -74,30 +75,53 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
         let folder = RunFolder::open(&path);
         return interrupted(&folder, "the diagnosis", &go_on(&folder));
     };
-    let folder = RunFolder::wait(&path)?;
-    let (failed, open) = ask::answered(&folder, &manifest, failed);
+    let asked = Asked { path, manifest, made, failed };
+    conclude(arguments, &plan, &pool, asked, (cancel, start))
+}
+
+/// Trials whose share was diagnosed.
+struct Asked {
+    /// The folder, which nobody holds meanwhile.
+    path: PathBuf,
+    manifest: TrialsManifest,
+    /// `None` where another share has made the cases.
+    made: Option<make::Made>,
+    /// Why cases of this share have no answer.
+    failed: BTreeMap<String, String>,
+}
+
+/// Opens the seals and scores, once the last answer is in; says what is open before that.
+fn conclude(
+    arguments: &TrialsArguments,
+    plan: &TrialPlan,
+    pool: &ThreadPool,
+    asked: Asked,
+    (cancel, start): (&Cancel, Instant),
+) -> Result<Outcome, TrainerError> {
+    let folder = RunFolder::wait(&asked.path)?;
+    let (failed, open) = ask::answered(&folder, &asked.manifest, asked.failed);
     if open > 0 {
-        return share_done(arguments, &folder, &manifest, open);
+        return share_done(arguments, &folder, &asked.manifest, open);
     }
-    if arguments.share.shard.is_some() && path.join(RESULT).exists() {
+    if arguments.share.shard.is_some() && asked.path.join(RESULT).exists() {
         // The share that gave the last answer was faster.
-        let file = path.join(RESULT).display().to_string();
+        let file = asked.path.join(RESULT).display().to_string();
         let result = serde_json::from_str(&files::text(&folder, RESULT)?);
         let result = result.map_err(|error| TrialsError::Unreadable { file, problem: error.to_string() })?;
         return shown(arguments, &folder, &result);
     }
-    let made = match made {
+    let made = match asked.made {
         Some(made) => Some(made),
-        None => make::make(arguments, &plan, &folder, &pool, cancel)?,
+        None => make::make(arguments, plan, &folder, pool, cancel)?,
     };
     let Some(made) = made else { return interrupted(&folder, "making the cases", &go_on(&folder)) };
     folder.write_json(files::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
-    for (line, sealed) in manifest.cases.iter().zip(&made.sealed) {
+    for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
         folder.write_reproducible(&files::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
     }
     folder.record_event("opened", &json!({ "truths": made.sealed.len() }))?;
-    finish(arguments, &folder, &manifest, &pool, &failed, cancel, start)
+    finish(arguments, &folder, &made.manifest, pool, &failed, cancel, start)
 }
 
 /// Hands the shares to a batch system.

@@ -1,6 +1,9 @@
 //! `trainer report`.
 
-use super::sweep::finish;
+mod fleet;
+mod outliers;
+
+use crate::commands::sweep::finish;
 use crate::error::TrainerError;
 use crate::folders::page::write_report;
 use crate::options::Output;
@@ -12,12 +15,13 @@ use std::path::Path;
 
 /// Makes a run's report again and puts it in place of the old one: it is derived from the other files,
 /// so nothing is lost. That of a sweep with its table, of what is there: its tasks may have been killed before they made
-/// one.
+/// one; that of a fleet from the answers of a batch.
 pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerError> {
     let folder = RunFolder::open(run);
     let sweep = SweepFolder::open(run);
     match sweep.manifest()? {
         Some(mut manifest) => drop(finish(&sweep, &mut manifest)?),
+        None if fleet::is_one(run) => fleet::write(&folder)?,
         None => write_report(&folder)?,
     }
     let report = run.join("report.html").display().to_string();
