@@ -6,7 +6,7 @@ use std::path::Path;
 use tempfile::TempDir;
 
 /// An oscillator of 3.5 Hz; per unit of inertia.
-const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
+pub(crate) const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
 
 /// A configuration of a short decay with dry friction that the nominal simulator lacks.
 const FRICTION: &str = r#"
@@ -27,7 +27,7 @@ id = "coulomb_friction"
 parameters.torque = 2.0
 "#;
 
-fn write(folder: &Path, name: &str, text: &str) -> String {
+pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
     let path = folder.join(name);
     std::fs::create_dir_all(path.parent().unwrap()).unwrap();
     std::fs::write(&path, text).unwrap();
@@ -275,7 +275,10 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
     let path = answers.join("good/diagnosis.json");
     let first = std::fs::read_to_string(&path).unwrap();
     check_contract(&serde_json::from_str(&first).unwrap());
-    assert!(!answers.join("garbled").exists());
+    assert!(!answers.join("garbled/diagnosis.json").exists());
+    let failed: Value =
+        serde_json::from_slice(&std::fs::read(answers.join("garbled/failed.json")).unwrap()).unwrap();
+    assert!(failed["message"].as_str().unwrap().contains("`zero` in column `angle_rad`"));
 
     let (code, found, _) = batch();
     assert_eq!((code, &found["skipped"], &found["diagnosed"]), (Some(1), &1.into(), &0.into()));
@@ -307,7 +310,7 @@ fn one_bad_case_of_a_batch_is_one_failure_and_the_others_go_on() {
 }
 
 /// Runs the program and expects exit code 2, one line on standard error and nothing on standard output.
-fn refusal(arguments: &[&str]) -> String {
+pub(crate) fn refusal(arguments: &[&str]) -> String {
     let output = trainer(arguments);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{message}");
@@ -331,7 +334,7 @@ fn refused(record: &str, nominal: &str, options: &[&str], expected: &str) {
 }
 
 /// A decay of 22 rad/s, 130 samples a second.
-fn decay(samples: usize, amplitude: f64) -> String {
+pub(crate) fn decay(samples: usize, amplitude: f64) -> String {
     let rows = (0..samples).map(|index| {
         let t = index as f64 / 130.0;
         format!("{t:.6},{:.6}\n", amplitude * (-0.15 * t).exp() * (22.0 * t).cos())

@@ -4,14 +4,13 @@ use crate::support::{result, root, timeless_files, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs::File;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant, SystemTime};
 use tempfile::TempDir;
 
 /// Runs that take a moment each: a few steps of a network that have no tolerance to meet.
-const SLOW: &[&str] = &[
+pub(crate) const SLOW: &[&str] = &[
     "sweep",
     "configs/pinn.toml",
     "seed=0..5",
@@ -20,26 +19,26 @@ const SLOW: &[&str] = &[
     "estimator.hidden=[16,16]",
 ];
 
-fn scratch() -> (TempDir, String) {
+pub(crate) fn scratch() -> (TempDir, String) {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("sweep").to_str().unwrap().to_owned();
     (folder, out)
 }
 
 /// Runs a sweep into a folder.
-fn sweep(arguments: &[&str], out: &str, options: &[&str]) -> Output {
+pub(crate) fn sweep(arguments: &[&str], out: &str, options: &[&str]) -> Output {
     trainer(&[arguments, &["--out", out], options].concat())
 }
 
-fn code(output: &Output) -> i32 {
+pub(crate) fn code(output: &Output) -> i32 {
     output.status.code().unwrap()
 }
 
-fn said(output: &Output) -> String {
+pub(crate) fn said(output: &Output) -> String {
     String::from_utf8_lossy(&output.stderr).into_owned()
 }
 
-fn json(path: &Path) -> Value {
+pub(crate) fn json(path: &Path) -> Value {
     serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap()
 }
 
@@ -47,7 +46,7 @@ fn lines(out: &str) -> Vec<Value> {
     json(&Path::new(out).join("sweep.json"))["runs"].as_array().unwrap().clone()
 }
 
-fn states(out: &str) -> Vec<String> {
+pub(crate) fn states(out: &str) -> Vec<String> {
     lines(out).iter().map(|line| line["state"].as_str().unwrap().to_owned()).collect()
 }
 
@@ -68,7 +67,7 @@ fn timeless(mut value: Value) -> Value {
 }
 
 /// Every run's result by digest, wall times taken away.
-fn results(out: &str) -> BTreeMap<String, Value> {
+pub(crate) fn results(out: &str) -> BTreeMap<String, Value> {
     let of = |line: &Value| {
         let run = Path::new(out).join(line["run"].as_str().unwrap());
         (line["digest"].as_str().unwrap().to_owned(), timeless(json(&run.join("result.json"))))
@@ -77,7 +76,7 @@ fn results(out: &str) -> BTreeMap<String, Value> {
 }
 
 /// When each run that came to its end did so.
-fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
+pub(crate) fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
     let entries = std::fs::read_dir(Path::new(out).join("state")).into_iter().flatten();
     entries
         .map(|entry| entry.unwrap().path())
@@ -86,7 +85,7 @@ fn ends(out: &str) -> BTreeMap<PathBuf, SystemTime> {
         .collect()
 }
 
-fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
+pub(crate) fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
     Command::new(env!("CARGO_BIN_EXE_trainer"))
         .args([arguments, &["--out", out], options].concat())
         .current_dir(root())
@@ -97,7 +96,7 @@ fn start(arguments: &[&str], out: &str, options: &[&str]) -> Child {
 }
 
 /// Waits until so many runs came to their end.
-fn wait_for(child: &mut Child, out: &str, runs: usize) {
+pub(crate) fn wait_for(child: &mut Child, out: &str, runs: usize) {
     let since = Instant::now();
     while ends(out).len() < runs {
         if let Some(status) = child.try_wait().unwrap() {
@@ -295,7 +294,7 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
 }
 
 /// The lines of a run's log by name.
-fn events(run: &Path) -> Vec<String> {
+pub(crate) fn events(run: &Path) -> Vec<String> {
     let text = std::fs::read_to_string(run.join("events.jsonl")).unwrap_or_default();
     let named = |line: &str| Some(serde_json::from_str::<Value>(line).ok()?["event"].as_str()?.to_owned());
     text.lines().filter_map(named).collect()
@@ -438,80 +437,4 @@ fn refused_in(folder: &Path, config: &str) -> String {
     let output = sweep(&["sweep", config, "seed=0,1"], folder.to_str().unwrap(), &["--resume"]);
     assert_eq!(code(&output), 2);
     said(&output)
-}
-
-/// Hands a sweep of five runs to Slurm in three shares, with these folders to look for programs in.
-fn launch(out: &str, path: &str, options: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_trainer"))
-        .args(["sweep", "configs/ols.toml", "seed=0..4", "--out", out, "--launcher", "slurm"])
-        .args([&["--shards", "3"], options].concat())
-        .env("PATH", path)
-        .current_dir(root())
-        .output()
-        .unwrap()
-}
-
-/// A machine without Slurm, one whose `sbatch` refuses, and one whose `sbatch` runs the tasks at once.
-#[cfg(unix)]
-#[test]
-fn a_slurm_array_has_one_task_for_each_share() {
-    use std::os::unix::fs::PermissionsExt;
-    let (folder, out) = scratch();
-    let tools = folder.path().join("tools");
-    std::fs::create_dir(&tools).unwrap();
-    let path = tools.to_str().unwrap();
-    let sbatch = |text: &str| {
-        let program = tools.join("sbatch");
-        std::fs::write(&program, text).unwrap();
-        std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
-    };
-    let absent = launch(&out, path, &[]);
-    assert_eq!(code(&absent), 2);
-    assert!(said(&absent).contains("there is no sbatch on this machine"), "{}", said(&absent));
-    let script = Path::new(&out).join("slurm.sh");
-    assert!(script.is_file() && states(&out) == ["pending"; 5]);
-
-    sbatch("#!/bin/sh\necho 'invalid partition' >&2\nexit 1\n");
-    let refused = launch(&out, path, &["--resume"]);
-    assert_eq!(code(&refused), 2);
-    assert!(said(&refused).contains("sbatch refused it: invalid partition"), "{}", said(&refused));
-
-    sbatch(
-        "#!/bin/sh\nfor task in 1 2 3; do SLURM_ARRAY_TASK_ID=$task /bin/sh \"$1\" >/dev/null 2>&1 || exit 1; done\n\
-         echo 'Submitted batch job 7'\n",
-    );
-    let submitted = launch(&out, path, &["--resume"]);
-    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
-    assert!(String::from_utf8_lossy(&submitted.stdout).contains("Submitted batch job 7"));
-    assert!(std::fs::read_to_string(&script).unwrap().contains("#SBATCH --array=1-3\n"));
-    assert_eq!(states(&out), ["done"; 5]);
-}
-
-/// Where a Slurm controller answers, the tasks go through it.
-#[test]
-fn slurm_itself_runs_the_shares() {
-    let path = std::env::var("PATH").unwrap();
-    let answer = Command::new("sinfo").args(["--noheader", "--states=idle"]).output();
-    if !answer.is_ok_and(|answer| answer.status.success() && !answer.stdout.is_empty()) {
-        let line =
-            b"SKIPPED: no Slurm with an idle node answers here; job arrays were run by a stand-in only\n";
-        std::io::stderr().write_all(line).unwrap();
-        return;
-    }
-    let (_folder, out) = scratch();
-    let submitted = launch(&out, &path, &[]);
-    assert_eq!(code(&submitted), 0, "{}", said(&submitted));
-    let since = Instant::now();
-    while ends(&out).len() < 5 {
-        assert!(since.elapsed() < Duration::from_secs(120), "the queue does not move");
-        std::thread::sleep(Duration::from_millis(200));
-    }
-    // The last task writes the manifest a moment after its last run.
-    while states(&out) != ["done"; 5] {
-        assert!(since.elapsed() < Duration::from_secs(150), "{:?}", states(&out));
-        std::thread::sleep(Duration::from_millis(100));
-    }
-    let alone = scratch();
-    assert_eq!(code(&sweep(&["sweep", "configs/ols.toml", "seed=0..4"], &alone.1, &["--quiet"])), 0);
-    assert_eq!(results(&out), results(&alone.1));
 }

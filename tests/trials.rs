@@ -179,6 +179,46 @@ fn trials_are_blind_sealed_and_resumable() {
     assert!(code == 2 && message.contains("--resume"), "{message}");
 }
 
+/// Shares at the same time on one folder: cases are made once, nothing is opened before the last answer, and the scores are
+/// those of one process.
+#[test]
+fn shares_give_the_scores_of_one_process_and_the_last_one_opens_the_seals() {
+    let (code, whole, _whole) = result(&[&["trials"], TINY].concat());
+    assert_eq!(code, 0);
+    let scratch = tempfile::tempdir().unwrap();
+    let out = scratch.path().join("trials").to_str().unwrap().to_owned();
+    let words =
+        |share: &'static str| [&["trials"], TINY, &["--shard", share, "--json", "--out", &out]].concat();
+    let first = trainer(&words("1/3"));
+    assert_eq!(first.status.code(), Some(0), "{}", String::from_utf8_lossy(&first.stderr));
+    let told: Value = serde_json::from_slice(&first.stdout).unwrap();
+    assert_eq!(
+        (&told["task"], &told["shard"], &told["cases"]),
+        (&"trials-share".into(), &"1/3".into(), &12.into())
+    );
+    let answered = answers(&Path::new(&out).join("answers/full")).len() as u64;
+    assert!(answered > 0 && told["open"].as_u64() == Some(12 - answered), "{told}");
+    assert!(!Path::new(&out).join("truth").exists() && !Path::new(&out).join("result.json").exists());
+
+    let others = ["2/3", "3/3"].map(|share| {
+        Command::new(env!("CARGO_BIN_EXE_trainer"))
+            .args(words(share))
+            .current_dir(root())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap()
+    });
+    for mut other in others {
+        assert_eq!(other.wait().unwrap().code(), Some(0));
+    }
+    let scores = json(&Path::new(&out).join("result.json"));
+    assert_eq!(without_times(scores), without_times(whole));
+    let events = std::fs::read_to_string(Path::new(&out).join("events.jsonl")).unwrap();
+    let count = |event: &str| events.matches(&format!("\"event\":\"{event}\"")).count();
+    assert_eq!((count("start"), count("sealed"), count("opened"), count("end")), (1, 1, 1, 1), "{events}");
+}
+
 #[test]
 fn what_is_no_trials_folder_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,5 @@
-// Tables whose columns sort: a click or the Enter key on a heading, once more for the other direction.
+// Tables whose columns sort: a click or the Enter key on a heading, once more for the other direction; and whose rows can be
+// filtered.
 "use strict";
 (() => {
   const SMALL = "⁰¹²³⁴⁵⁶⁷⁸⁹";
@@ -27,6 +28,31 @@
     });
     body.append(...rows.map(({ row }) => row));
   };
+  // A field above a long table that leaves the rows in which every word of it stands.
+  const filter = (table) => {
+    const rows = [...table.tBodies[0].rows].map((row) => ({ row, words: row.textContent.toLowerCase() }));
+    const label = document.createElement("label");
+    const field = document.createElement("input");
+    const count = document.createElement("output");
+    field.type = "search";
+    label.append("Filter ", field);
+    const line = document.createElement("p");
+    line.className = "filter";
+    line.append(label, " ", count);
+    table.parentElement.before(line);
+    field.addEventListener("input", () => {
+      const wanted = field.value.toLowerCase().split(/\s+/).filter(Boolean);
+      let left = 0;
+      for (const { row, words } of rows) {
+        row.hidden = !wanted.every((word) => words.includes(word));
+        left += row.hidden ? 0 : 1;
+      }
+      count.textContent = wanted.length === 0 ? "" : `${left} of ${rows.length}`;
+    });
+  };
+  for (const table of document.querySelectorAll("table.filtered")) {
+    if (table.tBodies[0].rows.length > 5) filter(table);
+  }
   for (const table of document.querySelectorAll("table.rows:not(.gaps)")) {
     if (!table.tBodies[0] || table.tBodies[0].rows.length < 3) continue;
     const heads = [...table.tHead.rows[0].cells];

@@ -17,6 +17,7 @@ mod comparison;
 mod diagnosis;
 mod error;
 mod figures;
+mod fleet;
 pub mod format;
 mod frame;
 pub mod glossary;
@@ -63,6 +64,7 @@ pub fn render(texts: &RunTexts<'_>) -> Result<String, ReportError> {
         parse::Task::Predict => render_prediction(texts),
         parse::Task::Diagnose => render_diagnosis(texts),
         parse::Task::Rigs => rigs::render(texts, &parse::rigs_result(texts.result)?),
+        parse::Task::Fleet => fleet::render(texts, &parse::fleet_result(texts.result)?),
         parse::Task::Trials => render_trials(texts),
         parse::Task::Table => render_run_table(texts),
     }

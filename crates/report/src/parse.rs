@@ -1,9 +1,10 @@
 //! From the texts of a run folder to typed values.
 
 use results::{
-    ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, LearnResult,
-    LearnSeriesRow, LearnTorqueRow, LearnTraceRow, PredictionCsvRow, PredictionResult, RESULT_SCHEMA,
-    RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow, TrialsResult,
+    ComparisonResult, DIAGNOSIS_SCHEMA, DiagnosisResult, EnvelopeRow, EstimationResult, FLEET_SCHEMA,
+    FleetResult, LearnResult, LearnSeriesRow, LearnTorqueRow, LearnTraceRow, PredictionCsvRow,
+    PredictionResult, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunTable, SeriesRow, TRIALS_SCHEMA, TraceRow,
+    TrialsResult,
 };
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -54,6 +55,8 @@ pub(crate) enum Task {
     Diagnose,
     /// Several rigs of one build.
     Rigs,
+    /// The answers of a batch.
+    Fleet,
     Trials,
     /// A table of runs: `"sweep"` or `"runs"`.
     Table,
@@ -69,6 +72,7 @@ impl Task {
             Self::Predict => "predict",
             Self::Diagnose => "diagnose",
             Self::Rigs => "rigs",
+            Self::Fleet => "fleet",
             Self::Trials => "trials",
             Self::Table => "sweep",
         }
@@ -139,6 +143,10 @@ pub(crate) fn rigs_result(text: &str) -> Result<RigsResult, ReportError> {
     result(text, Task::Rigs)
 }
 
+pub(crate) fn fleet_result(text: &str) -> Result<FleetResult, ReportError> {
+    result(text, Task::Fleet)
+}
+
 pub(crate) fn trials_result(text: &str) -> Result<TrialsResult, ReportError> {
     result(text, Task::Trials)
 }
@@ -172,6 +180,9 @@ pub(crate) fn task(text: &str) -> Result<Task, ReportError> {
     }
     if tag.schema == RIGS_SCHEMA {
         return Ok(Task::Rigs);
+    }
+    if tag.schema == FLEET_SCHEMA {
+        return Ok(Task::Fleet);
     }
     if tag.schema == TRIALS_SCHEMA {
         return Ok(Task::Trials);

@@ -1,6 +1,22 @@
 //! A batch of diagnoses.
 
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+
+/// The `schema` field of a case file.
+pub const CASE_SCHEMA: &str = "ringdown.case/1";
+
+/// The content of `case.json` beside an answer of a batch: what was asked, and what the case is called by.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseFile {
+    /// Always [`CASE_SCHEMA`].
+    pub schema: String,
+    /// All that the answer depends on: digests of records and simulator, options, version of the program.
+    pub asked: Value,
+    /// What the case says of itself, such as `robot`, `joint` and `date`.
+    pub labels: BTreeMap<String, String>,
+}
 
 /// What a batch came to.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -9,11 +25,11 @@ pub struct BatchResult {
     pub schema: String,
     /// What was asked for: `"diagnose-batch"`.
     pub task: String,
-    /// Cases found.
+    /// Cases found; of a share, those in it.
     pub cases: usize,
     /// Cases diagnosed now.
     pub diagnosed: usize,
-    /// Cases whose answer was there already and was left alone.
+    /// Cases whose answer was there already and was left alone, or was given by another process meanwhile.
     pub skipped: usize,
     /// Cases that gave no answer.
     pub failed: Vec<FailedCase>,

@@ -11,7 +11,9 @@ mod calibration;
 mod comparison;
 mod diagnosis;
 mod estimation;
+mod fleet;
 mod interval;
+mod launch;
 mod learning;
 mod prediction;
 mod rigs;
@@ -19,7 +21,7 @@ mod simulation;
 mod sweep;
 mod trials;
 
-pub use batch::{BatchResult, FailedCase};
+pub use batch::{BatchResult, CASE_SCHEMA, CaseFile, FailedCase};
 pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
 pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
 pub use diagnosis::{
@@ -32,7 +34,9 @@ pub use estimation::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
 };
+pub use fleet::{FLEET_SCHEMA, FleetCase, FleetClass, FleetGroup, FleetNumber, FleetOutlier, FleetResult};
 pub use interval::WithInterval;
+pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
     LearnTest, LearnTorqueRow, LearnTraceRow,
@@ -55,5 +59,5 @@ pub use trials::{
     AreaRow, BankRow, BarRow, BaselineRow, ClassScores, ClosureStudy, Confusion, FailureRow, InclusionRow,
     LeftOutBank, NuisanceRow, ProbabilityMap, Proportion, Quantiles, RecallRow, Reliability, ReliabilityBin,
     SizeRow, TRIALS_MANIFEST_SCHEMA, TRIALS_SCHEMA, TrialCaseRow, TrialsManifest, TrialsManifestLine,
-    TrialsResult, UnknownStudy,
+    TrialsResult, TrialsShare, UnknownStudy,
 };

@@ -42,6 +42,21 @@ pub struct TrialsManifestLine {
     pub files: BTreeMap<String, String>,
 }
 
+/// A share of trials that is done while others are not.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct TrialsShare {
+    /// Always [`super::RESULT_SCHEMA`].
+    pub schema: String,
+    /// What was asked for: `"trials-share"`.
+    pub task: String,
+    /// The share, as `2/8`.
+    pub shard: String,
+    /// Cases of the trials.
+    pub cases: usize,
+    /// Cases without an answer yet; they belong to other shares.
+    pub open: usize,
+}
+
 /// How often something was so, of independent cases.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {

@@ -120,7 +120,31 @@ impl RunFolder {
         Ok(folder)
     }
 
-    fn locked(disk: &Disk, path: PathBuf) -> Result<Self, RunError> {
+    /// Makes this folder, or takes it as it is, and locks it as long as this or a copy lives; `None` where another
+    /// program works in it. Of several programs that share the cases of one folder, each takes those that it can
+    /// claim; what a killed one had claimed is free.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn claim(path: &Path) -> Result<Option<Self>, RunError> {
+        let disk = Disk::default();
+        disk.make_folders(path).map_err(RunError::io(path, "create"))?;
+        let lock = Lock::claim(&disk, &path.join(LOCK))?;
+        Ok(lock.map(|lock| Self { path: path.to_owned(), disk, _lock: Some(Arc::new(lock)) }))
+    }
+
+    /// As [`RunFolder::claim`], once whoever works in the folder lets go.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn wait(path: &Path) -> Result<Self, RunError> {
+        let disk = Disk::default();
+        disk.make_folders(path).map_err(RunError::io(path, "create"))?;
+        let lock = Lock::wait(&disk, path)?;
+        Ok(Self { path: path.to_owned(), disk, _lock: Some(Arc::new(lock)) })
+    }
+
+    pub(crate) fn locked(disk: &Disk, path: PathBuf) -> Result<Self, RunError> {
         let lock = Lock::take(disk, &path)?;
         Ok(Self { path, disk: disk.clone(), _lock: Some(Arc::new(lock)) })
     }
@@ -255,16 +279,24 @@ impl RunFolder {
         names(&self.path.join(CHECKPOINTS))
     }
 
+    /// Takes a file of the run away that another one supersedes; one that is not there is no error.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn remove(&self, name: &str) -> Result<(), RunError> {
+        let path = self.path.join(name);
+        if !path.exists() {
+            return Ok(());
+        }
+        self.disk.remove_file(&path).map_err(RunError::io(&path, "take away"))
+    }
+
     /// Takes a checkpoint away that another one supersedes; one that is not there is no error.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.
     pub fn remove_checkpoint(&self, name: &str) -> Result<(), RunError> {
-        let path = self.checkpoint_path(name);
-        if !path.exists() {
-            return Ok(());
-        }
-        self.disk.remove_file(&path).map_err(RunError::io(&path, "take away"))
+        self.remove(&format!("{CHECKPOINTS}/{name}"))
     }
 
     /// Takes all checkpoints away: the run is finished.

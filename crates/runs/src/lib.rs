@@ -38,5 +38,5 @@ pub use error::RunError;
 pub use events::{Event, EventLog};
 pub use folder::{RunFolder, Texts, default_root, to_json};
 pub use scratch::Scratch;
-pub use sweep::{SweepFolder, SweepFolderError};
+pub use sweep::{Claim, SweepFolder, SweepFolderError};
 pub use table::to_csv;

@@ -49,7 +49,7 @@ impl Lock {
     /// [`RunError::Locked`] where another program has it, or this one already.
     pub(crate) fn take(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
-        let mut file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
+        let mut file = open(disk, &path)?;
         let mut taken = lock(&mut file, folder);
         for _ in 1..TRIES {
             if !matches!(taken, Err(RunError::Locked { .. })) {
@@ -59,23 +59,40 @@ impl Lock {
             taken = lock(&mut file, folder);
         }
         taken?;
-        let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
-        let text = serde_json::to_string(&holder)
-            .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
-        disk.shorten(&file, 0).map_err(RunError::io(&path, "empty"))?;
-        disk.write(&mut file, text.as_bytes()).map_err(RunError::io(&path, "write"))?;
-        Ok(Self { file })
+        Self::signed(disk, &path, file)
     }
 
-    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments. Who has it
-    /// is not said.
+    /// Takes the lock of a folder as soon as whoever has it lets go: for what is done in moments.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.
     pub(crate) fn wait(disk: &Disk, folder: &Path) -> Result<Self, RunError> {
         let path = folder.join(LOCK);
-        let file = disk.open_to_lock(&path).map_err(RunError::io(&path, "open"))?;
+        let file = open(disk, &path)?;
         file.lock().map_err(RunError::io(&path, "lock"))?;
+        Self::signed(disk, &path, file)
+    }
+
+    /// Takes the lock on a file, made where it is absent; `None` where another program has it, or this one already.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub(crate) fn claim(disk: &Disk, path: &Path) -> Result<Option<Self>, RunError> {
+        let file = open(disk, path)?;
+        match file.try_lock() {
+            Ok(()) => Self::signed(disk, path, file).map(Some),
+            Err(TryLockError::WouldBlock) => Ok(None),
+            Err(TryLockError::Error(error)) => Err(RunError::io(path, "lock")(error)),
+        }
+    }
+
+    /// The lock on a file, with its holder's name in it.
+    fn signed(disk: &Disk, path: &Path, mut file: File) -> Result<Self, RunError> {
+        let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
+        let text = serde_json::to_string(&holder)
+            .map_err(|error| RunError::Encoding { name: LOCK.to_owned(), problem: error.to_string() })?;
+        disk.shorten(&file, 0).map_err(RunError::io(path, "empty"))?;
+        disk.write(&mut file, text.as_bytes()).map_err(RunError::io(path, "write"))?;
         Ok(Self { file })
     }
 
@@ -90,6 +107,10 @@ impl Lock {
             Err(_) => Ok(()),
         }
     }
+}
+
+fn open(disk: &Disk, path: &Path) -> Result<File, RunError> {
+    disk.open_to_lock(path).map_err(RunError::io(path, "open"))
 }
 
 fn lock(file: &mut File, folder: &Path) -> Result<(), RunError> {
@@ -147,6 +168,18 @@ mod tests {
         drop(first);
         Lock::check(folder.path()).unwrap();
         Lock::take(&Disk::default(), folder.path()).unwrap();
+    }
+
+    #[test]
+    fn a_claim_is_refused_at_once_and_free_again_with_its_holder() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.lock");
+        let disk = Disk::default();
+        let first = Lock::claim(&disk, &path).unwrap().unwrap();
+        assert!(Lock::claim(&disk, &path).unwrap().is_none());
+        drop(first);
+        assert!(Lock::claim(&disk, &path).unwrap().is_some());
+        assert!(Lock::claim(&disk, &folder.path().join("absent/case.lock")).is_err());
     }
 
     #[test]

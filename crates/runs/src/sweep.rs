@@ -6,12 +6,13 @@
 //! | `configs/NNNN.toml` | each run's resolved configuration |
 //! | `config.toml`, `environment.json` | the configuration that every run starts from; what it was frozen with |
 //! | `state/<digest>.json` | one file for each run that came to its end ([`SweepEnd`]) |
+//! | `state/<digest>.lock` | who makes the run; the system's lock on it is what counts |
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
 //! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
 //! was not begun or one that goes on where it was. A run that was killed goes on in its folder; one that
-//! failed is made again in another one. Several processes may work on one sweep: only the files of `state/`
-//! say what is done.
+//! failed is made again in another one. Several processes may work on one sweep: each makes the runs that it can claim
+//! ([`SweepFolder::claim`]), and only the files of `state/` say what is done.
 
 use crate::atomic;
 use crate::disk::Disk;
@@ -26,8 +27,7 @@ use thiserror::Error;
 
 /// Name of the manifest.
 const MANIFEST: &str = "sweep.json";
-/// Folder of the runs' configurations; its lock is that of freezing, since the sweep's own is held throughout
-/// or not at all.
+/// Folder of the runs' configurations; its lock is that of freezing.
 const CONFIGS: &str = "configs";
 const STATE: &str = "state";
 const RUNS: &str = "runs";
@@ -51,6 +51,12 @@ pub enum SweepFolderError {
         /// What is wrong with it.
         problem: String,
     },
+}
+
+/// A run in this process's hands, until this is dropped or the process ends, however it ends.
+#[derive(Debug)]
+pub struct Claim {
+    _lock: Lock,
 }
 
 /// The folder of a sweep.
@@ -135,8 +141,26 @@ impl SweepFolder {
         atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)
     }
 
-    /// A new folder for a run: `runs/<label>`, or with a number behind it where that was begun before. The path is
-    /// from the sweep's folder.
+    /// Takes a run into this process's hands; `None` where another one has it.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn claim(&self, digest: &str) -> Result<Option<Claim>, RunError> {
+        let place = self.path().join(STATE);
+        Disk::default().make_folders(&place).map_err(RunError::io(&place, "create"))?;
+        let path = place.join(format!("{}.lock", plain(digest)));
+        Ok(Lock::claim(&Disk::default(), &path)?.map(|lock| Claim { _lock: lock }))
+    }
+
+    /// What became of a run by now; `None` where it came to no end, or where its file cannot be read.
+    #[must_use]
+    pub fn end_of(&self, digest: &str) -> Option<SweepEnd> {
+        let bytes = std::fs::read(self.path().join(STATE).join(state_name(digest))).ok()?;
+        serde_json::from_slice(&bytes).ok().filter(|end: &SweepEnd| end.digest == digest)
+    }
+
+    /// A new folder for a run, locked as long as it lives: `runs/<label>`, or with a number behind it where that was
+    /// begun before. The path is from the sweep's folder.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.
@@ -150,7 +174,7 @@ impl SweepFolder {
                 Ok(()) => {
                     let flushed = Disk::default().flush_folder(&root);
                     flushed.map_err(RunError::io(&root, "flush"))?;
-                    return Ok((format!("{RUNS}/{name}"), RunFolder::open(&path)));
+                    return Ok((format!("{RUNS}/{name}"), RunFolder::locked(&Disk::default(), path)?));
                 }
                 Err(error) if error.kind() == ErrorKind::AlreadyExists => (),
                 Err(error) => return Err(RunError::io(&path, "create")(error)),
@@ -225,7 +249,12 @@ fn attempt_name(label: &str, attempt: u32) -> String {
 }
 
 fn state_name(digest: &str) -> String {
-    format!("{}.json", digest.strip_prefix("sha256:").unwrap_or(digest))
+    format!("{}.json", plain(digest))
+}
+
+/// A digest without the name of its kind.
+fn plain(digest: &str) -> &str {
+    digest.strip_prefix("sha256:").unwrap_or(digest)
 }
 
 fn text_of(manifest: &SweepManifest) -> Result<Vec<u8>, RunError> {
@@ -238,7 +267,9 @@ fn text_of(manifest: &SweepManifest) -> Result<Vec<u8>, RunError> {
 #[cfg(test)]
 mod tests {
     use super::{SweepFolder, SweepFolderError};
+    use crate::disk::Disk;
     use crate::error::RunError;
+    use crate::folder::RunFolder;
     use results::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
     use std::path::Path;
 
@@ -365,6 +396,25 @@ mod tests {
             assert_eq!(sweep.begin_run("0001-seed-1").unwrap().0, name);
             assert_eq!(sweep.last_begun("0001-seed-1").as_deref(), Some(name));
         }
+    }
+
+    #[test]
+    fn a_run_is_in_one_pair_of_hands_and_its_folder_too() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        let digest = done(1, "").digest;
+        let claim = sweep.claim(&digest).unwrap().unwrap();
+        assert!(sweep.claim(&digest).unwrap().is_none());
+        let (name, folder) = sweep.begin_run("0001").unwrap();
+        let resumed = RunFolder::resume_on(&Disk::default(), &root.path().join(&name));
+        assert!(matches!(resumed, Err(RunError::Locked { .. })));
+        drop((claim, folder));
+        assert!(sweep.claim(&digest).unwrap().is_some());
+        // A lock beside the states is none of them.
+        assert_eq!(sweep.end_of(&digest), None);
+        assert_eq!(sweep.manifest().unwrap().unwrap().runs[0].state, SweepState::Pending);
+        sweep.end_run(&done(1, &name)).unwrap();
+        assert_eq!(sweep.end_of(&digest), Some(done(1, &name)));
     }
 
     #[test]

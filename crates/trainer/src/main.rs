@@ -22,6 +22,7 @@ mod misplaced;
 mod options;
 mod outcome;
 mod run_table;
+mod share;
 mod terminal;
 
 use clap::{CommandFactory, FromArgMatches};

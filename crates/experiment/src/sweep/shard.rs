@@ -1,10 +1,11 @@
-//! A share of a sweep's runs.
+//! A share of the runs of a sweep, or of the cases of a batch.
 
 use super::SweepError;
+use sha2::{Digest, Sha256};
 use std::fmt;
 use std::str::FromStr;
 
-/// Most shards of one sweep.
+/// Most shares of one piece of work.
 const MOST_SHARDS: usize = 10_000;
 
 /// The `index`-th of `of` shares.
@@ -23,6 +24,15 @@ impl Shard {
     #[must_use]
     pub fn takes(self, position: usize) -> bool {
         position % self.of == self.index - 1
+    }
+
+    /// Whether the case of a name belongs to this share, by the SHA-256 of the name. Every case belongs to exactly one,
+    /// and stays in it whatever other cases come or go while shares wait in a queue.
+    #[must_use]
+    pub fn takes_named(self, name: &str) -> bool {
+        let digest = Sha256::digest(name.as_bytes());
+        let number = digest.iter().take(8).fold(0, |number: u64, byte| number << 8 | u64::from(*byte));
+        number % self.of as u64 == self.index as u64 - 1
     }
 }
 
@@ -62,6 +72,18 @@ mod tests {
         }
         assert!((0..10).all(|position| Shard::ALL.takes(position)));
         assert_eq!(shards[1].to_string(), "2/3");
+    }
+
+    /// The shares of a name are part of what separate machines agree on, so that they stay the same over versions.
+    #[test]
+    fn a_case_stays_in_its_share_whatever_else_there_is() {
+        let shards: Vec<Shard> = (1..=3).map(|index| format!("{index}/3").parse().unwrap()).collect();
+        let counts =
+            shards.iter().map(|shard| (0..300).filter(|id| shard.takes_named(&id.to_string())).count());
+        assert_eq!(counts.clone().sum::<usize>(), 300);
+        assert!(counts.clone().all(|count| (70..130).contains(&count)), "{:?}", counts.collect::<Vec<_>>());
+        // sha256("elbow-07") begins with 3f2a2446057a86fa.
+        assert_eq!(shards.iter().position(|shard| shard.takes_named("elbow-07")), Some(2));
     }
 
     #[test]

@@ -171,7 +171,7 @@ fn rig(row: &RigRow) -> RigView<'_> {
 }
 
 /// A name as a step of a relative address.
-fn encoded(name: &str) -> String {
+pub(crate) fn encoded(name: &str) -> String {
     name.bytes()
         .map(|byte| match byte {
             b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => char::from(byte).to_string(),

@@ -1,6 +1,7 @@
 //! What a command can fail of, and the exit code that belongs to it.
 
 mod kept;
+mod launch;
 mod learn;
 mod resume;
 mod sweep;
@@ -21,6 +22,7 @@ use tracking::TrackingError;
 use workflow::WorkflowError;
 
 pub(crate) use kept::KeptError;
+pub(crate) use launch::LaunchError;
 pub(crate) use learn::LearnCommandError;
 pub(crate) use resume::ResumeError;
 pub(crate) use sweep::SweepCommandError;
@@ -94,6 +96,8 @@ pub(crate) enum TrainerError {
         "{folder}: there is no case in it; expected a folder for each, holding record-*.csv and nominal.toml"
     )]
     NoCases { folder: String },
+    #[error("{file}: {problem}; expected lines such as joint = \"elbow\", robot = \"r7\", date = 2026-11-23")]
+    Labels { file: String, problem: String },
     #[error("{folder}: {problem}; expected the folder of a rig, holding record-*.csv and nominal.toml")]
     NoRig { folder: String, problem: String },
     #[error(
@@ -113,6 +117,8 @@ pub(crate) enum TrainerError {
     Resume(#[from] ResumeError),
     #[error(transparent)]
     Sweep(#[from] SweepCommandError),
+    #[error(transparent)]
+    Launch(#[from] LaunchError),
     #[error(transparent)]
     Table(#[from] TableError),
     #[error(transparent)]
@@ -160,12 +166,14 @@ impl TrainerError {
             | Self::Learn(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
+            | Self::Labels { .. }
             | Self::NoRig { .. }
             | Self::OneRig { .. }
             | Self::NoFolder { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
             | Self::Sweep(_)
+            | Self::Launch(_)
             | Self::Table(_)
             | Self::Resume(_)
             | Self::NoRun { .. }

@@ -35,8 +35,4 @@ pub(crate) enum SweepCommandError {
          sweep: runs on different records do not belong in one table"
     )]
     OtherRecord { path: String, then: String, now: String },
-    #[error(
-        "the sweep is frozen and {script} is written, but {problem}; submit it where there is Slurm with: sbatch {script}"
-    )]
-    Launch { script: String, problem: String },
 }

@@ -1,6 +1,7 @@
 //! The arguments of `trainer diagnose`.
 
 use crate::options::Output;
+use crate::share::ShareOptions;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
 use record::{CsvColumns, Format, Missing, Quantity, ReadOptions, TimeUnit, Unit};
@@ -23,7 +24,12 @@ Examples:
       --remove-mean --nominal box.toml                   no time column: laid out at that rate
   trainer diagnose gyro.csv --value rate --unit deg/s --quantity velocity --nominal nominal.toml
   trainer diagnose --batch CASES --out ANSWERS --threads 8
-                                   every CASES/<id>/ with record-*.csv and nominal.toml
+                                   every CASES/<id>/ with record-*.csv and nominal.toml; a case.toml beside them
+                                   (joint = \"elbow\", robot, date) labels the case in `trainer report ANSWERS`
+  trainer diagnose --batch CASES --out ANSWERS --shard 2/8
+                                   the second of eight shares; all may run at once on one folder
+  trainer diagnose --batch CASES --out ANSWERS --launcher slurm --shards 50
+                                   a job array with one task for each share
   trainer diagnose --rigs A/ B/ C/ --out DIR
                                    several rigs of one build: what they share, and where they differ
 
@@ -36,7 +42,7 @@ inertia with inertia = 1.0; and, where they apply, coordinate = \"displacement\"
 or force per unit of the input) and sensor_resolution.
 
 Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch, or some rig, gave no answer; 2 wrong input
-or usage; 130 interrupted.")]
+or usage; 130 interrupted. With --as-task 0 instead of 1.")]
 pub(crate) struct DiagnoseArguments {
     /// Records of one system
     #[arg(value_name = "RECORD", required_unless_present_any = ["batch", "rigs"], conflicts_with_all = ["batch", "rigs"])]
@@ -76,6 +82,8 @@ pub(crate) struct DiagnoseArguments {
     /// Threads; results do not depend on it [default: one for each core]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) share: ShareOptions,
     #[command(flatten)]
     pub(crate) output: Output,
 }

@@ -1,23 +1,34 @@
 //! `trainer diagnose --batch`: every case of a folder.
 
 use super::arguments::DiagnoseArguments;
+use super::labels;
 use super::{kept, settings};
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
+use crate::share::{Launcher, Work, launch, without_launcher};
 use crate::terminal::console;
 use crate::terminal::interrupt;
 use crate::terminal::progress::Progress;
 use crate::terminal::table::table;
+use estimator::Cancel;
 use rayon::prelude::*;
 use record::counted;
-use results::{BatchResult, FailedCase, RESULT_SCHEMA};
+use results::{BatchResult, CASE_SCHEMA, CaseFile, FailedCase, RESULT_SCHEMA};
 use runs::RunFolder;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use workflow::Question;
+
+/// The file of an answer.
+pub(crate) const ANSWER: &str = "diagnosis.json";
+/// The file that says why a case has no answer.
+pub(crate) const FAILED: &str = "failed.json";
 
 /// A folder with records of one system.
 pub(super) struct Case {
+    /// Where it lies.
+    pub(super) folder: PathBuf,
     pub(super) id: String,
     pub(super) records: Vec<PathBuf>,
     pub(super) nominal: PathBuf,
@@ -40,7 +51,7 @@ impl Case {
             records.push(path.join("record-000.csv"));
         }
         let id = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        Ok(Self { id, records, nominal: path.join("nominal.toml") })
+        Ok(Self { folder: path.to_owned(), id, records, nominal: path.join("nominal.toml") })
     }
 }
 
@@ -49,7 +60,12 @@ enum Fate {
     Diagnosed,
     Skipped,
     Failed(FailedCase),
+    /// Another process has it in hand.
+    Elsewhere,
 }
+
+/// How often cases in other processes' hands are looked at.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// Diagnoses the cases in parallel. A bad case is reported and the others go on.
 pub(super) fn batch(
@@ -59,75 +75,142 @@ pub(super) fn batch(
 ) -> Result<Outcome, TrainerError> {
     let start = Instant::now();
     let cancel = interrupt::watch()?;
-    let found = list(cases)?;
+    let mut found = list(cases)?;
     if found.is_empty() {
         return Err(TrainerError::NoCases { folder: cases.display().to_string() });
     }
+    if let Some(Launcher::Slurm) = arguments.share.launcher {
+        return launched(arguments, found.len(), answers);
+    }
+    found.retain(|case| arguments.share.shard().takes_named(&case.id));
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(arguments.threads.map_or(0, usize::from))
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
-    let silent = arguments.output.quiet || arguments.output.json;
-    let progress = Progress::over_cases(found.len() as u64, silent);
-    let folder = RunFolder::open(answers);
-    let fates: Vec<Option<Fate>> = pool.install(|| {
-        found
-            .par_iter()
-            .map(|case| {
-                if cancel.is_requested() {
-                    return None;
-                }
-                let fate = fate(arguments, case, &folder);
-                if let Fate::Failed(failed) = &fate {
-                    progress.aside(|| console::error(&format!("{}: {}", failed.id, failed.message)));
-                }
-                progress.one_of_many_done();
-                Some(fate)
-            })
-            .collect()
-    });
-    progress.finish();
-    let complete = fates.iter().all(Option::is_some);
-    let (mut diagnosed, mut skipped, mut failed) = (0, 0, Vec::new());
-    for fate in fates.into_iter().flatten() {
-        match fate {
-            Fate::Diagnosed => diagnosed += 1,
-            Fate::Skipped => skipped += 1,
-            Fate::Failed(case) => failed.push(case),
-        }
-    }
-    let result = BatchResult {
+    let fates = pool.install(|| fates(arguments, &found, answers, cancel));
+    let mut result = BatchResult {
         schema: RESULT_SCHEMA.to_owned(),
         task: "diagnose-batch".to_owned(),
         cases: found.len(),
-        diagnosed,
-        skipped,
-        failed,
-        complete,
+        diagnosed: 0,
+        skipped: 0,
+        failed: Vec::new(),
+        complete: fates.len() == found.len(),
         seconds: start.elapsed().as_secs_f64(),
     };
+    for fate in fates.into_values() {
+        match fate {
+            Fate::Diagnosed => result.diagnosed += 1,
+            Fate::Skipped => result.skipped += 1,
+            Fate::Failed(case) => result.failed.push(case),
+            Fate::Elsewhere => result.complete = false,
+        }
+    }
     arguments.output.print(&result, || summary(&result, answers))?;
     Ok(match (result.complete, result.failed.is_empty()) {
         (false, _) => Outcome::Interrupted,
-        (true, false) => Outcome::CheckFailed,
+        (true, false) => arguments.share.outcome(Outcome::CheckFailed),
         (true, true) => Outcome::Done,
     })
 }
 
-fn fate(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Fate {
-    let name = format!("{}/diagnosis.json", case.id);
-    let failed =
-        |error: TrainerError| Fate::Failed(FailedCase { id: case.id.clone(), message: error.to_string() });
-    let answer = folder.path().join(&name);
-    if answer.exists() {
-        return kept::check_answer(&answer, &case.records, &case.nominal)
-            .map_or_else(failed, |()| Fate::Skipped);
+/// What becomes of the cases, by position; those that a request to stop came before are missing. Cases that another
+/// process has in hand are left to it, and taken over where it ends without an answer.
+fn fates(
+    arguments: &DiagnoseArguments,
+    cases: &[Case],
+    answers: &Path,
+    cancel: &Cancel,
+) -> BTreeMap<usize, Fate> {
+    let silent = arguments.output.quiet || arguments.output.json;
+    let progress = Progress::over_cases(cases.len() as u64, silent);
+    let mut fates = BTreeMap::new();
+    let mut open: Vec<(usize, &Case)> = cases.iter().enumerate().collect();
+    for round in 0.. {
+        let look = |&(at, case): &(usize, &Case)| {
+            if cancel.is_requested() {
+                return None;
+            }
+            let fate = fate(arguments, case, &answers.join(&case.id));
+            if let Fate::Failed(failed) = &fate {
+                progress.aside(|| console::error(&format!("{}: {}", failed.id, failed.message)));
+            }
+            if !matches!(fate, Fate::Elsewhere) {
+                progress.one_of_many_done();
+            }
+            Some((at, fate))
+        };
+        let looked: Vec<_> = open.par_iter().map(look).collect();
+        fates.extend(looked.into_iter().flatten());
+        open.retain(|(at, _)| matches!(fates.get(at), Some(Fate::Elsewhere)));
+        if open.is_empty() || cancel.is_requested() {
+            break;
+        }
+        if round == 0 && !silent {
+            progress.aside(|| console::remark("waiting for cases that another process is diagnosing"));
+        }
+        std::thread::sleep(LOOK);
     }
-    let answered = Question::read(&case.records, &case.nominal, &arguments.reading.plain())
-        .and_then(|question| question.answer(&settings(arguments), arguments.seed))
-        .map_err(TrainerError::from)
-        .and_then(|answer| Ok(folder.write_json(&name, &answer.result)?));
-    answered.map_or_else(failed, |()| Fate::Diagnosed)
+    progress.finish();
+    fates
+}
+
+/// Diagnoses a case, unless it is answered already or another process is at it.
+fn fate(arguments: &DiagnoseArguments, case: &Case, place: &Path) -> Fate {
+    let failed = |error: TrainerError| FailedCase { id: case.id.clone(), message: error.to_string() };
+    let answer = place.join(ANSWER);
+    let check = || {
+        let checked = kept::check_answer(arguments, &answer, &case.records, &case.nominal);
+        checked.map_or_else(|error| Fate::Failed(failed(error)), |()| Fate::Skipped)
+    };
+    if answer.exists() {
+        return check();
+    }
+    let folder = match RunFolder::claim(place) {
+        Ok(Some(folder)) => folder,
+        Ok(None) => return Fate::Elsewhere,
+        Err(error) => return Fate::Failed(failed(error.into())),
+    };
+    if answer.exists() {
+        return check();
+    }
+    match diagnosed(arguments, case, &folder) {
+        Ok(()) => Fate::Diagnosed,
+        Err(error) => {
+            let failed = failed(error);
+            // The result of the batch says so too; that this file cannot be written is no failure of its own.
+            let _ = folder.write_json(FAILED, &failed);
+            Fate::Failed(failed)
+        }
+    }
+}
+
+/// Writes the answer to a case, and before it what was asked.
+fn diagnosed(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> Result<(), TrainerError> {
+    let question = Question::read(&case.records, &case.nominal, &arguments.reading.plain())?;
+    let first = case.records.first().unwrap_or(&case.nominal);
+    let labels = labels::read(&case.folder, first)?;
+    let answer = question.answer(&settings(arguments), arguments.seed)?;
+    let asked = kept::asked_by_batch(arguments, &question);
+    let file = CaseFile { schema: CASE_SCHEMA.to_owned(), asked, labels };
+    folder.write_json(kept::CASE_FILE, &file)?;
+    folder.write_json(ANSWER, &answer.result)?;
+    Ok(folder.remove(FAILED)?)
+}
+
+/// Hands the cases to a batch system, with the options of this command line.
+fn launched(arguments: &DiagnoseArguments, cases: usize, answers: &Path) -> Result<Outcome, TrainerError> {
+    let words: Vec<String> =
+        std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
+    let work = Work {
+        name: "diagnose",
+        folder: &RunFolder::open(answers),
+        parts: cases,
+        part: "case",
+        words: without_launcher(&words),
+        threads: arguments.threads.unwrap_or(1),
+    };
+    launch(&arguments.share, &work, arguments.output)
 }
 
 /// The cases in the order of their names. A folder without a record is a case too: its failure says what is missing.

@@ -3,7 +3,7 @@
 use super::arguments::DiagnoseArguments;
 use crate::error::{KeptError, TrainerError};
 use record::file_digest;
-use results::DiagnosisResult;
+use results::{CaseFile, DiagnosisResult};
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -11,15 +11,22 @@ use workflow::{Question, nominal};
 
 /// The event that says what was asked, before any other file of a diagnosis is there.
 pub(super) const ASKED: &str = "start";
+/// The file beside an answer of a batch that says what was asked.
+pub(super) const CASE_FILE: &str = "case.json";
 /// The event of a diagnosis that is there in full.
 pub(super) const END: &str = "end";
 
 /// All that an answer depends on, but for the program: in digests where it is long.
 pub(super) fn asked(arguments: &DiagnoseArguments, question: &Question) -> Value {
     let records: Vec<&str> = question.given.iter().map(|given| given.row.digest.as_str()).collect();
+    asked_of(arguments, &records, &nominal::digest(&question.stated))
+}
+
+/// As [`asked`], by the digests of records and simulator.
+fn asked_of(arguments: &DiagnoseArguments, records: &[&str], nominal: &str) -> Value {
     json!({
         "records": records,
-        "nominal": nominal::digest(&question.stated),
+        "nominal": nominal,
         "reading": arguments.reading,
         "most_effects": arguments.most_effects,
         "without": arguments.without,
@@ -63,16 +70,51 @@ fn same(folder: &Path, kept: &Value, asked: &Value) -> Result<(), KeptError> {
     })
 }
 
+/// As [`asked`], with the version of the program: an answer of a batch that has both in its case file is not given again.
+pub(super) fn asked_by_batch(arguments: &DiagnoseArguments, question: &Question) -> Value {
+    with_version(asked(arguments, question))
+}
+
+fn with_version(mut asked: Value) -> Value {
+    if let Some(fields) = asked.as_object_mut() {
+        fields.insert("version".to_owned(), env!("CARGO_PKG_VERSION").into());
+    }
+    asked
+}
+
+/// That an answer of a batch was asked for with these options and by this version; answers without a case file do not say.
+fn check_asked(
+    arguments: &DiagnoseArguments,
+    answer: &Path,
+    records: &[&str],
+    nominal: &str,
+) -> Result<(), KeptError> {
+    let Some(folder) = answer.parent() else { return Ok(()) };
+    let path = folder.join(CASE_FILE);
+    let Ok(bytes) = std::fs::read(&path) else { return Ok(()) };
+    let case: CaseFile = serde_json::from_slice(&bytes).map_err(|error| KeptError::NoDiagnosis {
+        answer: path.display().to_string(),
+        problem: error.to_string(),
+    })?;
+    same(folder, &case.asked, &with_version(asked_of(arguments, records, nominal)))
+}
+
 /// That an answer of a batch is on the records and for the simulator that lie in the case now. What an answer
 /// does not name is not compared.
-pub(super) fn check_answer(answer: &Path, records: &[PathBuf], path: &Path) -> Result<(), TrainerError> {
+pub(super) fn check_answer(
+    arguments: &DiagnoseArguments,
+    answer: &Path,
+    records: &[PathBuf],
+    path: &Path,
+) -> Result<(), TrainerError> {
     let shown = || answer.display().to_string();
     let unusable = |problem: String| KeptError::NoDiagnosis { answer: shown(), problem };
     let bytes = std::fs::read(answer).map_err(|error| unusable(error.to_string()))?;
     let found: Value = serde_json::from_slice(&bytes).map_err(|error| unusable(error.to_string()))?;
+    let stated = nominal::digest(&nominal::read(path)?);
     let kept = found.get("nominal_digest").and_then(Value::as_str).filter(|digest| !digest.is_empty());
     if let Some(kept) = kept {
-        let found = nominal::digest(&nominal::read(path)?);
+        let found = stated.clone();
         if found != kept {
             let (nominal, kept) = (path.display().to_string(), kept.to_owned());
             return Err(KeptError::AnotherNominal { nominal, answer: shown(), kept, found }.into());
@@ -90,7 +132,7 @@ pub(super) fn check_answer(answer: &Path, records: &[PathBuf], path: &Path) -> R
         }
     }
     match kept.get(records.len()) {
-        None => Ok(()),
+        None => Ok(check_asked(arguments, answer, &kept, &stated)?),
         Some(kept) => Err(KeptError::AnotherRecord {
             record: format!("record {}", records.len() + 1),
             answer: shown(),

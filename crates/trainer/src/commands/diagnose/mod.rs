@@ -1,12 +1,13 @@
 //! `trainer diagnose`: where the gap between a nominal simulator and records lies, and what closes it.
 
 pub(crate) mod arguments;
-mod batch;
+pub(crate) mod batch;
 mod kept;
+mod labels;
 mod rigs;
 mod summary;
 
-use crate::error::TrainerError;
+use crate::error::{LaunchError, TrainerError};
 use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
 use crate::outcome::Outcome;
@@ -24,6 +25,11 @@ use workflow::{Answer, Question, Reading, series_rows};
 
 /// Diagnoses the records named, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
+    let shared =
+        [("--shard", arguments.share.shard.is_some()), ("--launcher", arguments.share.launcher.is_some())];
+    if let (None, Some((option, _))) = (&arguments.batch, shared.into_iter().find(|(_, given)| *given)) {
+        return Err(LaunchError::NoBatch { option }.into());
+    }
     match (&arguments.batch, &arguments.out, &arguments.nominal) {
         (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
         _ if !arguments.rigs.is_empty() => rigs::rigs(arguments),

@@ -1,8 +1,8 @@
 //! The arguments of `trainer sweep`.
 
 use crate::options::{Output, RunOptions};
-use clap::{Args, ValueEnum};
-use experiment::sweep::Shard;
+use crate::share::ShareOptions;
+use clap::Args;
 use std::path::PathBuf;
 
 /// Every combination of some keys' values.
@@ -21,6 +21,9 @@ Examples:
                                    the second of eight shares; all may run at once on one folder
   trainer sweep configs/pinn.toml seed=0..999 --launcher slurm --shards 20
                                    a job array with one task for each share
+  trainer sweep configs/pinn.toml seed=0..999 --launcher slurm --slurm-option partition=long \\
+      --slurm-option time=2:00:00 --slurm-at-once 4 --slurm-setup 'module load gcc' --json
+                                   with what the cluster asks for; prints the job's number
 
 estimator=NAME chooses the estimator and leaves out what the file sets for another one.
 
@@ -29,7 +32,7 @@ lists the runs, each with its digest, its state and its folder below SWEEP/runs,
 report` reads. SWEEP/report.html, table.csv and table.md put them side by side.
 
 Exit codes: 0 done; 1 a run failed, or is outside its stated tolerance; 2 wrong input or usage,
-nothing was run; 130 interrupted, what is done is kept.")]
+nothing was run; 130 interrupted, what is done is kept. With --as-task 0 instead of 1.")]
 pub(crate) struct SweepArguments {
     /// The experiment that every combination starts from: a TOML file
     #[arg(required_unless_present = "resume")]
@@ -42,16 +45,8 @@ pub(crate) struct SweepArguments {
     /// With --resume, runs again what failed
     #[arg(long, requires = "resume")]
     pub(crate) failed: bool,
-    /// Runs the I-th of N shares of the frozen list; begins the sweep in --out or joins it
-    #[arg(long, value_name = "I/N", requires = "out")]
-    pub(crate) shard: Option<Shard>,
-    /// Freezes the sweep and hands it to a batch system instead of running it here
-    #[arg(long, value_enum, conflicts_with_all = ["shard", "json"])]
-    pub(crate) launcher: Option<Launcher>,
-    /// With --launcher, how many tasks share the runs
-    #[arg(long, value_name = "N", requires = "launcher", default_value_t = 8,
-          value_parser = clap::value_parser!(u16).range(1..=10_000))]
-    pub(crate) shards: u16,
+    #[command(flatten)]
+    pub(crate) share: ShareOptions,
     #[command(flatten)]
     pub(crate) output: Output,
 }
@@ -62,11 +57,4 @@ impl SweepArguments {
         let cores = || std::thread::available_parallelism().map_or(1, usize::from);
         self.run.threads.map_or_else(cores, usize::from)
     }
-}
-
-/// Who runs the shares.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Launcher {
-    /// A Slurm job array, submitted with sbatch
-    Slurm,
 }

@@ -18,14 +18,18 @@ use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
 use runs::{Disk, RunError, RunFolder, read_run};
 use serde_json::json;
 use settings::Document;
+use std::collections::VecDeque;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use workflow::guess::two_digits;
 
 /// `sweep.json` is written again when this many times its own writing time has passed.
 const REST: u32 = 20;
+
+/// How often a run in another process's hands is looked at.
+const LOOK: Duration = Duration::from_millis(200);
 
 /// A run to be made: its line and its configuration.
 pub(super) type Job<'a> = (&'a SweepLine, &'a str);
@@ -34,7 +38,8 @@ pub(super) type Job<'a> = (&'a SweepLine, &'a str);
 const SILENT: Output = Output { quiet: true, json: false };
 
 /// Makes the runs on so many threads. Each run is fitted on a single one, so that its bits do not depend on them. A
-/// run that fails is reported and the others go on; a request to stop lets none begin.
+/// run that fails is reported and the others go on; a request to stop lets none begin. A run that another process has
+/// in hand is left to it, and taken over where that process ends without a result.
 ///
 /// An error is one of the sweep's folder: what became of a run could not be kept.
 pub(super) fn execute(
@@ -45,24 +50,28 @@ pub(super) fn execute(
     cancel: &'static Cancel,
 ) -> Result<(), RunError> {
     let progress = Progress::over_runs(jobs.len() as u64, output.quiet || output.json);
-    let next = AtomicUsize::new(0);
+    let queue = Queue::new(jobs);
     let fault: Mutex<Option<RunError>> = Mutex::new(None);
     let clerk = Mutex::new(Clerk::new(sweep));
+    let remark = |words: &str| {
+        if !output.quiet {
+            progress.aside(|| console::remark(words));
+        }
+    };
     let work = || {
         while !cancel.is_requested() && !is_some(&fault) {
-            let Some(&(line, config)) = jobs.get(next.fetch_add(1, Ordering::Relaxed)) else { break };
-            let remark = |words: &str| {
-                if !output.quiet {
-                    progress.aside(|| console::remark(words));
+            let Some((job, waited)) = queue.next() else { break };
+            match claimed(sweep, job, cancel, &remark) {
+                Ok(Hands::Own(end)) => {
+                    report(sweep, job.0, &end, &progress, output);
+                    clerk.lock().unwrap_or_else(PoisonError::into_inner).note(sweep);
                 }
-            };
-            let end = make(sweep, line, config, cancel, &remark);
-            if let Err(error) = sweep.folder.end_run(&end) {
-                *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
-                break;
+                Ok(Hands::Done) => {
+                    progress.run_done(&format!("{:04}: made by another process", job.0.number))
+                }
+                Ok(Hands::Other) => queue.later(job, waited, &remark),
+                Err(error) => *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error),
             }
-            report(sweep, line, &end, &progress, output);
-            clerk.lock().unwrap_or_else(PoisonError::into_inner).note(sweep);
         }
     };
     std::thread::scope(|scope| {
@@ -74,6 +83,69 @@ pub(super) fn execute(
     match fault.into_inner().unwrap_or_else(PoisonError::into_inner) {
         Some(error) => Err(error),
         None => Ok(()),
+    }
+}
+
+/// In whose hands a run was found.
+enum Hands {
+    /// In this process's, and this became of it.
+    Own(SweepEnd),
+    /// In none any more: another process has made it meanwhile.
+    Done,
+    /// In another process's.
+    Other,
+}
+
+/// Makes a run and keeps what became of it, unless another process does or did.
+fn claimed(
+    sweep: &FrozenSweep,
+    (line, config): Job<'_>,
+    cancel: &'static Cancel,
+    remark: &dyn Fn(&str),
+) -> Result<Hands, RunError> {
+    let Some(_claim) = sweep.folder.claim(&line.digest)? else { return Ok(Hands::Other) };
+    let ended = |end: &SweepEnd| match end.state {
+        SweepState::Done => true,
+        // One that failed is made again where that was asked for, but not one that another process has just made again.
+        SweepState::Failed => line.state != SweepState::Failed || end.run != line.run,
+        SweepState::Pending | SweepState::Interrupted => false,
+    };
+    if sweep.folder.end_of(&line.digest).is_some_and(|end| ended(&end)) {
+        return Ok(Hands::Done);
+    }
+    let end = make(sweep, line, config, cancel, remark);
+    sweep.folder.end_run(&end)?;
+    Ok(Hands::Own(end))
+}
+
+/// The runs to be made, those that are in other processes' hands at the end.
+struct Queue<'a> {
+    /// With what was looked at before and found in another process's hands.
+    jobs: Mutex<VecDeque<(Job<'a>, bool)>>,
+    said: AtomicBool,
+}
+
+impl<'a> Queue<'a> {
+    fn new(jobs: &[Job<'a>]) -> Self {
+        Self {
+            jobs: Mutex::new(jobs.iter().map(|job| (*job, false)).collect()),
+            said: AtomicBool::new(false),
+        }
+    }
+
+    fn next(&self) -> Option<(Job<'a>, bool)> {
+        self.jobs.lock().unwrap_or_else(PoisonError::into_inner).pop_front()
+    }
+
+    /// Puts a run at the end, after a pause where it has been there before.
+    fn later(&self, job: Job<'a>, waited: bool, remark: &dyn Fn(&str)) {
+        if waited {
+            if !self.said.swap(true, Ordering::Relaxed) {
+                remark("waiting for runs that another process is making");
+            }
+            std::thread::sleep(LOOK);
+        }
+        self.jobs.lock().unwrap_or_else(PoisonError::into_inner).push_back((job, true));
     }
 }
 

@@ -10,7 +10,7 @@ use experiment::resolve;
 use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
 use registry::ESTIMATORS;
 use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
-use runs::{Disk, RunError, RunFolder, SweepFolder, default_root};
+use runs::{RunError, RunFolder, SweepFolder, default_root};
 use serde_json::json;
 use settings::Document;
 use std::path::Path;
@@ -21,8 +21,6 @@ pub(super) struct FrozenSweep {
     pub(super) manifest: SweepManifest,
     /// The runs' configurations, in the list's order.
     pub(super) configs: Vec<String>,
-    /// Held as long as the sweep is worked on, so that nobody else takes it up; shares work side by side without.
-    _lock: Option<RunFolder>,
 }
 
 /// Freezes a new sweep, or takes up the one that the arguments name.
@@ -31,12 +29,12 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
         Some(path) => Some((path.display().to_string(), planned(arguments, path)?)),
         None => None,
     };
-    let joins = arguments.run.resume || arguments.shard.is_some();
+    let joins = arguments.run.resume || arguments.share.shard.is_some();
     if let Some(path) = arguments.run.out.as_ref().filter(|path| SweepFolder::is_one(path)) {
         if !joins {
             return Err(SweepCommandError::Begun { folder: path.display().to_string() }.into());
         }
-        return take_up(arguments, SweepFolder::open(path), planned.map(|(_, planned)| planned));
+        return take_up(SweepFolder::open(path), planned.map(|(_, planned)| planned));
     }
     let Some((config, planned)) = planned else {
         let folder = arguments.run.out.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
@@ -44,15 +42,10 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
     };
     let manifest = manifest(config, &planned)?;
     let folder = match &arguments.run.out {
-        Some(path) if arguments.shard.is_some() => beginning(path)?,
-        Some(path) if joins => {
-            beginning(path)?;
-            RunFolder::resume_on(&Disk::default(), path)?
-        }
+        Some(path) if joins => beginning(path)?,
         Some(path) => RunFolder::create_at(path)?,
         None => RunFolder::create(&default_root(), &manifest.name)?,
     };
-    let lock = arguments.shard.is_none().then(|| folder.clone());
     let folder = SweepFolder::open(folder.path());
     let configs: Vec<String> = planned.runs.iter().map(|run| run.config.clone()).collect();
     let digests: Vec<&str> = manifest.records.iter().map(|record| record.digest.as_str()).collect();
@@ -61,12 +54,11 @@ pub(super) fn settle(arguments: &SweepArguments) -> Result<FrozenSweep, TrainerE
         .map_err(|error| TrainerError::System { what: "environment.json", problem: error.to_string() })?;
     let beside = [("config.toml", planned.text.clone().into_bytes()), ("environment.json", environment)];
     if !folder.freeze(&manifest, &configs, &beside)? {
-        // Another share came first.
-        drop(lock);
-        return take_up(arguments, folder, Some(planned));
+        // Another process came first.
+        return take_up(folder, Some(planned));
     }
     folder.folder().record_event("start", &json!({ "name": manifest.name, "runs": manifest.runs.len() }))?;
-    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
+    Ok(FrozenSweep { folder, manifest, configs })
 }
 
 /// What a configuration and axes come to.
@@ -148,15 +140,7 @@ fn beginning(path: &Path) -> Result<RunFolder, RunError> {
 }
 
 /// Goes on with a frozen sweep; what the command line asks for, if anything, has to be the same.
-fn take_up(
-    arguments: &SweepArguments,
-    folder: SweepFolder,
-    planned: Option<Planned>,
-) -> Result<FrozenSweep, TrainerError> {
-    let lock = match arguments.shard {
-        None => Some(RunFolder::resume_on(&Disk::default(), folder.path())?),
-        Some(_) => None,
-    };
+fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep, TrainerError> {
     let shown = || folder.path().display().to_string();
     let manifest = folder
         .manifest()
@@ -185,7 +169,7 @@ fn take_up(
             env!("CARGO_PKG_VERSION")
         ));
     }
-    Ok(FrozenSweep { folder, manifest, configs, _lock: lock })
+    Ok(FrozenSweep { folder, manifest, configs })
 }
 
 /// A run's frozen configuration, if it still is what its digest says.

@@ -3,21 +3,21 @@
 pub(crate) mod arguments;
 mod execute;
 mod frozen;
-mod slurm;
 
 use crate::error::{SweepCommandError, TrainerError};
 use crate::folders::page::write_report;
 use crate::outcome::Outcome;
 use crate::run_table::{of_sweep, print_table};
+use crate::share::{Launcher, Work, launch};
 use crate::terminal::console;
 use crate::terminal::interrupt::{self, Saving};
-use arguments::{Launcher, SweepArguments};
+use arguments::SweepArguments;
 use execute::Job;
-use experiment::sweep::Shard;
 use frozen::FrozenSweep;
 use record::counted;
 use report::{run_table_csv, run_table_markdown};
 use results::{RunTable, SweepLine, SweepManifest, SweepState};
+use runs::SweepFolder;
 use serde::Serialize;
 use serde_json::json;
 
@@ -33,10 +33,10 @@ struct Answer<'a> {
 pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let mut sweep = frozen::settle(arguments)?;
-    if let Some(Launcher::Slurm) = arguments.launcher {
-        return slurm::launch(arguments, &sweep);
+    if let Some(Launcher::Slurm) = arguments.share.launcher {
+        return launched(arguments, &sweep);
     }
-    let shard = arguments.shard.unwrap_or(Shard::ALL);
+    let shard = arguments.share.shard();
     let output = arguments.output;
     let jobs: Vec<Job<'_>> = sweep
         .manifest
@@ -54,7 +54,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     let made = jobs.len();
     execute::execute(&sweep, &jobs, arguments.threads(), output, cancel)?;
     let _saving = Saving::begin();
-    let table = finish(&mut sweep)?;
+    let table = finish(&sweep.folder, &mut sweep.manifest)?;
     let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
     // Who asks to stop when the last run is done has missed it.
     let interrupted = cancel.is_requested() && own().any(|(_, line)| is_missing(line, false));
@@ -74,7 +74,24 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         return Ok(Outcome::Interrupted);
     }
     let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
-    Ok(if is_fine { Outcome::Done } else { Outcome::CheckFailed })
+    Ok(arguments.share.outcome(if is_fine { Outcome::Done } else { Outcome::CheckFailed }))
+}
+
+/// Hands the frozen list to a batch system: its tasks need no configuration.
+fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, TrainerError> {
+    let path = sweep.folder.path();
+    let path = path.canonicalize().unwrap_or_else(|_| path.to_owned()).display().to_string();
+    let mut words = vec!["sweep".to_owned(), "--out".to_owned(), path, "--resume".to_owned()];
+    words.extend(arguments.failed.then(|| "--failed".to_owned()));
+    let work = Work {
+        name: &sweep.manifest.name,
+        folder: sweep.folder.folder(),
+        parts: sweep.manifest.runs.len(),
+        part: "run",
+        words,
+        threads: arguments.run.threads.unwrap_or(1),
+    };
+    launch(&arguments.share, &work, arguments.output)
 }
 
 fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
@@ -98,17 +115,17 @@ fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
 
 /// Writes the manifest, the table and the page until nothing has changed meanwhile: of several shares that end at
 /// the same time the last leaves them complete.
-fn finish(sweep: &mut FrozenSweep) -> Result<RunTable, TrainerError> {
+pub(crate) fn finish(sweep: &SweepFolder, manifest: &mut SweepManifest) -> Result<RunTable, TrainerError> {
     loop {
-        sweep.folder.refresh(&mut sweep.manifest)?;
-        let table = of_sweep::table(&sweep.folder, &sweep.manifest);
-        let folder = sweep.folder.folder();
+        sweep.refresh(manifest)?;
+        let table = of_sweep::table(sweep, manifest);
+        let folder = sweep.folder();
         folder.write_json("result.json", &table)?;
         folder.write("table.csv", run_table_csv(&table).as_bytes())?;
         folder.write("table.md", run_table_markdown(&table).as_bytes())?;
         write_report(folder)?;
-        let now = sweep.folder.manifest().map_err(SweepCommandError::Folder)?;
-        if now.is_none_or(|now| now.runs == sweep.manifest.runs) {
+        let now = sweep.manifest().map_err(SweepCommandError::Folder)?;
+        if now.is_none_or(|now| now.runs == manifest.runs) {
             return Ok(table);
         }
     }

@@ -1,6 +1,7 @@
 //! The arguments of `trainer trials`.
 
 use crate::options::{ExperimentArguments, Output, RunOptions};
+use crate::share::ShareOptions;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -15,6 +16,11 @@ Examples:
   trainer trials --score DIR       opens the seals and scores again, from the files alone
   trainer trials configs/trials.toml --check        exit code 1 where a bar is missed beyond chance
   trainer trials configs/trials-gate.toml           exit code 1 where a value of [gate] is missed
+  trainer trials configs/trials.toml --out DIR --shard 2/8
+                                   the second of eight shares; all may run at once on one folder, and the one that
+                                   gives the last answer opens the seals and scores
+  trainer trials configs/trials.toml --out DIR --launcher slurm --shards 50
+                                   a job array with one task for each share
   trainer report DIR               the report again
 
 DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
@@ -25,7 +31,7 @@ group's folder of cases and nothing else.
 
 Exit codes: 0 scored, whatever the scores; 1 where a score misses a value that the configuration's [gate]
 asks for, and with --check where the whole 95 % interval of some bar's measure lies on the wrong side; 2 wrong input or usage, a broken seal among it; 130 interrupted:
-everything so far is kept.")]
+everything so far is kept. With --as-task 0 instead of 1.")]
 pub(crate) struct TrialsArguments {
     /// The trials: a TOML file
     #[arg(required_unless_present = "score", conflicts_with = "score")]
@@ -36,11 +42,13 @@ pub(crate) struct TrialsArguments {
     #[command(flatten)]
     pub(crate) run: RunOptions,
     /// Opens the seals of these trials and scores their answers again
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed", "launcher"])]
     pub(crate) score: Option<PathBuf>,
     /// Exit code 1 where the whole 95 % interval of a bar's measure lies on the wrong side
     #[arg(long)]
     pub(crate) check: bool,
+    #[command(flatten)]
+    pub(crate) share: ShareOptions,
     #[command(flatten)]
     pub(crate) output: Output,
 }
@@ -54,6 +62,7 @@ impl From<&ExperimentArguments> for TrialsArguments {
             run: arguments.run.clone(),
             score: None,
             check: false,
+            share: ShareOptions::default(),
             output: arguments.output,
         }
     }

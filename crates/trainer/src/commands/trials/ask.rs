@@ -3,12 +3,13 @@
 use super::arguments::TrialsArguments;
 use super::files::{self, WITHOUT};
 use super::open;
+use crate::commands::diagnose::batch::FAILED;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
 use crate::terminal::console;
 use crate::terminal::progress::Progress;
 use estimator::Cancel;
-use results::{BatchResult, TrialsManifest};
+use results::{BatchResult, FailedCase, TrialsManifest, TrialsManifestLine};
 use runs::RunFolder;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Read;
@@ -22,7 +23,7 @@ const LOOK: Duration = Duration::from_millis(50);
 /// whole or not at all.
 const GRACE: Duration = Duration::from_millis(300);
 
-/// Has every case without an answer diagnosed; gives the messages of those that failed, `None` where interrupted.
+/// Has every case of the share without an answer diagnosed; gives the messages of those that failed, `None` where interrupted.
 pub(crate) fn ask(
     arguments: &TrialsArguments,
     folder: &RunFolder,
@@ -30,7 +31,9 @@ pub(crate) fn ask(
     cancel: &Cancel,
 ) -> Result<Option<BTreeMap<String, String>>, TrainerError> {
     let is_missing = |id: &str, group: &str| !folder.path().join(files::answer_name(group, id)).exists();
-    let missing = manifest.cases.iter().filter(|line| is_missing(&line.id, &line.group));
+    let own: Vec<&TrialsManifestLine> =
+        manifest.cases.iter().filter(|line| arguments.share.shard().takes_named(&line.id)).collect();
+    let missing = own.iter().filter(|line| is_missing(&line.id, &line.group));
     let mut groups: BTreeMap<&str, usize> = BTreeMap::new();
     for line in missing.clone() {
         *groups.entry(line.group.as_str()).or_default() += 1;
@@ -47,13 +50,13 @@ pub(crate) fn ask(
         return Err(TrialsError::Open { folder: truths.display().to_string(), missing: count }.into());
     }
     let silent = arguments.output.quiet || arguments.output.json;
-    let progress = Progress::over_cases(manifest.cases.len() as u64, silent);
-    let mut done = manifest.cases.len() - count;
+    let progress = Progress::over_cases(own.len() as u64, silent);
+    let mut done = own.len() - count;
     progress.so_many_done(done as u64);
     let mut failed = BTreeMap::new();
     for (group, wanted) in groups {
         let Some(result) = group_answers(arguments, folder.path(), group, cancel, &|answered| {
-            progress.so_many_done((done + answered) as u64);
+            progress.so_many_done((done + answered.min(wanted)) as u64);
         })?
         else {
             progress.finish();
@@ -68,6 +71,28 @@ pub(crate) fn ask(
     }
     progress.finish();
     Ok(Some(failed))
+}
+
+/// Why cases have no answer, by case: those of `failed` and those that other shares have found; and the number of cases
+/// that nobody has looked at yet.
+pub(crate) fn answered(
+    folder: &RunFolder,
+    manifest: &TrialsManifest,
+    mut failed: BTreeMap<String, String>,
+) -> (BTreeMap<String, String>, usize) {
+    let mut open = 0;
+    for line in &manifest.cases {
+        let answer = folder.path().join(files::answer_name(&line.group, &line.id));
+        if answer.exists() || failed.contains_key(&line.id) {
+            continue;
+        }
+        let bytes = std::fs::read(answer.with_file_name(FAILED)).unwrap_or_default();
+        match serde_json::from_slice::<FailedCase>(&bytes) {
+            Ok(case) => drop(failed.insert(line.id.clone(), case.message)),
+            Err(_) => open += 1,
+        }
+    }
+    (failed, open)
 }
 
 /// Diagnoses one group; `None` where interrupted.
@@ -85,6 +110,9 @@ fn group_answers(
     let mut command = Command::new(program);
     command.arg("diagnose").arg("--batch").arg(folder.join("cases").join(group));
     command.arg("--out").arg(&answers).arg("--json");
+    if let Some(shard) = arguments.share.shard {
+        command.args(["--shard", &shard.to_string()]);
+    }
     if let Some(threads) = arguments.run.threads {
         command.args(["--threads", &threads.to_string()]);
     }

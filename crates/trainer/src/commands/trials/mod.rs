@@ -15,6 +15,7 @@ use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
 use crate::options::ExperimentArguments;
 use crate::outcome::Outcome;
+use crate::share::{Launcher, Work, launch};
 use crate::terminal::interrupt;
 
 use arguments::TrialsArguments;
@@ -22,13 +23,18 @@ use estimator::Cancel;
 use experiment::sweep::first_difference;
 use open::Opened;
 use rayon::ThreadPool;
-use results::TrialsManifest;
-use runs::{Disk, RunFolder, to_csv};
+use record::counted;
+use results::{RESULT_SCHEMA, TrialsManifest, TrialsResult, TrialsShare};
+use runs::{Disk, RunError, RunFolder, to_csv};
 use serde_json::json;
 use settings::Document;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::time::Instant;
 use trials::{Gate, TrialPlan, Trials, case_rows, misses_a_bar, misses_the_gate, most_common};
+
+/// The file of the scores.
+const RESULT: &str = "result.json";
 
 /// Makes, diagnoses, opens and scores; or scores again what is there.
 pub(crate) fn command(arguments: &TrialsArguments) -> Result<Outcome, TrainerError> {
@@ -49,19 +55,118 @@ pub(crate) fn run(arguments: &TrialsArguments, cancel: &Cancel) -> Result<Outcom
     check_task(&document, "trials", "configs/trials-quick.toml")?;
     let plan = TrialPlan::resolve(&document)?;
     let folder = begin(arguments, &plan, &pool)?;
-    let Some(made) = make::make(arguments, &plan, &folder, &pool, cancel)? else {
-        return interrupted(&folder, "making the cases", &go_on(&folder));
+    if let Some(Launcher::Slurm) = arguments.share.launcher {
+        return launched(arguments, &plan, &folder);
+    }
+    // What another share has made is taken as it is.
+    let published =
+        arguments.share.shard.and_then(|_| make::read_manifest(&folder).transpose()).transpose()?;
+    let (manifest, made) = match published {
+        Some(manifest) => (manifest, None),
+        None => match make::make(arguments, &plan, &folder, &pool, cancel)? {
+            Some(made) => (made.manifest.clone(), Some(made)),
+            None => return interrupted(&folder, "making the cases", &go_on(&folder)),
+        },
     };
-    let Some(failed) = ask::ask(arguments, &folder, &made.manifest, cancel)? else {
+    // The diagnosis takes time, and other shares have cases to make and answers to give meanwhile.
+    let path = folder.path().to_owned();
+    drop(folder);
+    let Some(failed) = ask::ask(arguments, &RunFolder::open(&path), &manifest, cancel)? else {
+        let folder = RunFolder::open(&path);
         return interrupted(&folder, "the diagnosis", &go_on(&folder));
     };
+    let asked = Asked { path, manifest, made, failed };
+    conclude(arguments, &plan, &pool, asked, (cancel, start))
+}
+
+/// Trials whose share was diagnosed.
+struct Asked {
+    /// The folder, which nobody holds meanwhile.
+    path: PathBuf,
+    manifest: TrialsManifest,
+    /// `None` where another share has made the cases.
+    made: Option<make::Made>,
+    /// Why cases of this share have no answer.
+    failed: BTreeMap<String, String>,
+}
+
+/// Opens the seals and scores, once the last answer is in; says what is open before that.
+fn conclude(
+    arguments: &TrialsArguments,
+    plan: &TrialPlan,
+    pool: &ThreadPool,
+    asked: Asked,
+    (cancel, start): (&Cancel, Instant),
+) -> Result<Outcome, TrainerError> {
+    let folder = RunFolder::wait(&asked.path)?;
+    let (failed, open) = ask::answered(&folder, &asked.manifest, asked.failed);
+    if open > 0 {
+        return share_done(arguments, &folder, &asked.manifest, open);
+    }
+    if arguments.share.shard.is_some() && asked.path.join(RESULT).exists() {
+        // The share that gave the last answer was faster.
+        let file = asked.path.join(RESULT).display().to_string();
+        let result = serde_json::from_str(&files::text(&folder, RESULT)?);
+        let result = result.map_err(|error| TrialsError::Unreadable { file, problem: error.to_string() })?;
+        return shown(arguments, &folder, &result);
+    }
+    let made = match asked.made {
+        Some(made) => Some(made),
+        None => make::make(arguments, plan, &folder, pool, cancel)?,
+    };
+    let Some(made) = made else { return interrupted(&folder, "making the cases", &go_on(&folder)) };
     folder.write_json(files::FAILED, &failed)?;
     // The last answer is in: the truths may be seen.
     for (line, sealed) in made.manifest.cases.iter().zip(&made.sealed) {
         folder.write_reproducible(&files::truth_name(&line.id), sealed.text_to_store().as_bytes())?;
     }
     folder.record_event("opened", &json!({ "truths": made.sealed.len() }))?;
-    finish(arguments, &folder, &made.manifest, &pool, &failed, cancel, start)
+    finish(arguments, &folder, &made.manifest, pool, &failed, cancel, start)
+}
+
+/// Hands the shares to a batch system.
+fn launched(
+    arguments: &TrialsArguments,
+    plan: &TrialPlan,
+    folder: &RunFolder,
+) -> Result<Outcome, TrainerError> {
+    let path = folder.path().canonicalize().unwrap_or_else(|_| folder.path().to_owned());
+    let mut words = vec!["trials".to_owned()];
+    words.extend(arguments.config.as_ref().map(|config| config.display().to_string()));
+    words.extend(arguments.overrides.iter().cloned());
+    words.extend(arguments.run.seed.into_iter().flat_map(|seed| ["--seed".to_owned(), seed.to_string()]));
+    words.extend(arguments.check.then(|| "--check".to_owned()));
+    words.extend(["--out".to_owned(), path.display().to_string()]);
+    let threads = arguments.run.threads.unwrap_or(1);
+    let work = Work { name: &plan.name, folder, parts: plan.len(), part: "case", words, threads };
+    launch(&arguments.share, &work, arguments.output)
+}
+
+/// Says that a share is done while others still owe answers: the seals stay closed.
+fn share_done(
+    arguments: &TrialsArguments,
+    folder: &RunFolder,
+    manifest: &TrialsManifest,
+    open: usize,
+) -> Result<Outcome, TrainerError> {
+    let shard = arguments.share.shard().to_string();
+    folder.record_event("share", &json!({ "shard": shard, "open": open }))?;
+    let result = TrialsShare {
+        schema: RESULT_SCHEMA.to_owned(),
+        task: "trials-share".to_owned(),
+        shard,
+        cases: manifest.cases.len(),
+        open,
+    };
+    arguments.output.print(&result, || {
+        format!(
+            "share {} is done; {} of {} have no answer yet, and the share that gives the last one opens the seals",
+            result.shard,
+            open,
+            counted(result.cases, "case")
+        )
+    })?;
+    Ok(Outcome::Done)
 }
 
 /// The arguments as those of an experiment: configuration, overrides, folder, threads.
@@ -75,36 +180,49 @@ fn as_experiment(arguments: &TrialsArguments) -> ExperimentArguments {
     }
 }
 
-/// The folder: a new one, or that of trials begun with the same configuration.
+/// The folder: a new one, or that of trials begun with the same configuration. Locked, and for shares and those who go on
+/// waited for: it is, while cases are made and answers scored.
 fn begin(
     arguments: &TrialsArguments,
     plan: &TrialPlan,
     pool: &ThreadPool,
 ) -> Result<RunFolder, TrainerError> {
     let config = plan.resolved.to_toml();
-    if let Some(path) = arguments.run.out.as_ref().filter(|path| path.join("config.toml").exists()) {
-        let shown = path.display().to_string();
-        if !arguments.run.resume {
-            return Err(TrialsError::Begun { folder: shown }.into());
+    let joins = arguments.run.resume || arguments.share.shard.is_some();
+    let folder = match &arguments.run.out {
+        Some(path) if joins => {
+            let folder = RunFolder::wait(path)?;
+            if path.join("config.toml").exists() {
+                same(&folder, &config)?;
+                folder.record_event("resume", &json!({ "threads": pool.current_num_threads() }))?;
+                return Ok(folder);
+            }
+            if !folder.holds_only(&["environment.json"])? {
+                return Err(RunError::Occupied { path: path.clone() }.into());
+            }
+            folder
         }
-        let folder = RunFolder::resume_on(&Disk::default(), path)?;
-        let file = path.join("config.toml").display().to_string();
-        let begun = files::text(&folder, "config.toml")?;
-        let then = Document::parse(&file, &begun)?;
-        let now = Document::parse("configuration", &config)?;
-        // By value: where each was written stands in the comments, and may have changed.
-        if let Some(difference) = first_difference(&then, &now) {
-            return Err(TrialsError::Edited { file, difference }.into());
+        Some(path) if path.join("config.toml").exists() => {
+            return Err(TrialsError::Begun { folder: path.display().to_string() }.into());
         }
-        folder.record_event("resume", &json!({ "threads": pool.current_num_threads() }))?;
-        return Ok(folder);
-    }
-    let folder = as_experiment(arguments).new_folder(&plan.name)?;
-    folder.write("config.toml", config.as_bytes())?;
+        _ => as_experiment(arguments).new_folder(&plan.name)?,
+    };
     let digest = truth::digest(&config);
     folder.write_json("environment.json", &Environment::new(pool.current_num_threads(), &digest))?;
+    folder.write("config.toml", config.as_bytes())?;
     folder.record_event("start", &json!({ "name": plan.name, "seed": plan.seed, "cases": plan.len() }))?;
     Ok(folder)
+}
+
+/// That trials were begun with these values: where each was written stands in the comments, and may have changed.
+fn same(folder: &RunFolder, config: &str) -> Result<(), TrainerError> {
+    let file = folder.path().join("config.toml").display().to_string();
+    let then = Document::parse(&file, &files::text(folder, "config.toml")?)?;
+    let now = Document::parse("configuration", config)?;
+    match first_difference(&then, &now) {
+        Some(difference) => Err(TrialsError::Edited { file, difference }.into()),
+        None => Ok(()),
+    }
 }
 
 /// How interrupted trials go on.
@@ -145,13 +263,19 @@ fn finish(
     };
     let result = trials::score(&trials, &cases, &baselines);
     folder.write("cases.csv", &to_csv("cases.csv", &case_rows(&cases))?)?;
-    folder.write_json("result.json", &result)?;
+    folder.write_json(RESULT, &result)?;
     write_report(folder)?;
     folder.record_event("end", &json!({ "cases": result.cases, "unanswered": result.unanswered }))?;
-    arguments.output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(if misses_the_gate(&result) || arguments.check && misses_a_bar(&result) {
-        Outcome::CheckFailed
-    } else {
-        Outcome::Done
-    })
+    shown(arguments, folder, &result)
+}
+
+/// Prints the scores; a gate or a bar that they miss is how the command ends.
+fn shown(
+    arguments: &TrialsArguments,
+    folder: &RunFolder,
+    result: &TrialsResult,
+) -> Result<Outcome, TrainerError> {
+    arguments.output.print(result, || summary::summary(result, folder.path()))?;
+    let misses = misses_the_gate(result) || arguments.check && misses_a_bar(result);
+    Ok(arguments.share.outcome(if misses { Outcome::CheckFailed } else { Outcome::Done }))
 }

@@ -1,19 +1,29 @@
 //! `trainer report`.
 
+mod fleet;
+mod outliers;
+
+use crate::commands::sweep::finish;
 use crate::error::TrainerError;
 use crate::folders::page::write_report;
 use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::terminal::console;
-use runs::RunFolder;
+use runs::{RunFolder, SweepFolder};
 use serde_json::json;
 use std::path::Path;
 
 /// Makes a run's report again and puts it in place of the old one: it is derived from the other files,
-/// so nothing is lost.
+/// so nothing is lost. That of a sweep with its table, of what is there: its tasks may have been killed before they made
+/// one; that of a fleet from the answers of a batch.
 pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerError> {
     let folder = RunFolder::open(run);
-    write_report(&folder)?;
+    let sweep = SweepFolder::open(run);
+    match sweep.manifest()? {
+        Some(mut manifest) => drop(finish(&sweep, &mut manifest)?),
+        None if fleet::is_one(run) => fleet::write(&folder)?,
+        None => write_report(&folder)?,
+    }
     let report = run.join("report.html").display().to_string();
     if output.json {
         console::result(&json!({ "report": report }).to_string());
