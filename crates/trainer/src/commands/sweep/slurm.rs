@@ -5,6 +5,7 @@ use super::frozen::FrozenSweep;
 use crate::error::SweepCommandError;
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
+use crate::own_program::own_program;
 use crate::terminal::console;
 use runs::RunError;
 use serde_json::json;
@@ -21,7 +22,7 @@ pub(super) fn launch(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<
     let shares = usize::from(arguments.shards).min(sweep.manifest.runs.len());
     let job = Job {
         name: &sweep.manifest.name,
-        program: std::env::current_exe().map_err(system("the program's own path"))?,
+        program: own_program().map_err(system("the program's own path"))?,
         here: std::env::current_dir().map_err(system("the current folder"))?,
         folder: absolute(folder.path())?,
         shares,
