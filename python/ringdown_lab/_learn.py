@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from . import _native
 from ._nominal import Nominal
 from ._record import Record, as_records
-from ._worker import Worker
+from ._worker import Worker, WorkerError
 
 _Array = NDArray[np.float64]
 _HEADER = ("method", "kind", "free run", "× noise", "horizon s", "one step", "numbers", "")
@@ -167,7 +167,11 @@ def learn(
     finally:
         for _, remote in own:
             remote.close()
-    return Learned(json.loads(told))
+    content = json.loads(told)
+    failures = {name: remote.failure for name, remote in own}
+    for row in content["results"]:
+        row["failure"] = row["failure"] or failures.get(row["id"])
+    return Learned(content)
 
 
 def _name(learner: object, beside: list[Any]) -> str:
@@ -183,6 +187,7 @@ class _Remote:
     def __init__(self, learner: object) -> None:
         self._worker = Worker(learner)
         self.parameters = 0
+        self.failure: str | None = None
 
     def fit(self, train: list[Any], validation: list[Any], about: Any) -> _Remote:
         parts = ([Stretch(*one) for one in part] for part in (train, validation))
@@ -190,13 +195,22 @@ class _Remote:
         return self
 
     def predict(self, past: Any, ahead: Any) -> tuple[list[float], list[float] | None]:
-        told = self._worker.call("predict", Stretch(*past), Ahead(*ahead))
-        values, std = told if isinstance(told, tuple) else (told, None)
-        return _numbers(values), None if std is None else _numbers(std)
+        try:
+            told = self._worker.call("predict", Stretch(*past), Ahead(*ahead))
+            values, std = told if isinstance(told, tuple) else (told, None)
+            expected = len(ahead[0])
+            return _numbers("values", values, expected), None if std is None else _numbers("deviations", std, expected)
+        except (WorkerError, TypeError, ValueError) as error:
+            # A prediction that failed counts as one that ran away; the row says why.
+            self.failure = self.failure or f"a prediction failed: {error}"
+            raise
 
     def close(self) -> None:
         self._worker.close()
 
 
-def _numbers(values: Any) -> list[float]:
-    return [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
+def _numbers(what: str, values: Any, expected: int) -> list[float]:
+    numbers = [float(value) for value in np.asarray(values, dtype=np.float64).ravel()]
+    if len(numbers) != expected:
+        raise WorkerError(f"predict gave {len(numbers)} {what} for {expected} times; expected one for each")
+    return numbers

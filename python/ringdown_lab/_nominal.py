@@ -35,7 +35,7 @@ class Nominal:
         inertia: float | None = None,
         damping: float | None = None,
         stiffness: float | None = None,
-        rest_angle: float | None = None,
+        rest_angle: float = 0.0,
         coordinate: str | None = None,
         input_gain: float | None = None,
         sensor_resolution: float | None = None,

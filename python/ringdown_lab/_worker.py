@@ -1,18 +1,16 @@
 """Learners and estimators written in Python, each in a process of its own.
 
-A worker is ``python -m ringdown_lab._worker``: it gets an object, fits it and predicts with it, message by message. What the object
+A worker is ``python -m ringdown_lab._serve``: it gets an object, fits it and predicts with it, message by message. What the object
 prints goes to standard error. Its crash is an exception here and nothing else.
 """
 
 from __future__ import annotations
 
 import importlib.util
-import os
 import pickle
 import subprocess
 import sys
 import threading
-import traceback
 from typing import IO, Any
 
 _LENGTH = 8
@@ -22,12 +20,14 @@ class WorkerError(RuntimeError):
     """What went wrong in a worker, in the words of its exception."""
 
 
-def _send(stream: IO[bytes], message: bytes) -> None:
+def send(stream: IO[bytes], message: bytes) -> None:
+    """Writes a message after its length."""
     stream.write(len(message).to_bytes(_LENGTH, "little") + message)
     stream.flush()
 
 
-def _receive(stream: IO[bytes]) -> Any:
+def receive(stream: IO[bytes]) -> Any:
+    """Reads a message. Raises EOFError where the stream ends."""
     head = stream.read(_LENGTH)
     if len(head) < _LENGTH:
         raise EOFError
@@ -53,7 +53,7 @@ class Worker:
 
     def __init__(self, own: object) -> None:
         dumped = _dumped(own)
-        line = [sys.executable, "-m", "ringdown_lab._worker"]
+        line = [sys.executable, "-m", "ringdown_lab._serve"]
         # Ctrl-C is for the parent, which ends its workers itself.
         self._process = subprocess.Popen(line, stdin=subprocess.PIPE, stdout=subprocess.PIPE, start_new_session=True)
         self._lock = threading.Lock()
@@ -65,14 +65,21 @@ class Worker:
             writing, reading = self._process.stdin, self._process.stdout
             assert writing is not None and reading is not None
             try:
-                _send(writing, pickle.dumps((what, arguments)))
-                done, told = _receive(reading)
+                send(writing, pickle.dumps((what, arguments)))
+                done, told = receive(reading)
             except (EOFError, OSError, ValueError):
-                code = self._process.poll()
-                raise WorkerError(f"its process ended (exit code {code}) during {what}") from None
+                raise WorkerError(f"its process ended (exit code {self._ended()}) during {what}") from None
         if not done:
             raise WorkerError(told)
         return told
+
+    def _ended(self) -> int:
+        try:
+            return self._process.wait(timeout=1.0)
+        except subprocess.TimeoutExpired:
+            # It has closed its end and goes on.
+            self._process.kill()
+            return self._process.wait()
 
     def close(self) -> None:
         """Ends the process, whatever it does."""
@@ -84,45 +91,3 @@ class Worker:
                     stream.close()
                 except OSError:
                     pass
-
-
-def count_parameters(model: Any) -> int:
-    """Trained numbers of a model: what it states as ``parameters``, or those of a torch module."""
-    stated = getattr(model, "parameters", 0)
-    if callable(stated):
-        return sum(int(tensor.numel()) for tensor in stated())
-    return int(stated)
-
-
-def _serve(reading: IO[bytes], writing: IO[bytes]) -> None:
-    own: Any = None
-    while True:
-        try:
-            what, arguments = _receive(reading)
-        except EOFError:
-            return
-        try:
-            told: Any = None
-            if what == "begin":
-                sys.path[:] = arguments[0]
-                own = pickle.loads(arguments[1])
-            elif what == "fit":
-                fitted = own.fit(*arguments)
-                own = own if fitted is None else fitted
-                told = count_parameters(own)
-            elif what == "estimate":
-                told = own.fit(*arguments)
-            else:
-                told = own.predict(*arguments)
-            message = pickle.dumps((True, told))
-        except Exception as error:
-            traceback.print_exc()
-            message = pickle.dumps((False, f"{type(error).__name__}: {error}"))
-        _send(writing, message)
-
-
-if __name__ == "__main__":
-    # Messages keep the real standard output; everything printed goes to standard error.
-    answers = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)
-    _serve(sys.stdin.buffer, answers)

