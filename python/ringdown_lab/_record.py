@@ -49,6 +49,7 @@ class Record:
         name: str = "arrays",
         origin: str = "unstated",
     ) -> None:
+        self._kept: dict[str, NDArray[np.float64] | None] | None = None
         self._native = NativeRecord(
             _column(name, "time", time),
             _column(name, "values", values),
@@ -65,7 +66,19 @@ class Record:
     def _of(cls, native: NativeRecord) -> Record:
         made = cls.__new__(cls)
         made._native = native
+        made._kept = {}
         return made
+
+    def _column(self, name: str) -> NDArray[np.float64] | None:
+        """The caller's own array, or one made once of what was read, which nobody may write to."""
+        if self._kept is None:
+            return getattr(self._native, name)  # type: ignore[no-any-return]
+        if name not in self._kept:
+            column = getattr(self._native, name)
+            if column is not None:
+                column.flags.writeable = False
+            self._kept[name] = column
+        return self._kept[name]
 
     @classmethod
     def read(cls, path: str | PathLike[str], *, nominal: Nominal | None = None, **reading: Any) -> Record:
@@ -99,17 +112,21 @@ class Record:
     @property
     def time(self) -> NDArray[np.float64]:
         """Stamps as given, in seconds; the caller's own array where the record was made from one."""
-        return self._native.time
+        column = self._column("time")
+        assert column is not None
+        return column
 
     @property
     def values(self) -> NDArray[np.float64]:
         """Observed values, in ``unit``; the caller's own array where the record was made from one."""
-        return self._native.values
+        column = self._column("values")
+        assert column is not None
+        return column
 
     @property
     def input(self) -> NDArray[np.float64] | None:
         """The input, where there is one."""
-        return self._native.input
+        return self._column("input")
 
     @property
     def unit(self) -> str:
