@@ -1,4 +1,4 @@
-"""What a notebook shows of a diagnosis: verdict, classes as bars, errors, observed beside simulated."""
+"""What a notebook shows of a diagnosis: verdict, classes as bars, errors, observed beside simulated motion."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 _WIDTH, _HEIGHT, _POINTS = 640, 180, 900
-_LINES = (("observed", "#888"), ("nominal", "#c44"), ("repaired", "#27c"))
 
 
 def diagnosis_html(content: dict[str, Any], series: dict[str, NDArray[np.float64]]) -> str:
@@ -17,8 +16,14 @@ def diagnosis_html(content: dict[str, Any], series: dict[str, NDArray[np.float64
     return (
         '<div style="font-family:sans-serif;max-width:44em">'
         f"<p><strong>{escape(content['verdict']['summary'])}</strong></p>"
-        f"{_bars(content['classes'])}{_errors(content['gap'])}{_plot(series, content['gap']['unit'])}</div>"
+        f"<p>{escape(_origin(content['records']))}</p>"
+        f"{_bars(content['classes'])}{_errors(content['gap'])}{_plots(series, content['gap']['unit'])}</div>"
     )
+
+
+def _origin(records: list[dict[str, Any]]) -> str:
+    """Origin of the records, which a reader is always told."""
+    return "; ".join(f"{row['path']}: {row['origin'].upper()}, {row['samples']} samples" for row in records)
 
 
 def _bars(classes: list[dict[str, Any]]) -> str:
@@ -45,38 +50,37 @@ def _errors(gap: dict[str, Any]) -> str:
     return f"<p>held-out error in {escape(gap['unit'])}: {' · '.join(told)}</p>"
 
 
-def _plot(series: dict[str, NDArray[np.float64]], unit: str) -> str:
+def _plots(series: dict[str, NDArray[np.float64]], unit: str) -> str:
     own = series["record"] == 1.0
     time = series["time_s"][own]
     if time.size < 2:
         return ""
-    # A point for each pixel and extreme: the largest and the smallest value of every bin.
+    observed, nominal, repaired = (series[name][own] for name in ("observed", "nominal", "repaired"))
+    seconds = f"first record, {escape(unit)} over {time[-1] - time[0]:.3g} s"
+    motion = _panel(time, [("observed", "#888", observed), ("repaired", "#27c", repaired)], 0.6 * _HEIGHT)
+    errors = [("error as given", "#c44", observed - nominal), ("error repaired", "#27c", observed - repaired)]
+    return f"{motion}{_panel(time, errors, _HEIGHT)}<p>{seconds}</p>"
+
+
+def _panel(time: NDArray[np.float64], curves: list[tuple[str, str, NDArray[np.float64]]], height: float) -> str:
+    """Curves over time as a picture with their names and the range that it spans."""
+    finite = [curve for curve in curves if np.isfinite(curve[2]).all()]
+    if not finite:
+        return ""
+    low, high = min(values.min() for *_, values in finite), max(values.max() for *_, values in finite)
+    span = (high - low) or 1.0
     bins = np.array_split(np.arange(time.size), min(_POINTS // 2, time.size))
-    low, high = np.inf, -np.inf
-    lines: list[tuple[str, str, NDArray[np.int64]]] = []
-    for name, color in _LINES:
-        values = series[name][own]
-        if not np.isfinite(values).all():
-            continue
+    drawn = ""
+    for _, color, values in finite:
+        # The largest and the smallest value of every bin: no spike is lost.
         extremes = (sorted((part[values[part].argmin()], part[values[part].argmax()])) for part in bins)
         chosen = np.array([at for pair in extremes for at in pair])
-        lines.append((name, color, chosen))
-        if name != "nominal":
-            low, high = min(low, values.min()), max(high, values.max())
-    margin = 0.1 * (high - low) or 1.0
-    low, high = low - margin, high + margin
-
-    def points(name: str, chosen: NDArray[np.int64]) -> str:
         x = (time[chosen] - time[0]) / (time[-1] - time[0]) * _WIDTH
-        # A simulator that runs away is cut at the frame.
-        y = (high - np.clip(series[name][own][chosen], low, high)) / (high - low) * _HEIGHT
-        return " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
-
-    drawn = "".join(
-        f'<polyline points="{points(name, chosen)}" fill="none" stroke="{color}"/>' for name, color, chosen in lines
-    )
-    legend = " · ".join(f'<span style="color:{color}">{name}</span>' for name, color, _ in lines)
+        y = (high - values[chosen]) / span * (height - 2) + 1
+        points = " ".join(f"{a:.1f},{b:.1f}" for a, b in zip(x, y, strict=True))
+        drawn += f'<polyline points="{points}" fill="none" stroke="{color}"/>'
+    names = " · ".join(f'<span style="color:{color}">{name}</span>' for name, color, _ in finite)
     return (
-        f'<svg viewBox="0 0 {_WIDTH} {_HEIGHT}" width="{_WIDTH}" role="img" aria-label="observed and simulated">{drawn}</svg>'
-        f"<p>{legend}, first record, {escape(unit)} over {time[-1] - time[0]:.3g} s</p>"
+        f"<p>{names}, {low:.3g} to {high:.3g}</p>"
+        f'<svg viewBox="0 0 {_WIDTH} {height:.0f}" width="{_WIDTH}" role="img" aria-label="over time">{drawn}</svg>'
     )

@@ -22,7 +22,7 @@ def test_an_arm_with_dry_friction_is_told(answer: rd.Diagnosis) -> None:
 
 def test_a_notebook_shows_verdict_bars_and_a_plot(answer: rd.Diagnosis) -> None:
     html = answer._repr_html_()
-    for words in (">friction<", "<svg", "held-out error", "polyline"):
+    for words in (">friction<", "<svg", "held-out error", "polyline", "SIMULATED"):
         assert words in html
     # Nothing is loaded.
     assert "http" not in html

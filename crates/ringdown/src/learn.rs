@@ -15,7 +15,7 @@ use settings::Document;
 use std::path::Path;
 use std::time::Instant;
 use workflow::learning::{
-    Method, Ready, attempt, check_record, described, method_of, methods, row, sort, trajectory,
+    Method, Ready, check_record, described, method_of, methods, row, sort, trajectory, tried,
 };
 
 /// Options of learning, with the defaults of the command line.
@@ -95,17 +95,17 @@ pub fn learn(
     let study = study(options)?;
     let problem = study.problems.first().ok_or_else(|| Error::Config("there is no data set".to_owned()))?;
     let ready = data_set(records, nominal, problem)?;
-    let mut tried = methods(&study.settings, &study.resolved)?;
-    tried.retain(|method| method.kind != LearnKind::Reference);
-    tried.extend(own.iter().map(|own| method_of(own.id, own.id, own.learner)));
+    let mut asked = methods(&study.settings, &study.resolved)?;
+    asked.retain(|method| method.kind != LearnKind::Reference);
+    asked.extend(own.iter().map(|own| method_of(own.id, own.id, own.learner)));
     let root = Seed::new(study.seed).child("learn").child(&problem.id);
     let each = |method: &Method<'_>| {
         let seed = root.child(method.id);
         let steps = |step: &Step| observe(method.id, step);
-        let found = attempt(&ready, method, seed, study.settings.max_steps, cancel, &steps);
+        let found = tried(&ready, method, seed, study.settings.max_steps, cancel, &steps);
         row(&problem.id, &ready, method, &found, None, None)
     };
-    let mut rows: Vec<_> = tried.par_iter().map(each).collect();
+    let mut rows: Vec<_> = asked.par_iter().map(each).collect();
     sort(&mut rows);
     let told = described(&problem.id, &problem.title, &origin(records), Ok(&ready));
     Ok(LearnResult {

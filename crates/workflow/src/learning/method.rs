@@ -1,18 +1,15 @@
 //! Methods of a learning study: the registries' learners and baselines, each tried on a data set and judged.
 
 use super::Ready;
-use estimator::{Cancel, Reached};
+use estimator::Reached;
 use experiment::LearnSettings;
 use learn::baselines::{BASELINES, exact};
 use learn::data::DataSet;
 use learn::judge::{Run, Score, Truth, runs, score};
 use learn::learners::LEARNERS;
-use learn::{Context, Fitted, LearnError, Learner, Model, Step};
+use learn::{Context, Fitted, LearnError, Learner, Model};
 use results::{LearnEnd, LearnKind};
-use seed::Seed;
 use settings::{Resolved, SettingsError};
-use std::sync::Mutex;
-use std::time::Instant;
 
 type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
 
@@ -25,16 +22,6 @@ pub struct Method<'a> {
     /// Learner, baseline or reference.
     pub kind: LearnKind,
     make: Make<'a>,
-}
-
-/// Result of a method on a data set.
-pub struct Tried {
-    /// The model with its scores, or the reason why there is none.
-    pub fitted: Result<Judged, LearnError>,
-    /// Time that the fit took, in seconds.
-    pub seconds: f64,
-    /// Steps of the training.
-    pub steps: Vec<Step>,
 }
 
 /// A model with its scores.
@@ -84,35 +71,21 @@ pub fn method_of<'a>(id: &'a str, title: &'a str, learner: &'a dyn Learner) -> M
     Method { id, title, kind: LearnKind::Learner, make }
 }
 
-/// Makes a method's model of a data set and scores it on the test part; `observe` is called after every step.
-#[must_use]
-pub fn attempt(
-    ready: &Ready,
-    method: &Method<'_>,
-    seed: Seed,
-    max_steps: Option<u64>,
-    cancel: &Cancel,
-    observe: &(dyn Fn(&Step) + Sync),
-) -> Tried {
-    let steps = Mutex::new(Vec::new());
-    let observe = |step: &Step| {
-        observe(step);
-        if let Ok(mut steps) = steps.lock() {
-            steps.push(step.clone());
-        }
-    };
-    let context = Context { seed, max_steps, cancel, observe: &observe };
-    let start = Instant::now();
-    let fitted = context.check().and_then(|()| (method.make)(ready, &context));
-    let seconds = start.elapsed().as_secs_f64();
-    let fitted = fitted.map(|fitted| judged(fitted, &ready.data));
-    Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
+/// Makes a method's model of a data set and scores it on the test part.
+///
+/// # Errors
+/// [`LearnError`] where the method gives no model.
+pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Result<Judged, LearnError> {
+    let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
+    Ok(judged(fitted.model, end_of(fitted.reached), &ready.data))
 }
 
-fn judged(fitted: Fitted, data: &DataSet) -> Judged {
-    let runs = runs(fitted.model.as_ref(), data);
-    let score = score(fitted.model.as_ref(), &runs, data);
-    Judged { reached: end_of(fitted.reached), score, runs, model: fitted.model }
+/// A model with its scores on the test part.
+#[must_use]
+pub fn judged(model: Box<dyn Model>, reached: LearnEnd, data: &DataSet) -> Judged {
+    let runs = runs(model.as_ref(), data);
+    let score = score(model.as_ref(), &runs, data);
+    Judged { model, reached, score, runs }
 }
 
 fn end_of(reached: Reached) -> LearnEnd {

@@ -3,10 +3,12 @@
 mod data;
 mod method;
 mod rows;
+mod tried;
 
 pub use data::{check_record, trajectory};
-pub use method::{Judged, Method, Tried, attempt, method_of, methods, truth_of};
+pub use method::{Judged, Method, attempt, judged, method_of, methods, truth_of};
 pub use rows::{described, row, sort};
+pub use tried::{Tried, tried};
 
 use dynamics::System;
 use learn::data::DataSet;

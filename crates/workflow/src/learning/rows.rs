@@ -1,7 +1,7 @@
 //! Rows of a learning study's result.
 
-use super::Ready;
-use super::method::{Method, Tried};
+use super::method::Method;
+use super::{Ready, Tried};
 use learn::LearnError;
 use learn::data::Trajectory;
 use learn::judge::{Score, Truth};

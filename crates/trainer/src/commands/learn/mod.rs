@@ -22,7 +22,7 @@ use results::LearnKind;
 use seed::Seed;
 use serde_json::json;
 use std::time::Instant;
-use workflow::learning::{Method, Ready, attempt, methods};
+use workflow::learning::{Method, Ready, methods};
 
 /// Prepares every data set, fits every method on each, keeps going where one fails, and puts the table together.
 pub(crate) fn learn(
@@ -85,7 +85,8 @@ fn try_all<'a>(
         jobs.into_par_iter()
             .map(|(problem, ready, method)| {
                 let seed = Seed::new(study.seed).child("learn").child(&problem.id).child(method.id);
-                let tried = attempt(ready, method, seed, study.settings.max_steps, cancel, &|_| ());
+                let tried =
+                    workflow::learning::tried(ready, method, seed, study.settings.max_steps, cancel, &|_| ());
                 progress.one_of_many_done();
                 Row { problem, ready, method, tried }
             })
