@@ -9,7 +9,7 @@ use learn::data::{DataSet, Making, Trajectory};
 use learn::learners::LEARNERS;
 use learn::{Learner, Step};
 use rayon::prelude::*;
-use results::{LearnData, LearnKind, LearnResult, RESULT_SCHEMA};
+use results::{LearnKind, LearnResult, RESULT_SCHEMA};
 use seed::Seed;
 use settings::Document;
 use std::path::Path;
@@ -112,7 +112,7 @@ pub fn learn(
         schema: RESULT_SCHEMA.to_owned(),
         task: "learn".to_owned(),
         seed: study.seed,
-        data: LearnData { ..told.data },
+        data: told.data,
         problems: vec![told],
         results: rows,
         seconds: start.elapsed().as_secs_f64(),
