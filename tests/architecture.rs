@@ -21,6 +21,7 @@ fn layer(name: &str) -> Option<u8> {
         "report" | "trials" | "tracking" => 6,
         "studies" | "workflow" => 7,
         "ringdown-lab" | "trainer" => 8,
+        "ringdown-python" => 9,
         _ => return None,
     })
 }
@@ -130,8 +131,17 @@ fn only_who_makes_or_scores_records_reaches_the_truth() {
     }
     assert!(reaching.contains("simulator"), "{reaching:?}");
     for package in &reaching {
-        let may = ["truth", "simulator", "scoring", "trials", "studies", "ringdown-lab", "trainer"]
-            .contains(&package.as_str());
+        let may = [
+            "truth",
+            "simulator",
+            "scoring",
+            "trials",
+            "studies",
+            "ringdown-lab",
+            "trainer",
+            "ringdown-python",
+        ]
+        .contains(&package.as_str());
         assert!(may, "{package} reaches the truth");
     }
 }

@@ -36,8 +36,8 @@ fn workspace() -> TempDir {
     // which cargo runs last, would look for these.
     edit(&home.join("Cargo.toml"), "version = \"0.1.0\"", "version = \"0.1.0-recipe\"");
     // The trainer's tests lie outside the copied folder; examples and gallery outside of the crate that
-    // declares them.
-    for folder in ["examples", "book/gallery"] {
+    // declares them; the crate for Python outside of the crates.
+    for folder in ["examples", "book/gallery", "python"] {
         copy(&root().join(folder), &home.join(folder));
     }
     copy(&root().join("crates"), &home.join("crates"));

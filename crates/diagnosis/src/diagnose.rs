@@ -32,14 +32,29 @@ pub fn diagnose(
     settings: &Settings,
     seconds: &dyn Fn() -> f64,
 ) -> Result<Diagnosis, DiagnosisError> {
+    diagnose_watched(records, simulator, settings, seconds, &|_| true)
+}
+
+/// Diagnoses as [`diagnose`] does. `goes_on` is called after each stage but the last with the stage's name, and ends the diagnosis
+/// where it gives false.
+///
+/// # Errors
+/// As [`diagnose`], and [`DiagnosisError::Interrupted`].
+pub fn diagnose_watched(
+    records: &[Observations],
+    simulator: impl Into<NominalSimulator>,
+    settings: &Settings,
+    seconds: &dyn Fn() -> f64,
+    goes_on: &dyn Fn(&'static str) -> bool,
+) -> Result<Diagnosis, DiagnosisError> {
     let simulator = &simulator.into();
-    let mut watch = Stopwatch::new(seconds);
+    let mut watch = Stopwatch::new(seconds, goes_on);
     let mut clocks = ClockRates::as_stamped(records);
     let mut search = |clocks: &ClockRates| -> Result<_, DiagnosisError> {
         let request = Request { records: &clocks.records, simulator, settings };
-        let measured = watch.after("measurement chain", Measured::of(&request)?);
-        let question = watch.after("calibration", Question::of(&request, &measured)?);
-        let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole));
+        let measured = watch.after("measurement chain", Measured::of(&request)?)?;
+        let question = watch.after("calibration", Question::of(&request, &measured)?)?;
+        let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole))?;
         Ok((measured, question, searched))
     };
     let (mut measured, mut question, mut searched) = search(&clocks)?;
@@ -58,15 +73,14 @@ pub fn diagnose(
     }
     measured.findings.extend(clocks.finding());
     let request = Request { records: &clocks.records, simulator, settings };
-    let refined = watch.after("fits", Refined::of(question, searched)?);
+    let refined = watch.after("fits", Refined::of(question, searched)?)?;
     let work = refined.context(&request);
     let completed = OnceCell::new();
     let judged = Judged::of(&request, &measured, &refined, &work, &completed)?;
-    let judged = watch.after("held-out parts", judged);
+    let judged = watch.after("held-out parts", judged)?;
     let unit = records.first().map_or("", |record| record.unit);
-    let remaining = watch.after("left-over", Remaining::of(&work, &refined, &judged, unit)?);
-    let answer = answer(request, &measured, &refined, &work, &judged, &remaining)?;
-    let mut answer = watch.after("explanation", answer);
-    answer.stages = watch.stages();
+    let remaining = watch.after("left-over", Remaining::of(&work, &refined, &judged, unit)?)?;
+    let mut answer = answer(request, &measured, &refined, &work, &judged, &remaining)?;
+    answer.stages = watch.last("explanation");
     Ok(answer)
 }

@@ -97,6 +97,12 @@ pub enum DiagnosisError {
         /// Which record, from 1.
         record: usize,
     },
+    /// The caller asked to stop.
+    #[error("interrupted after the stage `{stage}`; nothing was answered")]
+    Interrupted {
+        /// The last stage that was done.
+        stage: &'static str,
+    },
     /// The nominal simulator cannot be fitted to the record at all.
     #[error("the nominal simulator cannot be fitted to the record: {reason}")]
     NotFitted {

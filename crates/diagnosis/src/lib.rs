@@ -44,7 +44,7 @@ pub use answer::{
     RepairedSimulator, Rivalry, Series, SetScore, Stage, Status, Undetermined, Verdict, Where,
 };
 pub use data::observations::Observations;
-pub use diagnose::diagnose;
+pub use diagnose::{diagnose, diagnose_watched};
 pub use error::DiagnosisError;
 pub use evidence::conclusion::DISTINCT_DISTANCE;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};

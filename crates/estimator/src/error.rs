@@ -49,6 +49,12 @@ pub enum FitError {
         /// What went wrong.
         problem: String,
     },
+    /// An estimator that works outside of this program failed.
+    #[error("{problem}")]
+    Outside {
+        /// What it says.
+        problem: String,
+    },
     /// The tensor library refused.
     #[error("the tensor library: {problem}")]
     Backend {

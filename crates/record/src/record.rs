@@ -48,10 +48,19 @@ impl Record {
         quantity: Quantity,
         unit: &'static str,
     ) -> Result<Self, Fault> {
+        Self::check(&stamps_s, &values, input.as_deref())?;
+        Ok(Self { stamps_s, values, input, quantity, unit })
+    }
+
+    /// Checks columns as [`Record::new`] does, without taking them.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn check(stamps_s: &[f64], values: &[f64], input: Option<&[f64]>) -> Result<(), Fault> {
         if stamps_s.len() < FEWEST_SAMPLES {
             return Err(Fault::TooFewSamples { found: stamps_s.len(), needed: FEWEST_SAMPLES });
         }
-        for (what, column) in [("values", Some(&values)), ("input", input.as_ref())]
+        for (what, column) in [("values", Some(values)), ("input", input)]
             .into_iter()
             .filter_map(|(what, column)| column.map(|column| (what, column)))
         {
@@ -75,7 +84,7 @@ impl Record {
                 return Err(Fault::TimeDecreases { line: at as u64 + 2, previous, stamp });
             }
         }
-        Ok(Self { stamps_s, values, input, quantity, unit })
+        Ok(())
     }
 
     /// Number of samples.

@@ -89,11 +89,25 @@ pub fn diagnose(
     nominal: &Nominal,
     options: &DiagnosisOptions,
 ) -> Result<Diagnosis, Error> {
+    diagnose_watched(records, nominal, options, &|_| true)
+}
+
+/// Diagnoses as [`diagnose`] does; `goes_on` is called after each stage but the last with the stage's name, such as `search`, and
+/// ends the diagnosis where it gives false.
+///
+/// # Errors
+/// As [`diagnose`], and [`Error::Diagnosis`] where it was ended.
+pub fn diagnose_watched(
+    records: &[Record],
+    nominal: &Nominal,
+    options: &DiagnosisOptions,
+    goes_on: &dyn Fn(&'static str) -> bool,
+) -> Result<Diagnosis, Error> {
     let settings = options.settings()?;
     let given = records.iter().map(|record| record.loaded.given(&nominal.stated));
     let given = given.collect::<Result<Vec<_>, _>>()?;
     let question = Question::new(given, nominal.stated.clone(), nominal.name.clone())?;
-    let Answer { found, repaired, result } = question.answer(&settings, options.seed)?;
+    let Answer { found, repaired, result } = question.answer_watched(&settings, options.seed, goes_on)?;
     Ok(Diagnosis { result, repaired, series: series_rows(&found.series) })
 }
 

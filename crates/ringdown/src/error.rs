@@ -2,6 +2,7 @@
 
 use envelope::EnvelopeError;
 use estimator::FitError;
+use learn::LearnError;
 use oracle::OracleError;
 use report::ReportError;
 use runs::RunError;
@@ -71,6 +72,9 @@ pub enum Error {
     /// A system that cannot be simulated.
     #[error(transparent)]
     Simulation(#[from] GenerationError),
+    /// Records that nothing can be learned from.
+    #[error(transparent)]
+    Learn(#[from] LearnError),
     /// A page that cannot be made.
     #[error(transparent)]
     Report(#[from] ReportError),

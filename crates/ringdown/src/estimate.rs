@@ -97,11 +97,25 @@ pub struct Estimate {
 /// # Ok::<(), ringdown_lab::Error>(())
 /// ```
 pub fn estimate(record: &Record, method: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
+    estimate_until(record, method, options, &Cancel::new())
+}
+
+/// Estimates as [`estimate`] does; a request to stop ends the fit after its current step with the best so far, and
+/// [`Estimate::reached`] says `interrupted`.
+///
+/// # Errors
+/// As [`estimate`].
+pub fn estimate_until(
+    record: &Record,
+    method: &str,
+    options: &EstimateOptions,
+    cancel: &Cancel,
+) -> Result<Estimate, Error> {
     let experiment = experiment(method, options)?;
     let prepared = Prepared::new(record, &experiment)?;
     match &experiment.task {
         Task::Estimate(Single::Learned { entry, estimator }) => {
-            prepared.learned(entry.id, estimator.as_ref(), options)
+            prepared.learned(entry.id, estimator.as_ref(), options, cancel)
         }
         Task::Estimate(Single::Classical(id)) => prepared.classical(id, options),
         Task::Compare(_) => Err(Error::Config("expected one method".to_owned())),
@@ -119,7 +133,7 @@ pub fn estimate_with(
     options: &EstimateOptions,
 ) -> Result<Estimate, Error> {
     Prepared::new(record, &experiment("ols", &EstimateOptions { max_steps: None, ..options.clone() })?)?
-        .learned(name, estimator, options)
+        .learned(name, estimator, options, &Cancel::new())
 }
 
 /// The peaks of a record, with least squares on them.
@@ -179,10 +193,10 @@ impl Prepared {
         name: &str,
         estimator: &dyn Estimator,
         options: &EstimateOptions,
+        cancel: &Cancel,
     ) -> Result<Estimate, Error> {
-        let cancel = Cancel::new();
         let seed = Seed::new(options.seed).child(name);
-        let context = FitContext::new(seed, options.max_steps, &Silent, &cancel);
+        let context = FitContext::new(seed, options.max_steps, &Silent, cancel);
         let fit = estimator.fit(&self.extraction.envelope, &context).map_err(|source| Error::Fit {
             method: name.to_owned(),
             seed: options.seed,

@@ -38,18 +38,24 @@
 mod diagnose;
 mod error;
 mod estimate;
+mod learn;
 mod nominal;
 mod record;
 mod simulate;
 
+pub use crate::learn::{LearnOptions, OwnLearner, learn};
 pub use crate::record::{Arrays, Record};
-pub use diagnose::{Diagnosis, DiagnosisOptions, diagnose};
+pub use diagnose::{Diagnosis, DiagnosisOptions, diagnose, diagnose_watched};
 pub use error::Error;
-pub use estimate::{Estimate, EstimateOptions, Method, estimate, estimate_with, methods, peaks};
+pub use estimate::{
+    Estimate, EstimateOptions, Method, estimate, estimate_until, estimate_with, methods, peaks,
+};
 pub use nominal::Nominal;
 pub use simulate::{Excitation, Simulation, Waveform, simulate};
 
-pub use ::record::{ClockChoice, Filter, Format, Missing, Origin, Quantity, TimeUnit, Unit};
+pub use ::record::{
+    ClockChoice, CsvColumns, Filter, Format, Missing, Origin, Quantity, ReadOptions, TimeUnit, Unit,
+};
 pub use dynamics::{Coefficients, Description};
 pub use experiment::Pipeline;
 pub use export::Repaired;
@@ -65,6 +71,13 @@ pub mod contract {
         Step, Stop, Tag, Uncertainty,
     };
     pub use seed::Seed;
+}
+
+/// What a learner of one's own is given and gives.
+pub mod learning {
+    pub use estimator::Reached;
+    pub use learn::data::{DataSet, Trajectory};
+    pub use learn::{Ahead, Context, Fitted, LearnError, Learner, Model, Past, Predicted, Step};
 }
 
 /// Every effect that a simulator may lack: equation, parameters with units and ranges, signature, literature.

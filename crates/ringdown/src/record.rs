@@ -49,6 +49,18 @@ impl Default for Arrays {
     }
 }
 
+impl Arrays {
+    /// The observed quantity: as stated, or as the unit tells it.
+    #[must_use]
+    pub fn observed_quantity(&self) -> Quantity {
+        self.quantity.unwrap_or(match self.unit.si() {
+            symbol if symbol.ends_with("/s^2") => Quantity::Acceleration,
+            symbol if symbol.ends_with("/s") => Quantity::Velocity,
+            _ => Quantity::Position,
+        })
+    }
+}
+
 impl Record {
     /// Makes a record from arrays: stamps in seconds, values in [`Arrays::unit`].
     ///
@@ -67,18 +79,14 @@ impl Record {
     /// # Ok::<(), ringdown_lab::Error>(())
     /// ```
     pub fn new(stamps_s: Vec<f64>, values: Vec<f64>, arrays: Arrays) -> Result<Self, Error> {
-        let Arrays { name, unit, quantity, input, input_unit, clock, origin } = arrays;
+        let quantity = arrays.observed_quantity();
+        let Arrays { name, unit, input, input_unit, clock, origin, .. } = arrays;
         let bytes: Vec<u8> = [&stamps_s, &values]
             .into_iter()
             .chain(input.as_ref())
             .flatten()
             .flat_map(|number| number.to_le_bytes())
             .collect();
-        let quantity = quantity.unwrap_or(match unit.si() {
-            symbol if symbol.ends_with("/s^2") => Quantity::Acceleration,
-            symbol if symbol.ends_with("/s") => Quantity::Velocity,
-            _ => Quantity::Position,
-        });
         let scaled = |column: Vec<f64>, unit: Unit| -> Vec<f64> {
             column.into_iter().map(|number| number * unit.to_si()).collect()
         };
@@ -117,6 +125,14 @@ impl Record {
         let columns = if record.input().is_some() { "time, values, input" } else { "time, values" };
         let loaded = Loaded { record, source, clock, origin: None, columns: columns.to_owned() };
         Ok(Self { loaded })
+    }
+
+    /// Checks arrays as [`Record::new`] does, without taking or copying them; `name` is what messages call the record.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn check(name: &str, stamps_s: &[f64], values: &[f64], input: Option<&[f64]>) -> Result<(), Error> {
+        record::Record::check(stamps_s, values, input).map_err(|fault| of_record(name, fault))
     }
 
     /// Reads a record file: CSV with any separator, units and dates in its header, or a host log.

@@ -2,10 +2,16 @@
 
 #![allow(clippy::unwrap_used, clippy::indexing_slicing, reason = "tests")]
 
-use ringdown_lab::{
-    Arrays, DiagnosisOptions, Error, Excitation, Nominal, Quantity, Reading, Record, Simulation, Unit,
-    Waveform, diagnose, simulate,
+use ringdown_lab::contract::Cancel;
+use ringdown_lab::learning::{
+    Ahead, Context, DataSet, Fitted, LearnError, Learner, Model, Past, Predicted, Reached,
 };
+use ringdown_lab::{
+    Arrays, DiagnosisOptions, Error, EstimateOptions, Excitation, LearnOptions, Nominal, OwnLearner,
+    Quantity, Reading, Record, Simulation, Unit, Waveform, diagnose, diagnose_watched, estimate_until, learn,
+    simulate,
+};
+use std::cell::RefCell;
 
 fn arm() -> Nominal {
     Nominal::swinging(3.5, 0.005).unwrap()
@@ -98,4 +104,79 @@ fn what_cannot_be_simulated_is_refused() {
     assert!(matches!(unknown, Error::Config(_)), "{unknown}");
     let endless = Simulation::of(&arm()).sampled(1e9, 1e9).run().unwrap_err();
     assert!(matches!(endless, Error::Simulation(_)), "{endless}");
+}
+
+#[test]
+fn a_diagnosis_tells_its_stages_and_ends_after_any() {
+    let record = simulate(&Simulation::of(&arm()).sampled(120.0, 6.0).noise(1e-3)).unwrap();
+    let stages = RefCell::new(Vec::new());
+    let watch = |stage: &'static str| {
+        stages.borrow_mut().push(stage);
+        stage != "calibration"
+    };
+    let error = diagnose_watched(&[record], &arm(), &DiagnosisOptions::default(), &watch).unwrap_err();
+    assert!(matches!(error, Error::Diagnosis(_)) && error.to_string().contains("`calibration`"), "{error}");
+    assert_eq!(stages.into_inner(), ["measurement chain", "calibration"]);
+}
+
+#[test]
+fn a_request_to_stop_ends_a_fit_with_the_best_so_far() {
+    let record = simulate(&Simulation::of(&arm()).noise(1e-4)).unwrap();
+    let cancel = Cancel::new();
+    cancel.request();
+    let found = estimate_until(&record, "pinn", &EstimateOptions::default(), &cancel).unwrap();
+    assert_eq!(found.reached, "interrupted");
+}
+
+#[test]
+fn arrays_are_checked_without_being_taken() {
+    let (time, mut values): (Vec<f64>, Vec<f64>) = (0..20).map(|i| (f64::from(i), 0.1)).unzip();
+    Record::check("log", &time, &values, None).unwrap();
+    values[3] = f64::NAN;
+    let checked = Record::check("log", &time, &values, None).unwrap_err();
+    let taken =
+        Record::new(time, values, Arrays { name: "log".to_owned(), ..Arrays::default() }).unwrap_err();
+    assert_eq!(checked.to_string(), taken.to_string());
+    assert!(checked.to_string().starts_with("log:4"), "{checked}");
+}
+
+/// A learner that says that nothing moves.
+struct Still;
+
+impl Learner for Still {
+    fn fit(&self, _: &DataSet, _: &Context<'_>) -> Result<Fitted, LearnError> {
+        Ok(Fitted { model: Box::new(Self), reached: Reached::Converged, steps: 0 })
+    }
+}
+
+impl Model for Still {
+    fn free_run(&self, _: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
+        Ok(Predicted { values: vec![0.0; ahead.times_s.len()], std: None })
+    }
+
+    fn parameters(&self) -> usize {
+        0
+    }
+}
+
+#[test]
+fn a_learner_of_ones_own_is_scored_beside_the_baselines() {
+    let pendulum = Nominal::swinging(1.0, 0.01).unwrap();
+    let run =
+        |position| Simulation::of(&pendulum).released_at(position).noise(1e-3).sampled(50.0, 20.0).run();
+    let records = [0.3, 0.5, 0.4].map(|position| run(position).unwrap());
+    let options = LearnOptions {
+        learners: Some(Vec::new()),
+        baselines: Some(vec!["persistence".to_owned(), "nominal".to_owned()]),
+        ..LearnOptions::default()
+    };
+    let own = [OwnLearner { id: "still", learner: &Still }];
+    let told = learn(&records, Some(&pendulum), &options, &own, &Cancel::new(), &|_, _| ()).unwrap();
+    let error = |id: &str| {
+        let row = told.results.iter().find(|row| row.id == id).unwrap();
+        row.test.as_ref().unwrap().free_run_rmse.unwrap()
+    };
+    // The nominal simulator is the truth; standing still is wrong by the swing's own size.
+    assert!(error("nominal") < 0.005 && error("still") > 0.05, "{} {}", error("nominal"), error("still"));
+    assert_eq!(told.problems[0].origin, "simulated");
 }

@@ -8,6 +8,7 @@
 
 mod error;
 pub mod guess;
+pub mod learning;
 pub mod nominal;
 mod question;
 pub mod read;

@@ -71,12 +71,27 @@ impl Question {
     /// # Errors
     /// [`WorkflowError::Diagnosis`] with the record that the refusal is about.
     pub fn answer(&self, settings: &Settings, seed: u64) -> Result<Answer, WorkflowError> {
+        self.answer_watched(settings, seed, &|_| true)
+    }
+
+    /// Diagnoses as [`Question::answer`] does; `goes_on` is called after each stage but the last with the stage's name, and ends
+    /// the diagnosis where it gives false.
+    ///
+    /// # Errors
+    /// As [`Question::answer`], and where the diagnosis was ended.
+    pub fn answer_watched(
+        &self,
+        settings: &Settings,
+        seed: u64,
+        goes_on: &dyn Fn(&'static str) -> bool,
+    ) -> Result<Answer, WorkflowError> {
         let start = Instant::now();
         let observations: Vec<Observations> =
             self.given.iter().map(|given| given.observations.clone()).collect();
         let stopwatch = || start.elapsed().as_secs_f64();
-        let found = diagnosis::diagnose(&observations, &self.stated.simulator, settings, &stopwatch)
-            .map_err(|source| self.refused(source))?;
+        let found =
+            diagnosis::diagnose_watched(&observations, &self.stated.simulator, settings, &stopwatch, goes_on)
+                .map_err(|source| self.refused(source))?;
         let seconds = stopwatch();
         let repaired = repaired(&found, &self.given, self.stated.nominal.units())
             .map_err(|error| self.refused(DiagnosisError::Dynamics(error)))?;

@@ -99,7 +99,8 @@ fn rates(data: &Data, fit: &Fit, records: usize) -> Result<Option<(Vec<f64>, f64
     projection.apply(&mut columns);
     let stacked = fit.residuals.iter().flat_map(|residual| residual.iter().copied());
     let residual = DVector::from_iterator(columns.nrows(), stacked);
-    let right = nalgebra::DMatrix::from_column_slice(columns.ncols(), 1, columns.tr_mul(&residual).as_slice());
+    let right =
+        nalgebra::DMatrix::from_column_slice(columns.ncols(), 1, columns.tr_mul(&residual).as_slice());
     let Some(solution) = solve(&columns.tr_mul(&columns), &right) else { return Ok(None) };
     let left = &residual - &columns * solution.column(0);
     let by_segment = |all: &DVector<f64>| {
@@ -162,7 +163,8 @@ mod tests {
         let answer = diagnosed(&[], 2e-3);
         assert!(answer.verdict.effects.is_empty(), "{:?}", answer.verdict);
         let told = clocks(&answer).unwrap();
-        let percent: f64 = told.split("+0.000 %, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
+        let percent: f64 =
+            told.split("+0.000 %, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
         assert!((percent - 0.2).abs() < 0.01, "{told}");
     }
 

@@ -18,6 +18,7 @@ pub(crate) use searched::Searched;
 
 use crate::answer::Stage;
 use crate::data::observations::Observations;
+use crate::error::DiagnosisError;
 use crate::settings::Settings;
 use dynamics::NominalSimulator;
 
@@ -29,27 +30,37 @@ pub(crate) struct Request<'a> {
     pub(crate) settings: &'a Settings,
 }
 
-/// How long each stage took.
+/// How long each stage took, and who may end the work between two.
 pub(crate) struct Stopwatch<'a> {
     seconds: &'a dyn Fn() -> f64,
+    goes_on: &'a dyn Fn(&'static str) -> bool,
     last: f64,
     stages: Vec<Stage>,
 }
 
 impl<'a> Stopwatch<'a> {
-    pub(crate) fn new(seconds: &'a dyn Fn() -> f64) -> Self {
-        Self { seconds, last: seconds(), stages: Vec::new() }
+    pub(crate) fn new(seconds: &'a dyn Fn() -> f64, goes_on: &'a dyn Fn(&'static str) -> bool) -> Self {
+        Self { seconds, goes_on, last: seconds(), stages: Vec::new() }
     }
 
     /// Hands a stage's result on, and notes the time since the last one.
-    pub(crate) fn after<T>(&mut self, name: &'static str, result: T) -> T {
+    ///
+    /// # Errors
+    /// [`DiagnosisError::Interrupted`] where the caller asks to stop.
+    pub(crate) fn after<T>(&mut self, name: &'static str, result: T) -> Result<T, DiagnosisError> {
+        self.note(name);
+        if (self.goes_on)(name) { Ok(result) } else { Err(DiagnosisError::Interrupted { stage: name }) }
+    }
+
+    /// Notes the last stage, and gives all of them.
+    pub(crate) fn last(mut self, name: &'static str) -> Vec<Stage> {
+        self.note(name);
+        self.stages
+    }
+
+    fn note(&mut self, name: &'static str) {
         let now = (self.seconds)();
         self.stages.push(Stage { name, seconds: now - self.last });
         self.last = now;
-        result
-    }
-
-    pub(crate) fn stages(self) -> Vec<Stage> {
-        self.stages
     }
 }

@@ -1,6 +1,6 @@
 //! `trainer check`: a configuration and its data looked at, nothing run, nothing written.
 
-use crate::commands::learn::{method::methods, problem};
+use crate::commands::learn::problem;
 use crate::configured::{ConfigArguments, Configured, read_document};
 use crate::error::TrainerError;
 use crate::fits::input::Input;
@@ -12,6 +12,7 @@ use serde::Serialize;
 use settings::{Origin, Resolved};
 use simulator::Plan;
 use trials::TrialPlan;
+use workflow::learning::methods;
 
 /// What would run.
 #[derive(Debug, Serialize)]

@@ -5,6 +5,7 @@ use super::script::{Script, quoted};
 use crate::error::{LaunchError, TrainerError};
 use crate::options::Output;
 use crate::outcome::Outcome;
+use crate::own_program::own_program;
 use record::counted;
 use results::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 use runs::{RunError, RunFolder};
@@ -47,7 +48,7 @@ pub(crate) fn launch(
     let folder = absolute(work.folder.path())?;
     let script = Script {
         name: work.name,
-        program: &std::env::current_exe().map_err(system("the program's own path"))?,
+        program: &own_program().map_err(system("the program's own path"))?,
         words: &work.words,
         here: &std::env::current_dir().map_err(system("the current folder"))?,
         folder: &folder,

@@ -1,20 +1,16 @@
 //! What a learning study leaves: rows, tables, models, the report.
 
-use super::method::{Method, Tried, truth_of};
-use super::problem::{Prepared, Ready};
+use super::problem::Prepared;
 use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::page::write_report;
-use ::learn::LearnError;
-use ::learn::data::Trajectory;
-use ::learn::judge::{Score, Truth};
 use experiment::LearnStudy;
 use results::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
-    LearnTest, LearnTorqueRow, LearnTraceRow, RESULT_SCHEMA,
+    LearnData, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow, LearnTorqueRow, LearnTraceRow,
+    RESULT_SCHEMA,
 };
 use runs::{RunFolder, to_csv};
 use serde_json::json;
-use std::collections::BTreeMap;
+use workflow::learning::{Method, Ready, Tried, described, row, sort, truth_of};
 
 /// A method on a problem, with what it gave.
 pub(super) struct Row<'a> {
@@ -29,88 +25,6 @@ impl Row<'_> {
     fn model_file(&self) -> String {
         format!("model/{}/{}.safetensors", self.problem.id, self.method.id)
     }
-
-    fn row(&self, truth: Option<&Truth>) -> LearnRow {
-        let mut row = LearnRow {
-            problem: self.problem.id.clone(),
-            id: self.method.id.to_owned(),
-            title: self.method.title.to_owned(),
-            kind: self.method.kind,
-            test: None,
-            coefficients: None,
-            equation: None,
-            torque_error: None,
-            parameters: 0,
-            seconds: self.tried.seconds,
-            reached: LearnEnd::Failed,
-            failure: None,
-            model: None,
-        };
-        match &self.tried.fitted {
-            Err(LearnError::Interrupted) => row.reached = LearnEnd::Interrupted,
-            Err(error) => row.failure = Some(error.to_string()),
-            Ok(judged) => {
-                let model = judged.model.as_ref();
-                row.test = Some(test(&judged.score, &self.ready.data.unit));
-                row.coefficients = coefficients(model, truth);
-                row.equation = model.equation();
-                row.torque_error =
-                    truth.and_then(|truth| truth.torque_error(model)).filter(|error| error.is_finite());
-                row.parameters = model.parameters();
-                row.reached = judged.reached;
-                row.model = model.stored().map(|_| self.model_file());
-            }
-        }
-        row
-    }
-}
-
-fn test(score: &Score, unit: &str) -> LearnTest {
-    let finite = |value: f64| value.is_finite().then_some(value);
-    LearnTest {
-        free_run_rmse: finite(score.free_run_rmse),
-        unit: unit.to_owned(),
-        over_noise: finite(score.over_noise),
-        horizon_s: score.horizon_s,
-        one_step_rmse: finite(score.one_step_rmse),
-        coverage_95: score.coverage_95,
-    }
-}
-
-fn coefficients(
-    model: &dyn ::learn::Model,
-    truth: Option<&Truth>,
-) -> Option<BTreeMap<String, LearnCoefficient>> {
-    let errors = truth.and_then(|truth| truth.coefficient_errors(model)).unwrap_or_default();
-    let true_value = |name: &str| errors.iter().find(|error| error.name == name).map(|error| error.truth);
-    let mut all: BTreeMap<String, LearnCoefficient> = model
-        .coefficients()
-        .iter()
-        .map(|own| {
-            let coefficient = LearnCoefficient {
-                value: own.value,
-                unit: own.unit.clone(),
-                interval_95: own.interval_95(),
-                inclusion: own.inclusion,
-                truth: true_value(&own.name),
-            };
-            (own.name.clone(), coefficient)
-        })
-        .collect();
-    if all.is_empty() {
-        return None;
-    }
-    for error in errors {
-        // A term of the truth that the law lacks stands with a value of 0.
-        all.entry(error.name).or_insert(LearnCoefficient {
-            value: error.value,
-            unit: String::new(),
-            interval_95: None,
-            inclusion: None,
-            truth: Some(error.truth),
-        });
-    }
-    Some(all)
 }
 
 /// The content of `result.json`.
@@ -120,16 +34,19 @@ pub(super) fn result(
     rows: &[Row<'_>],
     seconds: f64,
 ) -> LearnResult {
-    let described: Vec<LearnProblem> = problems.iter().map(described).collect();
+    let told = |own: &Prepared| described(&own.id, &own.title, &own.origin, own.ready.as_ref());
+    let described: Vec<LearnProblem> = problems.iter().map(told).collect();
     let sum = |of: fn(&LearnData) -> usize| described.iter().map(|problem| of(&problem.data)).sum();
     let mut results = Vec::new();
     for problem in problems {
         let own: Vec<&Row<'_>> = rows.iter().filter(|row| row.problem.id == problem.id).collect();
         let truth = own.first().and_then(|row| truth_of(row.ready));
-        let mut made: Vec<LearnRow> = own.iter().map(|row| row.row(truth.as_ref())).collect();
-        let error =
-            |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
-        made.sort_by(|a, b| error(a).total_cmp(&error(b)));
+        let told = |own: &&Row<'_>| {
+            let file = Some(own.model_file());
+            row(&problem.id, own.ready, own.method, &own.tried, truth.as_ref(), file)
+        };
+        let mut made: Vec<LearnRow> = own.iter().map(told).collect();
+        sort(&mut made);
         results.extend(made);
     }
     LearnResult {
@@ -146,41 +63,6 @@ pub(super) fn result(
         results,
         seconds,
     }
-}
-
-fn described(problem: &Prepared) -> LearnProblem {
-    let mut described = LearnProblem {
-        id: problem.id.clone(),
-        title: problem.title.clone(),
-        origin: problem.origin.clone(),
-        absent: problem.ready.as_ref().err().cloned(),
-        unit: String::new(),
-        data: LearnData::default(),
-        training_samples: 0,
-        rate_hz: 0.0,
-        period_s: 0.0,
-        warm_up_s: 0.0,
-        noise: 0.0,
-        test_s: 0.0,
-    };
-    if let Ok(ready) = &problem.ready {
-        let data = &ready.data;
-        described.unit.clone_from(&data.unit);
-        described.data = LearnData {
-            records: ready.records,
-            train: data.train.len(),
-            validation: data.validation.len(),
-            test: data.test.len(),
-        };
-        described.training_samples = data.training_samples();
-        described.rate_hz = data.train.first().map_or(0.0, Trajectory::rate_hz);
-        described.period_s = data.period_s;
-        described.warm_up_s = data.warm_up_s;
-        described.noise = data.noise;
-        let whole: f64 = data.test.iter().map(|part| part.duration_s() - data.warm_up_s).sum();
-        described.test_s = whole / data.test.len().max(1) as f64;
-    }
-    described
 }
 
 /// Writes everything that is left to write, the report last.

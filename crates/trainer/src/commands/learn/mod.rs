@@ -1,7 +1,6 @@
 //! `task = "learn"`: learners beside baselines, on records that they never saw.
 
 mod keep;
-pub(crate) mod method;
 pub(crate) mod problem;
 mod summary;
 
@@ -16,14 +15,14 @@ use ::learn::LearnError;
 use estimator::Cancel;
 use experiment::LearnStudy;
 use keep::Row;
-use method::{Method, attempt, methods};
-use problem::{Prepared, Ready, prepare};
+use problem::{Prepared, prepare};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use results::LearnKind;
 use seed::Seed;
 use serde_json::json;
 use std::time::Instant;
+use workflow::learning::{Method, Ready, methods};
 
 /// Prepares every data set, fits every method on each, keeps going where one fails, and puts the table together.
 pub(crate) fn learn(
@@ -57,12 +56,11 @@ pub(crate) fn learn(
 
 /// What the run is made of.
 fn beginning<'a>(study: &'a LearnStudy, pool: &ThreadPool, problems: &[Prepared]) -> Beginning<'a> {
-    let ready = problems.iter().filter_map(|problem| problem.ready.as_ref().ok());
     Beginning {
         name: &study.name,
         seed: study.seed,
         config: study.resolved.to_toml(),
-        data: ready.flat_map(|ready| ready.files.iter().cloned()).collect(),
+        data: problems.iter().flat_map(|problem| problem.files.iter().cloned()).collect(),
         threads: pool.current_num_threads(),
     }
 }
@@ -87,7 +85,8 @@ fn try_all<'a>(
         jobs.into_par_iter()
             .map(|(problem, ready, method)| {
                 let seed = Seed::new(study.seed).child("learn").child(&problem.id).child(method.id);
-                let tried = attempt(ready, method, seed, study.settings.max_steps, cancel);
+                let tried =
+                    workflow::learning::tried(ready, method, seed, study.settings.max_steps, cancel, &|_| ());
                 progress.one_of_many_done();
                 Row { problem, ready, method, tried }
             })

@@ -4,13 +4,14 @@ use crate::configured::read_document;
 use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::resume::DataFile;
 use ::learn::LearnError;
-use ::learn::data::{DataSet, Making, Trajectory};
-use dynamics::{NominalSimulator, System};
+use ::learn::data::{DataSet, Making};
+use dynamics::NominalSimulator;
 use experiment::{DataSettings, LearnSource, LearningProblem};
-use record::{Clock, Quantity, Record, read_file};
+use record::{Clock, read_file};
 use runs::digest;
 use simulator::{Plan, generate};
 use std::path::{Path, PathBuf};
+use workflow::learning::{Ready, check_record, trajectory};
 use workflow::nominal;
 
 /// A data set by name, ready or absent.
@@ -20,30 +21,27 @@ pub(crate) struct Prepared {
     pub(crate) origin: String,
     /// The set, or why its records are not there.
     pub(crate) ready: Result<Ready, String>,
-}
-
-/// A data set that can be learned from.
-pub(crate) struct Ready {
-    pub(crate) data: DataSet,
-    pub(crate) records: usize,
+    /// The files that it depends on.
     pub(crate) files: Vec<DataFile>,
-    /// What generated simulated records; only the judge looks at it.
-    pub(crate) truth: Option<System>,
 }
 
 /// Reads or simulates a data set. Files that are absent are no error; a set that cannot be used is.
 pub(crate) fn prepare(problem: &LearningProblem) -> Result<Prepared, TrainerError> {
-    let prepared = |origin: &str, ready| Prepared {
+    let prepared = |origin: &str, files, ready| Prepared {
         id: problem.id.clone(),
         title: problem.title.clone(),
         origin: origin.to_owned(),
         ready,
+        files,
     };
     match &problem.source {
-        LearnSource::Simulation(file) => Ok(prepared("simulated", Ok(simulated(problem, file)?))),
+        LearnSource::Simulation(file) => {
+            let (ready, files) = simulated(problem, file)?;
+            Ok(prepared("simulated", files, Ok(ready)))
+        }
         LearnSource::Files { folder, records, reading } if Path::new(folder).is_dir() => {
-            let (ready, origin) = files(problem, folder, records, reading)?;
-            Ok(prepared(&origin, Ok(ready)))
+            let (ready, origin, read) = files(problem, folder, records, reading)?;
+            Ok(prepared(&origin, read, Ok(ready)))
         }
         LearnSource::Files { folder, reading, .. } => {
             let source = match &reading.source {
@@ -57,7 +55,7 @@ pub(crate) fn prepare(problem: &LearningProblem) -> Result<Prepared, TrainerErro
                 problem.id
             );
             let origin = reading.statements().origin.unwrap_or_default().name().to_owned();
-            Ok(prepared(&origin, Err(reason)))
+            Ok(prepared(&origin, Vec::new(), Err(reason)))
         }
     }
 }
@@ -66,7 +64,7 @@ fn refused(problem: &LearningProblem) -> impl Fn(LearnError) -> TrainerError + '
     |source| LearnCommandError::Data { problem: problem.id.clone(), source }.into()
 }
 
-fn simulated(problem: &LearningProblem, file: &str) -> Result<Ready, TrainerError> {
+fn simulated(problem: &LearningProblem, file: &str) -> Result<(Ready, Vec<DataFile>), TrainerError> {
     let document = read_document(Path::new(file), &[], None)?;
     let plan = Plan::resolve(&document)?;
     let wrong = |reason: String| LearnCommandError::Simulation {
@@ -81,7 +79,8 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<Ready, TrainerErro
         let record = generate(truth).map_err(|error| wrong(format!("record {number}: {error}")))?;
         unit = record.unit();
         let name = format!("record-{number:03}");
-        trajectories.push(trajectory(problem, &name, &record, record.stamps_s())?);
+        let made = trajectory(problem, &name, &record, record.stamps_s());
+        trajectories.push(made.map_err(refused(problem))?);
     }
     let nominal = match &problem.nominal {
         Some(path) => nominal::read(Path::new(path))?.simulator,
@@ -92,7 +91,7 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<Ready, TrainerErro
     let truth = drawn.truths.into_iter().next().map(|truth| truth.system);
     let files =
         [Some(file), problem.nominal.as_deref()].into_iter().flatten().map(held).collect::<Result<_, _>>()?;
-    Ok(Ready { data, records: trajectories.len(), files, truth })
+    Ok((Ready { data, records: trajectories.len(), truth }, files))
 }
 
 fn files(
@@ -100,7 +99,7 @@ fn files(
     folder: &str,
     patterns: &[String],
     reading: &DataSettings,
-) -> Result<(Ready, String), TrainerError> {
+) -> Result<(Ready, String, Vec<DataFile>), TrainerError> {
     let (mut trajectories, mut read) = (Vec::new(), Vec::new());
     let mut unit: Option<(String, &'static str)> = None;
     let mut origin = None;
@@ -112,24 +111,10 @@ fn files(
     {
         let (record, source) = read_file(&path, &reading.read_options())?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if record.quantity() != Quantity::Position {
-            let quantity = if record.quantity() == Quantity::Velocity { "velocity" } else { "acceleration" };
-            return Err(refused(problem)(LearnError::NoPosition { record: name, quantity }));
-        }
-        match &unit {
-            Some((first, known)) if *known != record.unit() => {
-                return Err(refused(problem)(LearnError::MixedUnits {
-                    first: first.clone(),
-                    first_unit: (*known).to_owned(),
-                    other: name,
-                    other_unit: record.unit().to_owned(),
-                }));
-            }
-            Some(_) => {}
-            None => unit = Some((name.clone(), record.unit())),
-        }
+        check_record(&name, &record, &mut unit).map_err(refused(problem))?;
         let clock = Clock::new(&record, reading.clock).map_err(|fault| fault.in_file(&source.path))?;
-        trajectories.push(trajectory(problem, &name, &record, &clock.times_s)?);
+        let made = trajectory(problem, &name, &record, &clock.times_s);
+        trajectories.push(made.map_err(refused(problem))?);
         origin = origin.or(reading.statements().origin).or(source.statements.origin);
         read.push(DataFile { path: source.path, digest: source.digest });
     }
@@ -142,7 +127,7 @@ fn files(
     let data = DataSet::new(&trajectories, making).map_err(refused(problem))?;
     let origin = origin.unwrap_or_default().name().to_owned();
     read.extend(problem.nominal.as_deref().map(held).transpose()?);
-    Ok((Ready { data, records: trajectories.len(), files: read, truth: None }, origin))
+    Ok((Ready { data, records: trajectories.len(), truth: None }, origin, read))
 }
 
 /// A file that the data set depends on, held to its bytes.
@@ -166,22 +151,4 @@ fn matching(problem: &LearningProblem, folder: &str, pattern: &str) -> Result<Ve
         return Err(LearnCommandError::NoFile { problem, folder, pattern }.into());
     }
     Ok(found)
-}
-
-/// One sample of so many, on the clock that is believed, counted from its first.
-fn trajectory(
-    problem: &LearningProblem,
-    name: &str,
-    record: &Record,
-    times_s: &[f64],
-) -> Result<Trajectory, TrainerError> {
-    let centered = |values: &[f64]| -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len().max(1) as f64;
-        values.iter().map(|value| if problem.remove_mean { value - mean } else { *value }).collect()
-    };
-    let thin = |values: &[f64]| values.iter().step_by(problem.every).copied().collect::<Vec<f64>>();
-    let first = times_s.first().copied().unwrap_or_default();
-    let times = thin(times_s).iter().map(|time| time - first).collect();
-    let input = record.input().map(|input| thin(&centered(input)));
-    Trajectory::new(name, times, thin(&centered(record.values())), input).map_err(refused(problem))
 }

@@ -6,6 +6,7 @@ use super::open;
 use crate::commands::diagnose::batch::FAILED;
 use crate::error::TrainerError;
 use crate::error::TrialsError;
+use crate::own_program::own_program;
 use crate::terminal::console;
 use crate::terminal::progress::Progress;
 use estimator::Cancel;
@@ -104,7 +105,7 @@ fn group_answers(
     answered: &dyn Fn(usize),
 ) -> Result<Option<BatchResult>, TrialsError> {
     let failed = |problem: String| TrialsError::Process { group: group.to_owned(), problem };
-    let program = std::env::current_exe().map_err(|error| failed(error.to_string()))?;
+    let program = own_program().map_err(|error| failed(error.to_string()))?;
     let answers = folder.join("answers").join(group);
     let before = names(&answers);
     let mut command = Command::new(program);

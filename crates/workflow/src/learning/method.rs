@@ -1,49 +1,46 @@
 //! Methods of a learning study: the registries' learners and baselines, each tried on a data set and judged.
 
-use super::problem::Ready;
-use ::learn::baselines::{BASELINES, exact};
-use ::learn::data::DataSet;
-use ::learn::judge::{Run, Score, Truth, runs, score};
-use ::learn::learners::LEARNERS;
-use ::learn::{Context, Fitted, LearnError, Model, Step};
-use estimator::{Cancel, Reached};
+use super::Ready;
+use estimator::Reached;
 use experiment::LearnSettings;
+use learn::baselines::{BASELINES, exact};
+use learn::data::DataSet;
+use learn::judge::{Run, Score, Truth, runs, score};
+use learn::learners::LEARNERS;
+use learn::{Context, Fitted, LearnError, Learner, Model};
 use results::{LearnEnd, LearnKind};
-use seed::Seed;
 use settings::{Resolved, SettingsError};
-use std::sync::Mutex;
-use std::time::Instant;
 
 type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
 
-/// A row to be: what makes its model.
-pub(crate) struct Method<'a> {
-    pub(crate) id: &'static str,
-    pub(crate) title: &'static str,
-    pub(crate) kind: LearnKind,
+/// A learner, a baseline or the reference, ready to be tried on a data set.
+pub struct Method<'a> {
+    /// Identifier, as in configurations.
+    pub id: &'a str,
+    /// Name in words.
+    pub title: &'a str,
+    /// Learner, baseline or reference.
+    pub kind: LearnKind,
     make: Make<'a>,
 }
 
-/// What a method gave on a problem.
-pub(crate) struct Tried {
-    pub(crate) fitted: Result<Judged, LearnError>,
-    pub(crate) seconds: f64,
-    pub(crate) steps: Vec<Step>,
-}
-
 /// A model with its scores.
-pub(crate) struct Judged {
-    pub(crate) model: Box<dyn Model>,
-    pub(crate) reached: LearnEnd,
-    pub(crate) score: Score,
-    pub(crate) runs: Vec<Run>,
+pub struct Judged {
+    /// The model.
+    pub model: Box<dyn Model>,
+    /// State that the training reached.
+    pub reached: LearnEnd,
+    /// Scores on the test part.
+    pub score: Score,
+    /// Free runs on the test part.
+    pub runs: Vec<Run>,
 }
 
 /// The methods that a configuration asks for, in the order of the registries.
-pub(crate) fn methods<'a>(
-    settings: &LearnSettings,
-    resolved: &Resolved,
-) -> Result<Vec<Method<'a>>, SettingsError> {
+///
+/// # Errors
+/// [`SettingsError`] for settings that a learner cannot be built from.
+pub fn methods<'a>(settings: &LearnSettings, resolved: &Resolved) -> Result<Vec<Method<'a>>, SettingsError> {
     let wanted = |names: &Option<Vec<String>>, id: &str| {
         names.as_ref().is_none_or(|names| names.iter().any(|name| name == id))
     };
@@ -67,32 +64,28 @@ pub(crate) fn methods<'a>(
     Ok(methods)
 }
 
-/// Makes a method's model of a data set and scores it on the test part.
-pub(super) fn attempt(
-    ready: &Ready,
-    method: &Method<'_>,
-    seed: Seed,
-    max_steps: Option<u64>,
-    cancel: &'static Cancel,
-) -> Tried {
-    let steps = Mutex::new(Vec::new());
-    let observe = |step: &Step| {
-        if let Ok(mut steps) = steps.lock() {
-            steps.push(step.clone());
-        }
-    };
-    let context = Context { seed, max_steps, cancel, observe: &observe };
-    let start = Instant::now();
-    let fitted = context.check().and_then(|()| (method.make)(ready, &context));
-    let seconds = start.elapsed().as_secs_f64();
-    let fitted = fitted.map(|fitted| judged(fitted, &ready.data));
-    Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
+/// A learner from outside of the registries as a method.
+#[must_use]
+pub fn method_of<'a>(id: &'a str, title: &'a str, learner: &'a dyn Learner) -> Method<'a> {
+    let make: Make<'a> = Box::new(move |ready, context| learner.fit(&ready.data, context));
+    Method { id, title, kind: LearnKind::Learner, make }
 }
 
-fn judged(fitted: Fitted, data: &DataSet) -> Judged {
-    let runs = runs(fitted.model.as_ref(), data);
-    let score = score(fitted.model.as_ref(), &runs, data);
-    Judged { reached: end_of(fitted.reached), score, runs, model: fitted.model }
+/// Makes a method's model of a data set and scores it on the test part.
+///
+/// # Errors
+/// [`LearnError`] where the method gives no model.
+pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Result<Judged, LearnError> {
+    let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
+    Ok(judged(fitted.model, end_of(fitted.reached), &ready.data))
+}
+
+/// A model with its scores on the test part.
+#[must_use]
+pub fn judged(model: Box<dyn Model>, reached: LearnEnd, data: &DataSet) -> Judged {
+    let runs = runs(model.as_ref(), data);
+    let score = score(model.as_ref(), &runs, data);
+    Judged { model, reached, score, runs }
 }
 
 fn end_of(reached: Reached) -> LearnEnd {
@@ -105,7 +98,8 @@ fn end_of(reached: Reached) -> LearnEnd {
     }
 }
 
-/// The truth of a problem's records at visited states, where it is a function of the state.
-pub(super) fn truth_of(ready: &Ready) -> Option<Truth> {
+/// The true torque of a data set's records at visited states, where it is a function of the state.
+#[must_use]
+pub fn truth_of(ready: &Ready) -> Option<Truth> {
     ready.truth.as_ref().and_then(|system| Truth::new(system, &ready.data).ok().flatten())
 }

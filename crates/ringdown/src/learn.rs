@@ -1,0 +1,169 @@
+//! Dynamics learned from records, judged on records never seen.
+
+use crate::error::Error;
+use crate::nominal::Nominal;
+use crate::record::Record;
+use estimator::Cancel;
+use experiment::{LearnStudy, LearningProblem, resolve_learning};
+use learn::data::{DataSet, Making, Trajectory};
+use learn::learners::LEARNERS;
+use learn::{Learner, Step};
+use rayon::prelude::*;
+use results::{LearnKind, LearnResult, RESULT_SCHEMA};
+use seed::Seed;
+use settings::Document;
+use std::path::Path;
+use std::time::Instant;
+use workflow::learning::{
+    Method, Ready, check_record, described, method_of, methods, row, sort, trajectory, tried,
+};
+
+/// Options of learning, with the defaults of the command line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LearnOptions {
+    /// Names of the learners; `None` for all there are.
+    pub learners: Option<Vec<String>>,
+    /// Names of the baselines; `None` for all there are.
+    pub baselines: Option<Vec<String>>,
+    /// Name of the data set, which seeds are drawn by.
+    pub name: String,
+    /// Root of every random draw.
+    pub seed: u64,
+    /// Cap on the steps of every fit; `None` leaves them to the learners.
+    pub max_steps: Option<u64>,
+    /// Keys of the data set as lines of TOML, such as `split = "time"`.
+    pub data: String,
+    /// Sections of the learners as TOML, such as `[neural-ode]` with its keys.
+    pub settings: String,
+}
+
+impl Default for LearnOptions {
+    fn default() -> Self {
+        Self {
+            learners: None,
+            baselines: None,
+            name: "records".to_owned(),
+            seed: 0,
+            max_steps: None,
+            data: String::new(),
+            settings: String::new(),
+        }
+    }
+}
+
+/// A learner that is not among the workspace's own, by name.
+pub struct OwnLearner<'a> {
+    /// Identifier in results.
+    pub id: &'a str,
+    /// The learner.
+    pub learner: &'a dyn Learner,
+}
+
+/// Learns the dynamics from records by the learners asked for and by `own` ones, and scores each beside the baselines on records
+/// that none has seen, the best first.
+///
+/// `observe` is called after each step with the method's name; a request to stop ends what is being fitted.
+///
+/// # Errors
+/// [`Error::Config`] for unknown learners or settings, [`Error::Learn`] for records that nothing can be learned from.
+///
+/// ```
+/// use ringdown_lab::{LearnOptions, Nominal, Simulation, learn};
+/// use ringdown_lab::contract::Cancel;
+///
+/// let pendulum = Nominal::swinging(1.0, 0.01)?;
+/// let run = |position: f64| Simulation::of(&pendulum).released_at(position).noise(1e-3).sampled(50.0, 20.0).run();
+/// let records = [run(0.3)?, run(0.5)?, run(0.4)?];
+/// let options = LearnOptions {
+///     learners: Some(vec!["sindy".to_owned()]),
+///     baselines: Some(vec!["persistence".to_owned()]),
+///     ..LearnOptions::default()
+/// };
+/// let told = learn(&records, None, &options, &[], &Cancel::new(), &|_, _| ())?;
+/// assert_eq!(told.results[0].id, "sindy");
+/// # Ok::<(), ringdown_lab::Error>(())
+/// ```
+pub fn learn(
+    records: &[Record],
+    nominal: Option<&Nominal>,
+    options: &LearnOptions,
+    own: &[OwnLearner<'_>],
+    cancel: &Cancel,
+    observe: &(dyn Fn(&str, &Step) + Sync),
+) -> Result<LearnResult, Error> {
+    let start = Instant::now();
+    let study = study(options)?;
+    let problem = study.problems.first().ok_or_else(|| Error::Config("there is no data set".to_owned()))?;
+    let ready = data_set(records, nominal, problem)?;
+    let mut asked = methods(&study.settings, &study.resolved)?;
+    asked.retain(|method| method.kind != LearnKind::Reference);
+    asked.extend(own.iter().map(|own| method_of(own.id, own.id, own.learner)));
+    let root = Seed::new(study.seed).child("learn").child(&problem.id);
+    let each = |method: &Method<'_>| {
+        let seed = root.child(method.id);
+        let steps = |step: &Step| observe(method.id, step);
+        let found = tried(&ready, method, seed, study.settings.max_steps, cancel, &steps);
+        row(&problem.id, &ready, method, &found, None, None)
+    };
+    let mut rows: Vec<_> = asked.par_iter().map(each).collect();
+    sort(&mut rows);
+    let told = described(&problem.id, &problem.title, &origin(records), Ok(&ready));
+    Ok(LearnResult {
+        schema: RESULT_SCHEMA.to_owned(),
+        task: "learn".to_owned(),
+        seed: study.seed,
+        data: told.data,
+        problems: vec![told],
+        results: rows,
+        seconds: start.elapsed().as_secs_f64(),
+    })
+}
+
+/// The configuration that the command line would run.
+fn study(options: &LearnOptions) -> Result<LearnStudy, Error> {
+    let text = |value: &str| toml::Value::String(value.to_owned()).to_string();
+    let names = |key: &str, names: &Option<Vec<String>>| {
+        names.as_ref().map_or_else(String::new, |names| {
+            let names: Vec<String> = names.iter().map(|name| text(name)).collect();
+            format!("{key} = [{}]\n", names.join(", "))
+        })
+    };
+    let cap = options.max_steps.map_or_else(String::new, |cap| format!("max_steps = {cap}\n"));
+    let configuration = format!(
+        "task = \"learn\"\nseed = {}\n[learn]\n{}{}{cap}[problem.{}]\nfolder = \".\"\nrecords = [\"*\"]\n{}\n{}\n",
+        options.seed,
+        names("learners", &options.learners),
+        names("baselines", &options.baselines),
+        text(&options.name),
+        options.data,
+        options.settings,
+    );
+    Ok(resolve_learning(&Document::parse("options", &configuration)?, LEARNERS)?)
+}
+
+fn data_set(
+    records: &[Record],
+    nominal: Option<&Nominal>,
+    problem: &LearningProblem,
+) -> Result<Ready, Error> {
+    let mut first = None;
+    let mut trajectories: Vec<Trajectory> = Vec::new();
+    for record in records {
+        let name = Path::new(record.name()).file_stem().unwrap_or_default().to_string_lossy();
+        check_record(&name, &record.loaded.record, &mut first)?;
+        let clock = record.clock()?;
+        trajectories.push(trajectory(problem, &name, &record.loaded.record, &clock.times_s)?);
+    }
+    let making = Making {
+        unit: first.map_or("rad", |(_, unit)| unit).to_owned(),
+        nominal: nominal.map(|nominal| nominal.stated.simulator.clone()),
+        ..problem.making()
+    };
+    Ok(Ready { data: DataSet::new(&trajectories, making)?, records: trajectories.len(), truth: None })
+}
+
+/// Origin of the records, as far as one states it.
+fn origin(records: &[Record]) -> String {
+    let stated = |record: &Record| record.loaded.origin.or(record.loaded.source.statements.origin);
+    records.iter().find_map(stated).unwrap_or_default().name().to_owned()
+}

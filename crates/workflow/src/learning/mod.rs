@@ -1,0 +1,24 @@
+//! Learning the dynamics from records: methods, and rows of results.
+
+mod data;
+mod method;
+mod rows;
+mod tried;
+
+pub use data::{check_record, trajectory};
+pub use method::{Judged, Method, attempt, judged, method_of, methods, truth_of};
+pub use rows::{described, row, sort};
+pub use tried::{Tried, tried};
+
+use dynamics::System;
+use learn::data::DataSet;
+
+/// A data set that can be learned from.
+pub struct Ready {
+    /// The set, split.
+    pub data: DataSet,
+    /// Number of records.
+    pub records: usize,
+    /// System that generated simulated records; only the judge looks at it.
+    pub truth: Option<System>,
+}

@@ -1,0 +1,145 @@
+//! Rows of a learning study's result.
+
+use super::method::Method;
+use super::{Ready, Tried};
+use learn::LearnError;
+use learn::data::Trajectory;
+use learn::judge::{Score, Truth};
+use results::{LearnCoefficient, LearnData, LearnEnd, LearnProblem, LearnRow, LearnTest};
+use std::collections::BTreeMap;
+
+/// The row of a method in the table of results; `problem` names the data set, `model` the file that keeps a model which can be
+/// kept.
+#[must_use]
+pub fn row(
+    problem: &str,
+    ready: &Ready,
+    method: &Method<'_>,
+    tried: &Tried,
+    truth: Option<&Truth>,
+    model: Option<String>,
+) -> LearnRow {
+    let mut row = LearnRow {
+        problem: problem.to_owned(),
+        id: method.id.to_owned(),
+        title: method.title.to_owned(),
+        kind: method.kind,
+        test: None,
+        coefficients: None,
+        equation: None,
+        torque_error: None,
+        parameters: 0,
+        seconds: tried.seconds,
+        reached: LearnEnd::Failed,
+        failure: None,
+        model: None,
+    };
+    match &tried.fitted {
+        Err(LearnError::Interrupted) => row.reached = LearnEnd::Interrupted,
+        Err(error) => row.failure = Some(error.to_string()),
+        Ok(judged) => {
+            let made = judged.model.as_ref();
+            row.test = Some(test(&judged.score, &ready.data.unit));
+            row.coefficients = coefficients(made, truth);
+            row.equation = made.equation();
+            row.torque_error =
+                truth.and_then(|truth| truth.torque_error(made)).filter(|error| error.is_finite());
+            row.parameters = made.parameters();
+            row.reached = judged.reached;
+            row.model = model.filter(|_| made.stored().is_some());
+        }
+    }
+    row
+}
+
+/// Sorts rows by their error in free runs, the best first and what failed last.
+pub fn sort(rows: &mut [LearnRow]) {
+    let error =
+        |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
+    rows.sort_by(|a, b| error(a).total_cmp(&error(b)));
+}
+
+fn test(score: &Score, unit: &str) -> LearnTest {
+    let finite = |value: f64| value.is_finite().then_some(value);
+    LearnTest {
+        free_run_rmse: finite(score.free_run_rmse),
+        unit: unit.to_owned(),
+        over_noise: finite(score.over_noise),
+        horizon_s: score.horizon_s,
+        one_step_rmse: finite(score.one_step_rmse),
+        coverage_95: score.coverage_95,
+    }
+}
+
+fn coefficients(
+    model: &dyn learn::Model,
+    truth: Option<&Truth>,
+) -> Option<BTreeMap<String, LearnCoefficient>> {
+    let errors = truth.and_then(|truth| truth.coefficient_errors(model)).unwrap_or_default();
+    let true_value = |name: &str| errors.iter().find(|error| error.name == name).map(|error| error.truth);
+    let mut all: BTreeMap<String, LearnCoefficient> = model
+        .coefficients()
+        .iter()
+        .map(|own| {
+            let coefficient = LearnCoefficient {
+                value: own.value,
+                unit: own.unit.clone(),
+                interval_95: own.interval_95(),
+                inclusion: own.inclusion,
+                truth: true_value(&own.name),
+            };
+            (own.name.clone(), coefficient)
+        })
+        .collect();
+    if all.is_empty() {
+        return None;
+    }
+    for error in errors {
+        // A term of the truth that the law lacks stands with a value of 0.
+        all.entry(error.name).or_insert(LearnCoefficient {
+            value: error.value,
+            unit: String::new(),
+            interval_95: None,
+            inclusion: None,
+            truth: Some(error.truth),
+        });
+    }
+    Some(all)
+}
+
+/// A data set's line in results; `ready` is the set, or the reason why its records are not there.
+#[must_use]
+pub fn described(id: &str, title: &str, origin: &str, ready: Result<&Ready, &String>) -> LearnProblem {
+    let mut described = LearnProblem {
+        id: id.to_owned(),
+        title: title.to_owned(),
+        origin: origin.to_owned(),
+        absent: ready.err().cloned(),
+        unit: String::new(),
+        data: LearnData::default(),
+        training_samples: 0,
+        rate_hz: 0.0,
+        period_s: 0.0,
+        warm_up_s: 0.0,
+        noise: 0.0,
+        test_s: 0.0,
+    };
+    if let Ok(ready) = ready {
+        let data = &ready.data;
+        described.unit.clone_from(&data.unit);
+        described.data = LearnData {
+            records: ready.records,
+            train: data.train.len(),
+            validation: data.validation.len(),
+            test: data.test.len(),
+        };
+        described.training_samples = data.training_samples();
+        described.rate_hz = data.train.first().map_or(0.0, Trajectory::rate_hz);
+        described.period_s = data.period_s;
+        described.warm_up_s = data.warm_up_s;
+        described.noise = data.noise;
+        let whole: f64 = data.test.iter().map(|part| part.duration_s() - data.warm_up_s).sum();
+        described.test_s = whole / data.test.len().max(1) as f64;
+    }
+    described
+}

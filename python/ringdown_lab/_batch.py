@@ -1,0 +1,60 @@
+"""Many logs, or several rigs, at once, in a process of its own: the command line's batch."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Sequence
+from os import PathLike, fspath
+from typing import Any
+
+from ._native import RingdownError
+
+
+def diagnose_batch(
+    cases: str | PathLike[str],
+    out: str | PathLike[str],
+    *,
+    threads: int | None = None,
+    options: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Diagnoses every folder ``cases/<id>/`` with ``record-*.csv`` and ``nominal.toml``: ``ringdown diagnose --batch``.
+
+    Answers go to ``out/<id>/diagnosis.json``; those that are there already are left alone, so that an interrupted batch goes on.
+    One bad case is one reported failure, the others go on.
+
+    threads: how many; left open, one for each core. options: further options of the command line, such as ``["--seed", "3"]``.
+
+    Returns the batch's result: ``cases``, ``diagnosed``, ``skipped``, ``failed``, ``complete``, ``seconds``.
+    Raises RingdownError with the command line's message where the batch cannot begin.
+    """
+    return _diagnosed(["--batch", fspath(cases), "--out", fspath(out)], threads, options)
+
+
+def diagnose_rigs(
+    rigs: Sequence[str | PathLike[str]],
+    out: str | PathLike[str],
+    *,
+    threads: int | None = None,
+    options: Sequence[str] = (),
+) -> dict[str, Any]:
+    """Diagnoses several rigs of one build, each a folder with ``record-*.csv`` and ``nominal.toml``: ``ringdown diagnose --rigs``.
+
+    The answer says which classes of effects the rigs share, and where their coefficients agree; the folder ``out`` holds the
+    report. Arguments and errors as for ``diagnose_batch``.
+    """
+    return _diagnosed(["--rigs", *(fspath(rig) for rig in rigs), "--out", fspath(out)], threads, options)
+
+
+def _diagnosed(asked: list[str], threads: int | None, options: Sequence[str]) -> dict[str, Any]:
+    line = [sys.executable, "-m", "ringdown_lab", "diagnose", *asked, "--json", *options]
+    if threads is not None:
+        line += ["--threads", str(threads)]
+    done = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
+    if done.returncode == 130:
+        raise KeyboardInterrupt
+    try:
+        return json.loads(done.stdout)  # type: ignore[no-any-return]
+    except json.JSONDecodeError:
+        raise RingdownError(done.stderr.strip().removeprefix("error: ")) from None
