@@ -20,6 +20,7 @@ mod learner;
 pub mod learners;
 mod linear;
 mod model;
+pub mod sequence;
 mod stored;
 #[cfg(test)]
 mod testing;

@@ -20,7 +20,10 @@ use serde::{Deserialize, Serialize};
 /// A model with a loss.
 pub trait Trainable {
     /// Weights to begin from, drawn from a seed.
-    fn initial(&self, seed: &Seed) -> Vec<f64>;
+    ///
+    /// # Errors
+    /// [`LearnError`] where they cannot be drawn.
+    fn initial(&self, seed: &Seed) -> Result<Vec<f64>, LearnError>;
 
     /// Mean loss of a batch of windows, and its gradient into `gradient`, which is as long as the weights and zero.
     ///
@@ -33,6 +36,11 @@ pub trait Trainable {
     /// # Errors
     /// [`LearnError`] where it cannot be computed.
     fn validation(&self, weights: &[f64]) -> Result<f64, LearnError>;
+
+    /// Root of the loss's unit, in the position's unit.
+    fn unit(&self) -> f64 {
+        1.0
+    }
 }
 
 /// How a model is trained.
@@ -120,7 +128,7 @@ pub fn train(
         (context.observe)(&Step {
             step: state.steps,
             phase,
-            train: loss.sqrt(),
+            train: loss.sqrt() * model.unit(),
             validation: Some(validation),
         });
         keep(&state);
@@ -131,7 +139,7 @@ pub fn train(
 
 impl State {
     fn new(model: &dyn Trainable, context: &Context<'_>) -> Result<Self, LearnError> {
-        let weights = model.initial(&context.seed.child("initial weights"));
+        let weights = model.initial(&context.seed.child("initial weights"))?;
         let best_validation = model.validation(&weights)?;
         let zeros = vec![0.0; weights.len()];
         let best = weights.clone();

@@ -14,8 +14,8 @@ impl Line {
 }
 
 impl Trainable for Line {
-    fn initial(&self, _seed: &Seed) -> Vec<f64> {
-        vec![0.0, 0.0]
+    fn initial(&self, _seed: &Seed) -> Result<Vec<f64>, LearnError> {
+        Ok(vec![0.0, 0.0])
     }
 
     fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError> {
