@@ -14,6 +14,7 @@
 pub mod baselines;
 pub mod data;
 mod error;
+pub mod expression;
 pub mod flow;
 pub mod judge;
 mod learner;

@@ -8,6 +8,7 @@ pub mod neural_ode;
 pub mod pinn;
 pub mod sindy;
 pub mod state_space;
+pub mod symbolic;
 pub mod temporal_convolution;
 pub mod torque;
 pub mod transformer;
@@ -23,6 +24,7 @@ pub static LEARNERS: &[Entry] = &[
     gaussian_process::ENTRY,
     bayesian::ENTRY,
     pinn::ENTRY,
+    symbolic::ENTRY,
     lstm::ENTRY,
     transformer::ENTRY,
     temporal_convolution::ENTRY,
