@@ -62,7 +62,7 @@ const SHARED: [Field; 9] = [
     Field {
         key: "epochs",
         kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(60),
+        default: Default::Integer(20),
         meaning: "Most passes over the windows.",
         ..OWN
     },
@@ -92,7 +92,7 @@ const SHARED: [Field; 9] = [
     Field {
         key: "patience",
         kind: Value::Integer { min: 1, max: 1_000_000 },
-        default: Default::Integer(20),
+        default: Default::Integer(10),
         meaning: "Epochs without a better free run over the validation part after which training ends.",
         ..OWN
     },

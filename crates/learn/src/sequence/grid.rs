@@ -1,20 +1,7 @@
 //! Even times: sequence models count samples, records have stamps.
 
-use crate::data::{InputHold, Trajectory};
+use crate::data::{InputHold, Trajectory, interpolated};
 use crate::{Ahead, LearnError, Past};
-
-/// Value at a time from the four samples around it: Lagrange's cubic; exact at a sample.
-fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
-    let next = times.partition_point(|&other| other < time);
-    let from = next.saturating_sub(2).min(times.len().saturating_sub(4));
-    let near: Vec<(f64, f64)> =
-        times.iter().copied().zip(values.iter().copied()).skip(from).take(4).collect();
-    let of = |(place, (own, value)): (usize, &(f64, f64))| {
-        let others = near.iter().enumerate().filter(|(other, _)| *other != place);
-        value * others.map(|(_, (other, _))| (time - other) / (own - other)).product::<f64>()
-    };
-    near.iter().enumerate().map(of).sum()
-}
 
 /// Mean of an input from `time` on for `interval` seconds; before the first and after the last sample it stays.
 fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f64, f64)) -> f64 {

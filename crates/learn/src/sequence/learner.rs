@@ -5,7 +5,7 @@ use super::model::SequenceModel;
 use super::roll::{Roll, sizes};
 use super::{Architecture, Settings, plain_device};
 use crate::data::{DataSet, Trajectory, Window, windows};
-use crate::training::{Schedule, Training, train};
+use crate::training::{Schedule, State, Training, train};
 use crate::{Context, Fitted, LearnError, Learner, Model, Stored};
 use estimator::Reached;
 use settings::{Resolved, SettingsError};
@@ -79,7 +79,8 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
             patience: settings.patience,
         };
         let all = windows(&parts, frame.past, future, stride);
-        let trained = train(&roll, &all, &training, None, context, &mut |_| ())?;
+        let mut keep = |state: &State| context.checkpoint(state.steps, state);
+        let trained = train(&roll, &all, &training, context.resumed()?, context, &mut keep)?;
         let state = trained.state;
         let reached = if trained.stopped_early { Reached::Converged } else { Reached::BudgetSpent };
         let network = neural::with_parameters(roll.shape.clone(), &state.best, &device)?;

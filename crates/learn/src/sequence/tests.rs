@@ -8,11 +8,13 @@ use crate::learners::LEARNERS;
 use crate::learners::state_space::StateSpace;
 use crate::testing::{context, data_set, drag_and_cubic, learner};
 use crate::training::Trainable;
-use crate::{Kind, Past};
+use crate::{Context, Kind, Past};
+use estimator::Checkpoints;
 use frame::Framed;
 use neural::tensor;
 use roll::{Roll, sizes};
 use serde_json::json;
+use std::sync::Mutex;
 
 fn settings() -> Settings {
     Settings {
@@ -132,4 +134,43 @@ fn a_past_that_is_too_short_is_refused() {
     let ahead = crate::Ahead { times_s: &[0.16], input: Some(&[0.0]) };
     let error = model.free_run(&past, &ahead).unwrap_err().to_string();
     assert!(error.contains("the past is too short: 8 of the"), "{error}");
+}
+
+/// Keeps the first states of a training and no later one.
+struct FirstStates {
+    left: Mutex<u64>,
+    kept: Mutex<Option<Vec<u8>>>,
+}
+
+impl Checkpoints for FirstStates {
+    fn latest(&self) -> Option<Vec<u8>> {
+        self.kept.lock().unwrap().clone()
+    }
+
+    fn is_due(&self) -> bool {
+        let mut left = self.left.lock().unwrap();
+        *left = left.saturating_sub(1);
+        *left > 0
+    }
+
+    fn keep(&self, _step: u64, state: &[u8]) -> Result<(), String> {
+        *self.kept.lock().unwrap() = Some(state.to_vec());
+        Ok(())
+    }
+}
+
+#[test]
+fn a_resumed_model_is_the_same_to_the_bit() {
+    let data = driven();
+    let own = learner("temporal-convolution", &["epochs=4", "windows=40", "samples_per_period=16"]);
+    let bytes =
+        |context: &Context<'_>| own.fit(&data, context).unwrap().model.stored().unwrap().to_bytes().unwrap();
+    let whole = bytes(&context());
+    let place = FirstStates { left: Mutex::new(3), kept: Mutex::default() };
+    let keeping = Context { checkpoints: Some(&place), ..context() };
+    assert_eq!(bytes(&keeping), whole);
+    // The second epoch's state is there, and the training goes on from it.
+    let state: crate::training::State = keeping.resumed().unwrap().unwrap();
+    assert_eq!(state.epoch, 2);
+    assert_eq!(bytes(&keeping), whole);
 }

@@ -94,7 +94,8 @@ const DECAYS: [f64; 2] = [0.9, 0.999];
 /// Keeps Adam's denominator from vanishing.
 const SMALL: f64 = 1e-8;
 
-/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch.
+/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch, and with
+/// the state before the epoch in which the training was interrupted.
 ///
 /// The order of the windows in an epoch follows from the seed and the epoch's number alone, so that a resumed training
 /// sees what an uninterrupted one would.
@@ -107,7 +108,7 @@ pub fn train(
     training: &Training,
     from: Option<State>,
     context: &Context<'_>,
-    keep: &mut dyn FnMut(&State),
+    keep: &mut dyn FnMut(&State) -> Result<(), LearnError>,
 ) -> Result<Trained, LearnError> {
     if windows.is_empty() {
         let problem =
@@ -121,7 +122,14 @@ pub fn train(
     let of_epoch = windows.len().div_ceil(training.batch.max(1)) as u64;
     let budget = context.steps(training.epochs * of_epoch);
     while state.steps < budget && state.waited < training.patience {
-        let loss = state.epoch(model, windows, training, (of_epoch, budget), context)?;
+        let before = state.clone();
+        let loss = match state.epoch(model, windows, training, (of_epoch, budget), context) {
+            Err(LearnError::Interrupted) => {
+                keep(&before)?;
+                return Err(LearnError::Interrupted);
+            }
+            loss => loss?,
+        };
         let validation = model.validation(&state.weights)?;
         state.judge(validation);
         let phase = format!("epoch {}", state.epoch);
@@ -131,7 +139,7 @@ pub fn train(
             train: loss.sqrt() * model.unit(),
             validation: Some(validation),
         });
-        keep(&state);
+        keep(&state)?;
     }
     let stopped_early = state.waited >= training.patience;
     Ok(Trained { state, stopped_early })

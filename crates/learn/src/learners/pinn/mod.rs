@@ -3,8 +3,8 @@
 //! Every window of the training records gets a network θ̂(t) with Fourier features. Weights and coefficients minimize
 //! Σ (θ̂(tᵢ) − yᵢ)²/σ² + Σ (θ̂″ − Σ cⱼ·fⱼ(θ̂, θ̂′, u))²/τ² together, by Levenberg–Marquardt with the networks eliminated
 //! window by window; τ falls from half the typical acceleration to a thousandth of it. Dry friction jumps where the motion
-//! turns back and a network cannot, so a law that has it is not held near the turning points. Standard errors are those of
-//! the linearized problem. What predicts is the law with the inferred coefficients.
+//! turns back and a network cannot, so the windows of a law that has it end there. Standard errors are those of the
+//! linearized problem. What predicts is the law with the inferred coefficients.
 //!
 //! Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686 (inverse problems); Tancik et al.,
 //! NeurIPS 33 (2020) (Fourier features).
@@ -23,7 +23,7 @@ use estimator::Reached;
 use serde::Deserialize;
 use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
 use trajectory::Shape;
-use windows::{Problem, Sizes, Unknowns};
+use windows::{Problem, Sizes, Unknowns, jumps, stretches};
 
 /// Identifier.
 const ID: &str = "pinn";
@@ -93,7 +93,7 @@ const FIELDS: &[Field] = &[
     Field {
         key: "max_steps",
         kind: Value::Integer { min: 0, max: 1_000_000 },
-        default: Default::Integer(12),
+        default: Default::Integer(20),
         unit: "steps",
         meaning: "Most steps at each weight of the physics.",
         ..PLAIN
@@ -121,7 +121,7 @@ struct Keys {
 const TOLERANCES: [f64; 5] = [0.5, 0.1, 0.02, 0.005, 0.001];
 
 /// Relative change of the objective below which a weight of the physics is done with.
-const SMALL: f64 = 1e-6;
+const SMALL: f64 = 1e-5;
 
 impl Pinn {
     fn read(resolved: &Resolved) -> Result<Self, SettingsError> {
@@ -135,7 +135,13 @@ impl Learner for Pinn {
         let terms = self.library.terms(data);
         let library = Library::new(terms.clone());
         let shape = Shape { frequencies: self.keys.frequencies, hidden: self.keys.hidden_units };
-        let pieces = data.training_pieces(self.keys.window_periods * data.period_s, self.keys.samples);
+        let seconds = self.keys.window_periods * data.period_s;
+        let pieces = stretches(data, jumps(&library), seconds, self.keys.samples);
+        if pieces.is_empty() {
+            let problem = "no stretch of ten samples between two turning points; give records sampled faster"
+                .to_owned();
+            return Err(LearnError::Unsolvable { what: "pinn", problem });
+        }
         let problem = Problem::new(shape, &library, &pieces, data);
         let seed = context.seed.child("initial weights");
         let networks = (0..pieces.len()).map(|at| shape.start(&seed.child(&at.to_string()))).collect();

@@ -2,7 +2,7 @@
 
 use super::trajectory::Shape;
 use crate::Place;
-use crate::data::{DataSet, InputHold, Scale, Trajectory};
+use crate::data::{DataSet, InputHold, Scale, Trajectory, interpolated, local_states};
 use crate::flow::{Field, Slope};
 use crate::learners::library::{Library, Term};
 use crate::linear::{inverse, raised, solve};
@@ -70,12 +70,37 @@ pub(super) struct Equations {
 /// Points at which the law is held, for each sample.
 const COLLOCATION: f64 = 2.0;
 
+/// Damping that rounding asks for.
+const NEXT_TO_NONE: f64 = 1e-11;
+
 /// Precision of the networks' weights: as good as none, but it keeps the equations solvable.
 const RIDGE: f64 = 1e-6;
 
-/// Part of the typical velocity below which a motion is near its turning point, where a network is smooth and dry friction
-/// is not.
-const TURNING: f64 = 0.25;
+/// Part of the typical velocity below which a motion is at its turning point, as far as that is known.
+const TURNING: f64 = 0.05;
+
+/// Fewest samples of a window.
+const LEAST: usize = 10;
+
+/// Stretches of the training part of at most `seconds`, together at most `samples`; where the law jumps at turning points,
+/// none goes beyond one.
+pub(super) fn stretches(data: &DataSet, jumps: bool, seconds: f64, samples: usize) -> Vec<Trajectory> {
+    let mut found: Vec<Trajectory> = Vec::new();
+    for part in &data.train {
+        let mut cuts = vec![0];
+        if jumps {
+            let states = local_states(part, data.period_s / 8.0);
+            let pairs = states.iter().zip(states.iter().skip(1));
+            cuts.extend(pairs.filter(|(a, b)| a.velocity * b.velocity <= 0.0).map(|(_, b)| b.sample));
+        }
+        cuts.push(part.len());
+        let between = cuts.iter().zip(cuts.iter().skip(1)).map(|(&from, &to)| part.part(from, to));
+        found.extend(between.flat_map(|own| own.pieces(seconds)).filter(|piece| piece.len() >= LEAST));
+    }
+    let all: usize = found.iter().map(Trajectory::len).sum();
+    let stride = all.div_ceil(samples.max(1)).max(1);
+    found.into_iter().step_by(stride).collect()
+}
 
 impl Window {
     pub(super) fn new(piece: &Trajectory, hold: InputHold) -> Self {
@@ -91,28 +116,30 @@ impl Window {
     }
 }
 
-/// The input at a time. One that is held jumps at every sample, which no motion follows: the line through the middles of
-/// the holds has the same means.
+/// The input at a time, smooth. One that is held jumps at every sample, which no motion follows: what it feels is the mean
+/// over the interval before.
 fn input_at(piece: &Trajectory, time: f64, hold: InputHold) -> f64 {
     let Some(input) = piece.input() else { return 0.0 };
-    let times = piece.times_s();
-    let shift = match hold {
-        InputHold::Zero => 0.5 * piece.duration_s() / piece.len().saturating_sub(1).max(1) as f64,
-        InputHold::Linear => 0.0,
-    };
-    let next =
-        times.partition_point(|&own| own + shift < time).clamp(1, times.len().saturating_sub(1).max(1));
-    let pick = |column: &[f64], at: usize| column.get(at).copied().unwrap_or_default();
-    let (from, to) = (pick(times, next - 1) + shift, pick(times, next) + shift);
-    let share = if to > from { (time - from) / (to - from) } else { 0.0 };
-    pick(input, next - 1) + share * (pick(input, next) - pick(input, next - 1))
+    let at = |time: f64| interpolated(piece.times_s(), input, time);
+    match hold {
+        InputHold::Linear => at(time),
+        InputHold::Zero => {
+            let interval = piece.duration_s() / piece.len().saturating_sub(1).max(1) as f64;
+            // Simpson's rule.
+            (at(time - interval) + 4.0 * at(time - 0.5 * interval) + at(time)) / 6.0
+        }
+    }
+}
+
+/// Whether a law jumps where the motion turns back.
+pub(super) fn jumps(library: &Library) -> bool {
+    library.terms().contains(&Term::Direction)
 }
 
 impl<'a> Problem<'a> {
     pub(super) fn new(shape: Shape, library: &'a Library, pieces: &[Trajectory], data: &DataSet) -> Self {
         let windows = pieces.iter().map(|piece| Window::new(piece, data.hold)).collect();
-        let jumps = library.terms().contains(&Term::Direction);
-        Self { shape, library, windows, scale: data.scale, jumps }
+        Self { shape, library, windows, scale: data.scale, jumps: jumps(library) }
     }
 
     /// Residuals of a window over their sizes, with their Jacobian: rows of network weights, then of coefficients; the
@@ -235,6 +262,6 @@ impl Equations {
 
     /// Covariance of the coefficients, the networks free; `None` where they are not determined.
     pub(super) fn covariance(&self) -> Option<DMatrix<f64>> {
-        inverse(&self.eliminated(0.0)?.0)
+        inverse(&self.eliminated(NEXT_TO_NONE)?.0)
     }
 }

@@ -6,13 +6,10 @@ use ::learn::data::DataSet;
 use ::learn::judge::{Run, Score, Truth, runs, score};
 use ::learn::learners::LEARNERS;
 use ::learn::{Context, Fitted, LearnError, Model, Step};
-use estimator::{Cancel, Reached};
+use estimator::Reached;
 use experiment::LearnSettings;
 use results::{LearnEnd, LearnKind};
-use seed::Seed;
 use settings::{Resolved, SettingsError};
-use std::sync::Mutex;
-use std::time::Instant;
 
 type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
 
@@ -71,28 +68,17 @@ pub(crate) fn methods<'a>(
 pub(super) fn attempt(
     ready: &Ready,
     method: &Method<'_>,
-    seed: Seed,
-    max_steps: Option<u64>,
-    cancel: &'static Cancel,
-) -> Tried {
-    let steps = Mutex::new(Vec::new());
-    let observe = |step: &Step| {
-        if let Ok(mut steps) = steps.lock() {
-            steps.push(step.clone());
-        }
-    };
-    let context = Context { seed, max_steps, cancel, observe: &observe };
-    let start = Instant::now();
-    let fitted = context.check().and_then(|()| (method.make)(ready, &context));
-    let seconds = start.elapsed().as_secs_f64();
-    let fitted = fitted.map(|fitted| judged(fitted, &ready.data));
-    Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
+    context: &Context<'_>,
+) -> Result<Judged, LearnError> {
+    let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
+    Ok(judged(fitted.model, end_of(fitted.reached), &ready.data))
 }
 
-fn judged(fitted: Fitted, data: &DataSet) -> Judged {
-    let runs = runs(fitted.model.as_ref(), data);
-    let score = score(fitted.model.as_ref(), &runs, data);
-    Judged { reached: end_of(fitted.reached), score, runs, model: fitted.model }
+/// A model with its scores on the test part.
+pub(super) fn judged(model: Box<dyn Model>, reached: LearnEnd, data: &DataSet) -> Judged {
+    let runs = runs(model.as_ref(), data);
+    let score = score(model.as_ref(), &runs, data);
+    Judged { model, reached, score, runs }
 }
 
 fn end_of(reached: Reached) -> LearnEnd {
