@@ -141,6 +141,7 @@ fn what_nothing_can_be_learned_from_is_refused() {
     refused(&["learn.learners=sindi"], "did you mean `sindy`?");
     refused(&["learn.baselines=arks"], "baseline");
     refused(&["sindy.library=theta,thetta"], "library term");
+    refused(&["sindy.terms=sin(2*omega)"], "at character 7: `omega` is not known");
     refused(&[&of("simulation=configs/pinn.toml")], "pinn.toml");
 }
 

@@ -45,6 +45,27 @@ fn sindy_finds_drag_and_a_stiffening_spring_under_an_input() {
     assert!(scores.free_run_rmse < 1.05 * ceiling.free_run_rmse, "{scores:?} {ceiling:?}");
 }
 
+/// The sine that the law needs stands in the user's terms only, beside one that it does not need.
+#[test]
+fn sindy_takes_the_users_own_terms() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let law = ["library=theta,theta_dot,sign(theta_dot)", "terms=sin(theta),theta*|theta_dot|", "members=0"];
+    let fitted = learner("sindy", &law).fit(&data, &context()).unwrap();
+    let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["theta", "theta_dot", "sign(theta_dot)", "sin(theta)"],
+        "{:?}",
+        fitted.model.equation()
+    );
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    assert!(truth.torque_error(fitted.model.as_ref()).unwrap() < 0.01);
+    let bytes = fitted.model.stored().unwrap().to_bytes().unwrap();
+    let again = (super::find("sindy").unwrap().restore)(&crate::Stored::from_bytes(&bytes).unwrap()).unwrap();
+    assert_eq!(runs(again.as_ref(), &data), runs(fitted.model.as_ref(), &data));
+}
+
 #[test]
 fn without_a_refit_noise_leaves_a_bias() {
     let system = friction_and_gravity();

@@ -42,9 +42,9 @@ pub fn finish(
 ) -> Result<Fitted, LearnError> {
     let (terms, weights, inclusion) = start;
     let kept: Vec<(Term, f64)> =
-        terms.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0).collect();
+        terms.iter().cloned().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0).collect();
     let share =
-        |term: Term| terms.iter().zip(inclusion).find(|(own, _)| **own == term).map(|(_, share)| *share);
+        |term: &Term| terms.iter().zip(inclusion).find(|(own, _)| *own == term).map(|(_, share)| *share);
     let (terms, weights): (Vec<Term>, Vec<f64>) = kept.into_iter().unzip();
     let plain = || Law { terms: terms.clone(), weights: weights.clone(), fit: None };
     let (law, steps, reached) = if finishing.refit {
@@ -60,7 +60,7 @@ pub fn finish(
     };
     let mut model = law.model(learner, data, context);
     for (coefficient, term) in model.coefficients.iter_mut().zip(&law.terms) {
-        coefficient.inclusion = share(*term);
+        coefficient.inclusion = share(term);
     }
     Ok(Fitted { model: Box::new(model), reached, steps })
 }

@@ -1,6 +1,6 @@
 //! A stated law with weights as a model.
 
-use super::{Library, Term};
+use super::Library;
 use crate::Coefficient;
 use crate::data::DataSet;
 use crate::flow::{FlowModel, Posterior, Running};
@@ -19,7 +19,7 @@ pub fn law(
     let errors = errors.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
     let coefficients =
         library.terms().iter().zip(weights).zip(errors).map(|((term, value), error)| Coefficient {
-            name: Term::name(*term).to_owned(),
+            name: term.name().into_owned(),
             value: *value,
             unit: term.unit(&data.unit),
             std_error: error.filter(|error| error.is_finite()),
