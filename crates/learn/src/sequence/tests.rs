@@ -133,7 +133,7 @@ fn a_past_that_is_too_short_is_refused() {
     let past = Past { times_s: &times, values: &[0.0; 8], input: Some(&[0.0; 8]) };
     let ahead = crate::Ahead { times_s: &[0.16], input: Some(&[0.0]) };
     let error = model.free_run(&past, &ahead).unwrap_err().to_string();
-    assert!(error.contains("the past is too short: 8 of the"), "{error}");
+    assert!(error.contains("the past is too short: 5 of the 25 samples"), "{error}");
 }
 
 /// Keeps the first states of a training and no later one.
