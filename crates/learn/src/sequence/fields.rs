@@ -6,7 +6,7 @@ use settings::{Default, Field, Kind as Value};
 const OWN: Field =
     Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
-/// Settings of the training and of the windows. Ranges and defaults stand in [`SHARED`].
+/// Settings of the training and of the windows. Ranges and defaults stand in the fields below.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Settings {
     /// Most samples of a period.
