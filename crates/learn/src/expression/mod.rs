@@ -169,7 +169,7 @@ impl Expression {
         }
     }
 
-    /// Whether it depends on the direction of the motion.
+    /// True where it depends on the direction of the motion.
     #[must_use]
     pub fn is_directed(&self) -> bool {
         match self {
@@ -180,7 +180,7 @@ impl Expression {
         }
     }
 
-    /// Whether a variable is in it.
+    /// True where a variable is in it.
     #[must_use]
     pub fn reads(&self, variable: Variable) -> bool {
         match self {
@@ -202,7 +202,7 @@ impl Expression {
     }
 }
 
-/// How tightly the outermost part of an expression binds.
+/// Precedence of the outermost part of an expression.
 fn binding(expression: &Expression) -> u8 {
     match expression {
         Expression::Join(Operator::Add | Operator::Subtract, ..) => 0,

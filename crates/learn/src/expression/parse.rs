@@ -4,7 +4,7 @@ use super::{Expression, Function, Operator, Variable};
 use std::str::FromStr;
 use thiserror::Error;
 
-/// Why a text is no expression.
+/// Reason why a text is no expression.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("`{text}` cannot be read at character {at}: {problem}")]
 pub struct Unreadable {
@@ -12,7 +12,7 @@ pub struct Unreadable {
     pub text: String,
     /// Place, counted from 1.
     pub at: usize,
-    /// What is wrong, and what was expected.
+    /// The fault, and what was expected.
     pub problem: String,
 }
 

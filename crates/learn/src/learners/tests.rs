@@ -143,7 +143,8 @@ fn a_pinn_infers_coefficients_within_three_standard_errors() {
             r#"["theta","theta_dot","theta_dot*|theta_dot|","theta^3","u"]"#,
         ),
     ] {
-        let fitted = learner("pinn", &[&format!("library={law}"), "samples=2000"]).fit(&data, &context()).unwrap();
+        let fitted =
+            learner("pinn", &[&format!("library={law}"), "samples=2000"]).fit(&data, &context()).unwrap();
         let truth = Truth::new(system, &data).unwrap().unwrap();
         for error in truth.coefficient_errors(fitted.model.as_ref()).unwrap() {
             assert!(error.std_errors.unwrap().abs() < 3.0, "{error:?}");

@@ -30,9 +30,9 @@ pub struct Frame {
     pub past: usize,
     /// Samples that are predicted at once.
     pub block: usize,
-    /// Whether there is an input.
+    /// True where there is an input.
     pub driven: bool,
-    /// What inputs do between samples.
+    /// Behavior of inputs between samples.
     pub hold: InputHold,
     /// Scales of the training part.
     pub scale: Scale,

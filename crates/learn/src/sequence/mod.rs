@@ -36,7 +36,7 @@ use seed::Seed;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// What a network reads: `tokens` of shape windows × (past + block) × features, the samples of the past first. The
+/// Input of a network: `tokens` of shape windows × (past + block) × features, the samples of the past first. The
 /// features of a sample are its position (observed in the past, linearly predicted in the block), the input where there is
 /// one, both in scaled units, and 1 for samples of the block, 0 for those of the past.
 #[derive(Debug, Clone)]

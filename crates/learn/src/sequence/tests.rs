@@ -1,4 +1,4 @@
-//! What every architecture has to keep to.
+//! Properties that every architecture shares.
 
 use super::*;
 use crate::baselines::Arx;

@@ -1,8 +1,8 @@
-//! Why no skeleton was written.
+//! Reasons why no skeleton was written.
 
 use thiserror::Error;
 
-/// What is wrong, and what to do.
+/// A fault, and its remedy.
 #[derive(Debug, Error)]
 pub(crate) enum NewError {
     #[error(

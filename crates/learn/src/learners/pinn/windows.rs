@@ -8,7 +8,7 @@ use crate::learners::library::{Library, Term};
 use crate::linear::{inverse, raised, solve};
 use nalgebra::{DMatrix, DVector};
 
-/// What the residuals are weighed with.
+/// Sizes that the residuals are divided by.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Sizes {
     /// Standard deviation of an observation.
@@ -23,7 +23,7 @@ pub(super) struct Problem<'a> {
     pub(super) library: &'a Library,
     pub(super) windows: Vec<Window>,
     pub(super) scale: Scale,
-    /// Whether the law has a term that jumps where the motion turns back.
+    /// True for a law with a term that jumps where the motion turns back.
     jumps: bool,
 }
 
@@ -44,7 +44,7 @@ pub(super) struct Unknowns {
     pub(super) networks: Vec<Vec<f64>>,
 }
 
-/// Where the unknowns stand: the objective, and what the residuals are.
+/// Objective and residuals of some unknowns.
 pub(super) struct Standing {
     pub(super) objective: f64,
     /// Root mean square of what the networks leave of the observations, in the position's unit.
@@ -131,7 +131,7 @@ fn input_at(piece: &Trajectory, time: f64, hold: InputHold) -> f64 {
     }
 }
 
-/// Whether a law jumps where the motion turns back.
+/// True for a law that jumps where the motion turns back.
 pub(super) fn jumps(library: &Library) -> bool {
     library.terms().contains(&Term::Direction)
 }

@@ -1,14 +1,14 @@
-//! How sums of expressions come into being, and from each other.
+//! Drawing, crossover and mutation of sums of expressions.
 
 use crate::expression::{Expression, Function, Operator, Variable};
 use rand::{Rng, RngExt};
 
-/// What expressions are made of.
+/// Building blocks of expressions, and their limits.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Grammar {
-    /// Whether there is an input.
+    /// True where there is an input.
     pub(super) driven: bool,
-    /// Whether positions are angles, of which there are sines.
+    /// True where positions are angles, of which there are sines.
     pub(super) angle: bool,
     /// Most parts of a sum.
     pub(super) most_parts: usize,

@@ -16,7 +16,7 @@ pub trait Kept: Correction + Clone + Serialize + DeserializeOwned + 'static {}
 
 impl<C: Correction + Clone + Serialize + DeserializeOwned + 'static> Kept for C {}
 
-/// What makes a field again.
+/// Stored form that a field is made from again.
 #[derive(Serialize, Deserialize)]
 struct Form<C> {
     base: Base,

@@ -1,4 +1,4 @@
-//! What a learning study would lose if it were killed: finished models, and the state of those in training.
+//! Checkpoints of a learning study: finished models, and the state of those in training.
 
 use super::method::{Judged, Method, Tried, attempt, judged};
 use super::problem::Ready;
@@ -23,7 +23,7 @@ struct Finished {
     steps: Vec<Step>,
 }
 
-/// How methods are tried: seed, cap on the steps, request to stop, and where their work is kept.
+/// Conditions that methods are tried under: seed, cap on the steps, request to stop, and where their work is kept.
 #[derive(Clone, Copy)]
 pub(super) struct Trying<'a> {
     pub(super) seed: u64,
@@ -73,7 +73,7 @@ impl Trying<'_> {
     }
 }
 
-/// Where the state of one training is kept.
+/// Place where the state of one training is kept.
 struct Place<'a> {
     ledger: &'a Ledger,
     name: &'a str,

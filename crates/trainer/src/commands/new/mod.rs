@@ -9,7 +9,7 @@ use runs::write_file;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-/// What is new.
+/// Arguments of `trainer new`.
 #[derive(Debug, Args)]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
@@ -61,7 +61,7 @@ impl Form {
     }
 }
 
-/// Where the learners' registry stands in a checkout.
+/// Path of the learners' registry in a checkout.
 const REGISTRY: &str = "crates/learn/src/learners/mod.rs";
 
 /// The line after which a registry's entries begin.
