@@ -79,8 +79,10 @@ fn every_shipped_configuration_runs() {
         if text.contains("task = \"learn\"") {
             let mut quick =
                 vec![path.to_str().unwrap(), "learn.max_steps=2", "bayesian.warm_up=2", "bayesian.draws=10"];
-            let all = path.ends_with("learn.toml") || path.ends_with("measured.toml");
+            let all = ["learn.toml", "measured.toml", "table.toml"].iter().any(|name| path.ends_with(name));
             quick.extend(all.then_some("learn.learners=sindy,gaussian-process"));
+            // The table's problems are those of the other two.
+            quick.extend(path.ends_with("table.toml").then_some("learn.problems=drag-cubic"));
             let (code, result, _) = result(&quick);
             assert_eq!(code, 0, "{}: {result}", path.display());
             continue;

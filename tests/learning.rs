@@ -3,6 +3,7 @@
 use crate::support::{measured, number, result, root, trainer};
 use serde_json::Value;
 use std::path::Path;
+use std::process::{Command, Stdio};
 
 /// One sparse learner beside the quick baselines.
 const QUICK: [&str; 3] = ["configs/learn/sindy.toml", "sindy.members=10", "sindy.refit_samples=2000"];
@@ -66,6 +67,59 @@ fn predicts_a_record(model: &Path) {
     assert!(message.contains("expected a model that `task = \"learn\"` wrote"), "{message}");
 }
 
+/// A short training is enough: what the network adds to the linear prediction shows after two epochs.
+#[test]
+fn a_sequence_model_beats_the_autoregression_and_predicts_a_record() {
+    let quick =
+        ["configs/learn/temporal-convolution.toml", "temporal-convolution.epochs=2", "learn.baselines=arx"];
+    let (code, result, folder) = result(&quick);
+    assert_eq!(code, 0, "{result}");
+    let error = |id: &str| number(row(&result, id), "/test/free_run_rmse");
+    assert!(error("temporal-convolution") < 0.8 * error("arx"), "{result}");
+    let model = folder.path().join(row(&result, "temporal-convolution")["model"].as_str().unwrap());
+    let simulated = crate::support::result(&[
+        "simulate",
+        "configs/learn/systems/drag-cubic.toml",
+        "seed=77",
+        "simulate.records=1",
+    ]);
+    let record = simulated.2.path().join("records/record-000.csv");
+    let output = trainer(&["predict", model.to_str().unwrap(), record.to_str().unwrap(), "--json"]);
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert!(number(&said, "/free_run_rmse") < error("arx"), "{said}");
+}
+
+#[test]
+fn a_killed_study_goes_on_to_the_same_result() {
+    let arguments = [
+        "configs/learn/state-space.toml",
+        "state-space.epochs=2",
+        "state-space.windows=64",
+        "learn.baselines=arx",
+    ];
+    let (code, whole, _) = result(&arguments);
+    assert_eq!(code, 0, "{whole}");
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("run");
+    let resumable = [&arguments[..], &["--json", "--out", out.to_str().unwrap(), "--resume"]].concat();
+    let mut killed = Command::new(env!("CARGO_BIN_EXE_trainer"))
+        .args(&resumable)
+        .current_dir(root())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    std::thread::sleep(std::time::Duration::from_secs(2));
+    killed.kill().unwrap();
+    killed.wait().unwrap();
+    let output = trainer(&resumable);
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = std::fs::read_to_string(out.join("result.json")).unwrap();
+    let resumed: Value = serde_json::from_str(&text).unwrap();
+    let test = |result: &Value| row(result, "state-space")["test"].clone();
+    assert_eq!(test(&resumed), test(&whole));
+}
+
 /// Runs a study with these overrides and expects a refusal with these words.
 fn refused(overrides: &[&str], words: &str) {
     let out = tempfile::tempdir().unwrap();
@@ -87,6 +141,7 @@ fn what_nothing_can_be_learned_from_is_refused() {
     refused(&["learn.learners=sindi"], "did you mean `sindy`?");
     refused(&["learn.baselines=arks"], "baseline");
     refused(&["sindy.library=theta,thetta"], "library term");
+    refused(&["sindy.terms=sin(2*omega)"], "at character 7: `omega` is not known");
     refused(&[&of("simulation=configs/pinn.toml")], "pinn.toml");
 }
 

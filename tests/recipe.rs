@@ -1,6 +1,6 @@
 //! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace.
 
-use crate::support::root;
+use crate::support::{root, trainer};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -140,4 +140,65 @@ fn a_new_effect_takes_two_files_and_is_diagnosed() {
     let text = String::from_utf8_lossy(&diagnosed.stdout).into_owned();
     assert!(diagnosed.status.success(), "{text}{}", String::from_utf8_lossy(&diagnosed.stderr));
     assert!(text.contains("1 passed"), "{text}");
+}
+
+/// Learners of one's own, one of each kind, written by `trainer new`: they compile, train, come back from their files and
+/// give the same bits twice. Building a copy takes minutes; run it with
+/// `cargo test -p trainer --test acceptance recipe::a_new_learner -- --ignored`.
+#[test]
+#[ignore = "builds a copy of the workspace; the command stands in the comment above"]
+fn a_new_learner_takes_one_command_and_trains() {
+    let scratch = workspace();
+    let home = scratch.path();
+    copy(&root().join("configs"), &home.join("configs"));
+    let place = home.to_str().unwrap();
+    for (name, kind) in [("one-layer", "sequence"), ("power-torque", "field"), ("plain-law", "regressor")] {
+        let written = trainer(&["new", "estimator", name, "--kind", kind, "--workspace", place]);
+        assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        let again = trainer(&["new", "estimator", name, "--kind", kind, "--workspace", place]);
+        assert_eq!(again.status.code(), Some(2));
+    }
+    let run = |arguments: &[&str]| {
+        let output = Command::new(env!("CARGO"))
+            .args(arguments)
+            .env("CARGO_TARGET_DIR", root().join("target"))
+            .current_dir(home)
+            .output()
+            .unwrap();
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+        text
+    };
+    let text = run(&["test", "--offline", "--workspace", "--lib", "--", "learners::tests::a_model_predicts"]);
+    assert!(text.contains("a_model_predicts_the_same_from_its_file ... ok"), "{text}");
+    let listed = run(&["run", "--offline", "-p", "trainer", "--", "list", "learners"]);
+    assert!(["one-layer", "power-torque", "plain-law"].iter().all(|name| listed.contains(name)), "{listed}");
+    let config = "configs/learn/one-layer.toml";
+    let trained = run(&["run", "--offline", "-p", "trainer", "--", config, "one-layer.epochs=2", "--json"]);
+    let trained: serde_json::Value = serde_json::from_str(&trained).unwrap();
+    let rows = trained["results"].as_array().unwrap();
+    let error = |id: &str| {
+        let row = rows.iter().find(|row| row["id"] == id).unwrap();
+        row["test"]["free_run_rmse"].as_f64().unwrap()
+    };
+    assert!(error("one-layer") < error("arx"), "{trained}");
+}
+
+#[test]
+fn a_name_that_cannot_be_one_and_a_place_that_is_no_checkout_are_refused() {
+    let nowhere = tempfile::tempdir().unwrap();
+    let place = nowhere.path().to_str().unwrap();
+    for (name, words) in [
+        ("Two Words", "is no identifier"),
+        ("loop", "is no identifier"),
+        ("fine", "is not in a checkout of Ringdown"),
+    ] {
+        let output = trainer(&["new", "estimator", name, "--kind", "field", "--workspace", place]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(words), "{name}: {message}");
+    }
+    let taken =
+        trainer(&["new", "estimator", "lstm", "--kind", "sequence", "--workspace", root().to_str().unwrap()]);
+    assert!(String::from_utf8(taken.stderr).unwrap().contains("there is a learner `lstm` already"));
 }

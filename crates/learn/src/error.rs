@@ -130,6 +130,19 @@ pub enum LearnError {
         /// Length of a warm-up.
         warm_up_s: f64,
     },
+    /// A past that a model cannot start from.
+    #[error(
+        "the past is too short: {samples} of the {needed} samples that the model starts from ({needed_s:.3} s); give it \
+         more of the record, in `trainer predict` with --past"
+    )]
+    ShortPast {
+        /// Samples there are, at the model's own interval.
+        samples: usize,
+        /// Samples needed.
+        needed: usize,
+        /// Their length.
+        needed_s: f64,
+    },
     /// Records of something else than a position.
     #[error("{record} observes a {quantity}; models are learned from positions")]
     NoPosition {
@@ -168,6 +181,9 @@ pub enum LearnError {
     /// A simulator that could not run.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
+    /// A tensor library that gave no answer.
+    #[error(transparent)]
+    Backend(#[from] estimator::FitError),
     /// A diagnosis that was refused.
     #[error("diagnosis: {0}")]
     Diagnosis(String),

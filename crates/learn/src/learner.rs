@@ -2,8 +2,10 @@
 
 use crate::data::DataSet;
 use crate::{LearnError, Model, Stored};
-use estimator::{Cancel, Reached};
+use estimator::{Cancel, Checkpoints, FitContext, Reached, Silent};
 use seed::Seed;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use settings::{Field, Resolved, SettingsError};
 
 /// Form of what is learned.
@@ -30,7 +32,7 @@ impl Kind {
 }
 
 /// One step of a training, for trace and progress.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Step {
     /// Steps so far.
     pub step: u64,
@@ -52,6 +54,8 @@ pub struct Context<'a> {
     pub cancel: &'a Cancel,
     /// Called after every step.
     pub observe: &'a dyn Fn(&Step),
+    /// Where the state of a training is kept; `None` keeps none.
+    pub checkpoints: Option<&'a dyn Checkpoints>,
 }
 
 impl Context<'_> {
@@ -61,6 +65,30 @@ impl Context<'_> {
     /// [`LearnError::Interrupted`].
     pub fn check(&self) -> Result<(), LearnError> {
         if self.cancel.is_requested() { Err(LearnError::Interrupted) } else { Ok(()) }
+    }
+
+    /// The state to begin from, where one was kept.
+    ///
+    /// # Errors
+    /// [`LearnError::Backend`] where it is none of this kind.
+    pub fn resumed<T: DeserializeOwned>(&self) -> Result<Option<T>, LearnError> {
+        Ok(self.kept().resumed()?)
+    }
+
+    /// Keeps a state where it is time to, or where the training is about to stop on request.
+    ///
+    /// # Errors
+    /// [`LearnError::Backend`] where it cannot be kept.
+    pub fn checkpoint<T: Serialize>(&self, step: u64, state: &T) -> Result<(), LearnError> {
+        Ok(self.kept().checkpoint(step, || state)?)
+    }
+
+    fn kept(&self) -> FitContext<'_> {
+        let context = FitContext::new(self.seed.clone(), self.max_steps, &Silent, self.cancel);
+        match self.checkpoints {
+            Some(place) => context.checkpointing_to(place),
+            None => context,
+        }
     }
 
     /// A budget within the cap.

@@ -14,12 +14,14 @@
 pub mod baselines;
 pub mod data;
 mod error;
+pub mod expression;
 pub mod flow;
 pub mod judge;
 mod learner;
 pub mod learners;
 mod linear;
 mod model;
+pub mod sequence;
 mod stored;
 #[cfg(test)]
 mod testing;

@@ -12,7 +12,7 @@ use settings::{Document, Resolved, Section};
 pub(crate) static NEVER: Cancel = Cancel::new();
 
 pub(crate) fn context() -> Context<'static> {
-    Context { seed: Seed::new(1), max_steps: None, cancel: &NEVER, observe: &|_| () }
+    Context { seed: Seed::new(1), max_steps: None, cancel: &NEVER, observe: &|_| (), checkpoints: None }
 }
 
 /// Friction and a weight on a spring, swinging freely: θ̈ = −16·θ − 0.12·θ̇ − 0.15·sign θ̇ − 24·sin θ.

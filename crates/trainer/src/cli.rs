@@ -7,6 +7,7 @@ use crate::commands::explain::ExplainArguments;
 use crate::commands::export::ExportArguments;
 use crate::commands::init::InitArguments;
 use crate::commands::list::Listing;
+use crate::commands::new::NewArguments;
 use crate::commands::predict::PredictArguments;
 use crate::commands::schema::Purpose;
 use crate::commands::sweep::arguments::SweepArguments;
@@ -37,6 +38,7 @@ Examples:
   trainer diagnose record.csv --nominal nominal.toml
   trainer configs/learn.toml                      the dynamics, learned and judged on unseen records
   trainer predict MODEL record.csv                a learned model on a record
+  trainer new estimator NAME --kind sequence      a learner of your own, which trains at once
   trainer simulate configs/simulate.toml          records whose truth is known, and sealed
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable
@@ -45,6 +47,7 @@ Examples:
   trainer explain fit.tolerance_percent configs/pinn.toml
   trainer schema > ringdown.schema.json           for editors: #:schema ringdown.schema.json
   trainer list estimators
+  trainer list learners
   trainer list effects
   trainer list runs                               what lies below reports/runs
   trainer report reports/runs/RUN
@@ -89,7 +92,7 @@ pub(crate) enum Command {
     Explain(ExplainArguments),
     /// Looks at a log and writes a nominal simulator and a configuration to go on from
     Init(Box<InitArguments>),
-    /// Lists estimators, effects or runs
+    /// Lists estimators, learners of dynamics, effects or runs
     List {
         /// What to list
         #[arg(value_enum, default_value_t = Listing::Estimators)]
@@ -100,6 +103,8 @@ pub(crate) enum Command {
         #[command(flatten)]
         output: Output,
     },
+    /// Writes the skeleton of something new, which compiles and trains
+    New(NewArguments),
     /// Runs a learned model on a record that it never saw
     Predict(PredictArguments),
     /// Prints the JSON Schema of configurations, for editors

@@ -29,7 +29,7 @@ mod terminal;
 use clap::{CommandFactory, FromArgMatches};
 use cli::{Arguments, Command};
 use commands::{
-    check, cite, compare, diagnose, explain, export, init, list, manual, predict, report, run, schema,
+    check, cite, compare, diagnose, explain, export, init, list, manual, new, predict, report, run, schema,
     simulate, sweep, trials, verify,
 };
 use error::TrainerError;
@@ -93,6 +93,7 @@ fn dispatch(arguments: Arguments) -> Result<Outcome, TrainerError> {
         Some(Command::Diagnose(arguments)) => diagnose::command(&arguments),
         Some(Command::Init(arguments)) => init::command(&arguments),
         Some(Command::Schema { purpose }) => schema::command(purpose),
+        Some(Command::New(arguments)) => new::command(&arguments),
         Some(Command::Predict(arguments)) => predict::command(&arguments),
         Some(Command::Simulate(arguments)) => simulate::command(&arguments),
         Some(Command::Trials(arguments)) => trials::command(&arguments),

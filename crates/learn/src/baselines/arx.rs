@@ -3,7 +3,7 @@
 //! yₖ = c + Σ aᵢ·yₖ₋ᵢ + Σ bᵢ·uₖ₋ᵢ by least squares of one step (Ljung, System Identification, 2nd ed. 1999, section 4.2).
 //! The order is that whose free run validates best.
 
-use crate::data::{DataSet, Trajectory};
+use crate::data::DataSet;
 use crate::judge::validation_error;
 use crate::linear::least_squares;
 use crate::{Ahead, LearnError, Model, Past, Predicted};
@@ -32,9 +32,20 @@ impl Arx {
     /// # Errors
     /// [`LearnError::Unsolvable`] where no order can be fitted.
     pub fn fit(data: &DataSet) -> Result<Self, LearnError> {
+        Self::validated(data, &[0.0])
+    }
+
+    /// The order and the ridge, a share of each regressor's mean square, whose free run validates best. A ridge keeps weights
+    /// of smooth inputs from canceling each other.
+    ///
+    /// # Errors
+    /// As [`Self::fit`].
+    pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
         let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
-        let fitted =
-            ORDERS.iter().filter(|order| **order < shortest.max(8)).filter_map(|&order| of(data, order));
+        let orders = ORDERS.iter().filter(|order| **order < shortest.max(8));
+        let fitted = orders
+            .flat_map(|&order| ridges.iter().map(move |&ridge| (order, ridge)))
+            .filter_map(|(order, ridge)| of(data, order, ridge));
         let scored = fitted.map(|model| (validation_error(&model, data), model));
         let best = scored.min_by(|a, b| a.0.total_cmp(&b.0));
         best.map(|(_, model)| model).ok_or(LearnError::Unsolvable {
@@ -44,7 +55,14 @@ impl Arx {
     }
 }
 
-fn of(data: &DataSet, order: usize) -> Option<Arx> {
+impl Arx {
+    /// The same without a bound to what it predicts.
+    pub(crate) fn unbounded(self) -> Self {
+        Self { bound: f64::INFINITY, ..self }
+    }
+}
+
+fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
     let driven = data.is_driven();
     let width = order * (1 + usize::from(driven)) + 1;
     let stride = (data.training_samples() / MOST_ROWS).max(1);
@@ -59,7 +77,15 @@ fn of(data: &DataSet, order: usize) -> Option<Arx> {
             right.push(part.values().get(now).copied()?);
         }
     }
-    let rows = DMatrix::from_row_slice(right.len(), width, &rows);
+    let count = right.len();
+    let mut rows = DMatrix::from_row_slice(count, width, &rows);
+    if ridge > 0.0 {
+        let sizes = rows.column_iter().map(|column| ridge.sqrt() * column.norm());
+        let below = DMatrix::from_diagonal(&DVector::from_iterator(width, sizes));
+        rows = rows.resize_vertically(count + width, 0.0);
+        rows.rows_mut(count, width).copy_from(&below);
+        right.resize(count + width, 0.0);
+    }
     let weights = least_squares(&rows, &DVector::from_vec(right))?;
     let (positions, rest) = weights.as_slice().split_at_checked(order)?;
     let (constant, inputs) = rest.split_last()?;
@@ -77,10 +103,11 @@ impl Model for Arx {
         let order = self.positions.len();
         let known = past.values.len();
         if known < order {
-            let name = "past".to_owned();
-            return Trajectory::new(name.clone(), Vec::new(), Vec::new(), None).and(Err(
-                LearnError::TooShort { record: name, samples: known, needed: order, warm_up_s: 0.0 },
-            ));
+            let spacing =
+                past.times_s.last().zip(past.times_s.first()).map_or(0.0, |(last, first)| last - first)
+                    / known.saturating_sub(1).max(1) as f64;
+            let needed_s = spacing * (order as f64 - 1.0);
+            return Err(LearnError::ShortPast { samples: known, needed: order, needed_s });
         }
         let mut values = past.values.to_vec();
         let inputs = [past.input.unwrap_or_default(), ahead.input.unwrap_or_default()].concat();

@@ -11,8 +11,8 @@ mod windows;
 
 pub use period::{noise_floor, period};
 pub use set::{DataSet, Making, Scale};
-pub(crate) use smoothing::local_state;
 pub use smoothing::{LocalState, local_states};
+pub(crate) use smoothing::{interpolated, local_state};
 pub use split::{Split, SplitKind};
 pub use trajectory::{InputHold, Trajectory};
 pub use windows::{Window, windows};

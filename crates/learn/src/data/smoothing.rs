@@ -1,4 +1,4 @@
-//! Velocity and acceleration by local polynomials, on uneven times too.
+//! Velocity and acceleration by local polynomials, and values between samples, on uneven times too.
 
 use super::Trajectory;
 use nalgebra::{SMatrix, SVector};
@@ -59,4 +59,17 @@ pub(crate) fn local_state(part: &Trajectory, sample: usize, time: f64, half: f64
         acceleration: 2.0 * curvature / (half * half),
         input: part.input().and_then(|input| input.get(sample)).copied().unwrap_or(0.0),
     })
+}
+
+/// Value at a time from the four samples around it: Lagrange's cubic; exact at a sample.
+pub(crate) fn interpolated(times: &[f64], values: &[f64], time: f64) -> f64 {
+    let next = times.partition_point(|&other| other < time);
+    let from = next.saturating_sub(2).min(times.len().saturating_sub(4));
+    let near: Vec<(f64, f64)> =
+        times.iter().copied().zip(values.iter().copied()).skip(from).take(4).collect();
+    let of = |(place, (own, value)): (usize, &(f64, f64))| {
+        let others = near.iter().enumerate().filter(|(other, _)| *other != place);
+        value * others.map(|(_, (other, _))| (time - other) / (own - other)).product::<f64>()
+    };
+    near.iter().enumerate().map(of).sum()
 }

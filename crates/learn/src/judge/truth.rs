@@ -93,7 +93,7 @@ impl Truth {
         let right = DVector::from_column_slice(&self.accelerations);
         let weights = least_squares(&rows, &right)?;
         let off = (&rows * &weights - &right).norm() / right.norm();
-        (off < 1e-6).then(|| terms.iter().copied().zip(weights.iter().copied()).collect())
+        (off < 1e-6).then(|| terms.iter().cloned().zip(weights.iter().copied()).collect())
     }
 
     /// The learned coefficients beside the true ones, of every term that either has.
@@ -116,7 +116,7 @@ impl Truth {
             let value = learned.map_or(0.0, |own| own.value);
             let truth = if negligible { 0.0 } else { truth };
             let std_errors = learned.and_then(|own| own.std_error).map(|error| (value - truth) / error);
-            Some(CoefficientError { name: term.name().to_owned(), truth, value, std_errors })
+            Some(CoefficientError { name: term.name().into_owned(), truth, value, std_errors })
         });
         Some(errors.collect())
     }

@@ -8,17 +8,13 @@
 //! Solin, Särkkä, Statistics and Computing 30 (2020) 419 (reduced rank); Rasmussen, Williams, Gaussian Processes for
 //! Machine Learning, MIT Press 2006, chapter 5 (evidence).
 
-use super::neural_ode::laplace;
-use super::torque::{Base, Corrected, Correction, Progress, pretrained, progressive};
+use super::torque::{Base, Corrected, Correction, Progress, finished, fit, pretrained, restored};
 use crate::data::{DataSet, local_states};
-use crate::flow::{Field, Fit, FlowModel, Penalty, Posterior, Running};
-use crate::judge::validation_error;
+use crate::flow::{Field, Fit, Penalty};
 use crate::linear::raised;
-use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Model, Stored};
-use estimator::Reached;
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner};
 use nalgebra::{DMatrix, DVector};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use settings::{Default, Field as Key, Kind as Value};
 use std::f64::consts::PI;
 
@@ -34,7 +30,7 @@ pub const ENTRY: Entry = Entry {
     kind: Kind::Field,
     fields: FIELDS,
     build: |resolved| Ok(Box::new(resolved.section::<GaussianProcess>(ID)?) as Box<dyn Learner>),
-    restore: |stored| restored(stored),
+    restore: |stored| restored::<Basis>(ID, stored),
 };
 
 const PLAIN: Key =
@@ -173,10 +169,6 @@ impl Learner for GaussianProcess {
         let base = Base::new(data, self.dry_friction);
         let basis = Basis { functions: self.functions, half: self.box_of(data) };
         let field = Corrected { base, correction: basis };
-        let model = |weights: &[f64], noise: f64| {
-            model(&field, weights, Posterior::default(), Running::new(data, noise))
-        };
-        let validate = |weights: &[f64]| validation_error(&model(weights, data.noise), data);
         let progress = Progress { samples: self.samples, most_steps: self.max_steps };
         let mut kernel = Kernel { amplitude: 1.0, length: 1.0 };
         let (mut weights, mut steps) = (vec![0.0; field.weights()], 0);
@@ -185,17 +177,14 @@ impl Learner for GaussianProcess {
         let mut last = None;
         for _ in 0..2 {
             let penalty = penalty(&base, &basis, kernel);
-            let (fit, own) = progressive(&field, data, context, (&penalty, progress), weights, &validate)?;
+            let (fit, own) = fit(ID, &field, data, context, (&penalty, progress), weights)?;
             steps += own;
             weights = fit.weights.clone();
             kernel = best_kernel(&base, &basis, &fit, &penalty).unwrap_or(kernel);
             last = Some((fit, penalty));
         }
         let (fit, penalty) = last.ok_or(LearnError::Interrupted)?;
-        let posterior = laplace(&fit, &penalty, context);
-        let reached = if fit.converged { Reached::Converged } else { Reached::BudgetSpent };
-        let whole = FlowModel { posterior, ..model(&fit.weights, fit.rms()) };
-        Ok(Fitted { model: Box::new(whole), reached, steps })
+        Ok(finished(ID, &field, data, context, (&fit, steps, &penalty)))
     }
 }
 
@@ -241,32 +230,4 @@ fn best_kernel(base: &Base, basis: &Basis, fit: &Fit, used: &Penalty) -> Option<
     let scored =
         grid.filter_map(|kernel| Some((evidence(kernel).filter(|value| value.is_finite())?, kernel)));
     scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, kernel)| kernel)
-}
-
-fn model(field: &Corrected<Basis>, weights: &[f64], posterior: Posterior, running: Running) -> FlowModel {
-    FlowModel {
-        learner: ID,
-        form: json!({ "base": field.base, "basis": field.correction }),
-        field: Box::new(field.clone()),
-        weights: weights.to_vec(),
-        posterior,
-        running,
-        coefficients: Vec::new(),
-        equation: None,
-    }
-}
-
-#[derive(Deserialize)]
-struct Form {
-    base: Base,
-    basis: Basis,
-}
-
-fn restored(stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
-    let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
-        let form: Form = serde_json::from_value(form.clone())
-            .map_err(|error| LearnError::Stored { problem: format!("the form of the process: {error}") })?;
-        Ok(Box::new(Corrected { base: form.base, correction: form.basis }))
-    };
-    Ok(Box::new(FlowModel::restore(ID, stored, field)?))
 }

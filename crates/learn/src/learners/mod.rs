@@ -3,16 +3,33 @@
 pub mod bayesian;
 pub mod gaussian_process;
 pub mod library;
+pub mod lstm;
 pub mod neural_ode;
+pub mod pinn;
 pub mod sindy;
+pub mod state_space;
+pub mod symbolic;
+pub mod temporal_convolution;
 pub mod torque;
+pub mod transformer;
 pub mod weak_sindy;
 
 use crate::Entry;
 
 /// Every learner, in the order of tables.
-pub static LEARNERS: &[Entry] =
-    &[sindy::ENTRY, weak_sindy::ENTRY, neural_ode::ENTRY, gaussian_process::ENTRY, bayesian::ENTRY];
+pub static LEARNERS: &[Entry] = &[
+    sindy::ENTRY,
+    weak_sindy::ENTRY,
+    neural_ode::ENTRY,
+    gaussian_process::ENTRY,
+    bayesian::ENTRY,
+    pinn::ENTRY,
+    symbolic::ENTRY,
+    lstm::ENTRY,
+    transformer::ENTRY,
+    temporal_convolution::ENTRY,
+    state_space::ENTRY,
+];
 
 /// The learner with an id.
 #[must_use]

@@ -8,17 +8,12 @@
 //! Chen, Rubanova, Bettencourt, Duvenaud, NeurIPS 2018; Rackauckas et al., arXiv:2001.04385 (universal differential
 //! equations); MacKay, Neural Computation 4 (1992) 448 (Laplace's approximation).
 
-use super::torque::{Base, Corrected, Correction, Progress, pretrained, progressive};
+use super::torque::{Base, Corrected, Correction, Progress, finished, fit, pretrained, restored};
 use crate::data::DataSet;
-use crate::flow::{Field, Fit, FlowModel, Penalty, Posterior, Running};
-use crate::judge::validation_error;
-use crate::linear::inverse;
-use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Model, Stored};
-use estimator::Reached;
-use nalgebra::{DMatrix, DVector};
+use crate::flow::{Field, Penalty};
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner};
 use rand_distr::{Distribution, StandardNormal};
 use serde::{Deserialize, Serialize};
-use serde_json::json;
 use settings::{Default, Field as Key, Kind as Value};
 
 /// Identifier.
@@ -33,7 +28,7 @@ pub const ENTRY: Entry = Entry {
     kind: Kind::Field,
     fields: FIELDS,
     build: |resolved| Ok(Box::new(resolved.section::<NeuralOde>(ID)?) as Box<dyn Learner>),
-    restore: |stored| restored(stored),
+    restore: |stored| restored::<Network>(ID, stored),
 };
 
 const PLAIN: Key =
@@ -148,17 +143,10 @@ impl Learner for NeuralOde {
         };
         let count = field.weights();
         let penalty = Penalty { mean: vec![0.0; count], precision: vec![self.weight_decay; count] };
-        let model = |weights: &[f64], noise: f64| {
-            model(&field, weights, Posterior::default(), Running::new(data, noise))
-        };
-        let validate = |weights: &[f64]| validation_error(&model(weights, data.noise), data);
         let start = self.first_guess(&field, data, &penalty, context);
         let progress = Progress { samples: self.samples, most_steps: self.max_steps };
-        let (fit, steps) = progressive(&field, data, context, (&penalty, progress), start, &validate)?;
-        let posterior = laplace(&fit, &penalty, context);
-        let reached = if fit.converged { Reached::Converged } else { Reached::BudgetSpent };
-        let whole = FlowModel { posterior, ..model(&fit.weights, fit.rms()) };
-        Ok(Fitted { model: Box::new(whole), reached, steps })
+        let (fit, steps) = fit(ID, &field, data, context, (&penalty, progress), start)?;
+        Ok(finished(ID, &field, data, context, (&fit, steps, &penalty)))
     }
 }
 
@@ -184,41 +172,4 @@ impl NeuralOde {
         let best = (0..self.restarts).map(drawn).min_by(|a, b| a.1.total_cmp(&b.1));
         best.map_or_else(|| vec![0.0; field.weights()], |(weights, _)| weights)
     }
-}
-
-/// Draws of the weights by Laplace's approximation.
-pub(super) fn laplace(fit: &Fit, penalty: &Penalty, context: &Context<'_>) -> Posterior {
-    let precision = DMatrix::from_diagonal(&DVector::from_column_slice(&penalty.precision));
-    let covariance = inverse(&(&fit.information / fit.variance() + precision));
-    covariance
-        .map(|covariance| Posterior::normal(&fit.weights, &covariance, &context.seed))
-        .unwrap_or_default()
-}
-
-fn model(field: &Corrected<Network>, weights: &[f64], posterior: Posterior, running: Running) -> FlowModel {
-    FlowModel {
-        learner: ID,
-        form: json!({ "base": field.base, "network": field.correction }),
-        field: Box::new(field.clone()),
-        weights: weights.to_vec(),
-        posterior,
-        running,
-        coefficients: Vec::new(),
-        equation: None,
-    }
-}
-
-#[derive(Deserialize)]
-struct Form {
-    base: Base,
-    network: Network,
-}
-
-fn restored(stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
-    let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
-        let form: Form = serde_json::from_value(form.clone())
-            .map_err(|error| LearnError::Stored { problem: format!("the form of the network: {error}") })?;
-        Ok(Box::new(Corrected { base: form.base, correction: form.network }))
-    };
-    Ok(Box::new(FlowModel::restore(ID, stored, field)?))
 }

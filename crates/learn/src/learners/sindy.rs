@@ -9,6 +9,7 @@
 
 use super::library::{Finishing, Regression, Term, finish, inclusion, restore, thresholded};
 use crate::data::{DataSet, local_states};
+use crate::expression::{Expression, Variable};
 use crate::linear::least_squares;
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Place};
 use nalgebra::{DMatrix, DVector};
@@ -38,6 +39,8 @@ pub const ENTRY: Entry = Entry {
 pub struct SparseSettings {
     /// Candidate terms by name.
     pub library: Vec<String>,
+    /// Further candidates, expressions that can be read.
+    pub terms: Vec<String>,
     /// Contribution to the acceleration below which a term is left out, relative to the whole.
     pub threshold: f64,
     /// Members of the ensemble.
@@ -71,6 +74,13 @@ pub(crate) const FIELDS: &[Field] = &[
         ]),
         meaning: "Candidate terms of the acceleration; besides those of the default there is \"cos(theta)\". \"u\" is left \
                   out where records have no input.",
+        ..PLAIN
+    },
+    Field {
+        key: "terms",
+        kind: Value::Texts { at_least: 0, at_most: 100 },
+        default: Default::Texts(&[]),
+        meaning: "Further candidates, as expressions of theta, theta_dot and u: \"sin(2*theta)\", \"theta*|theta_dot|\".",
         ..PLAIN
     },
     Field {
@@ -132,18 +142,32 @@ impl SparseSettings {
         section: &str,
         library: Vec<String>,
     ) -> Result<Self, SettingsError> {
+        let terms = Vec::new();
         let settings =
-            Self { library, threshold: 0.0, members: 0, refit: true, refit_samples: 0, max_steps: 0 };
+            Self { library, terms, threshold: 0.0, members: 0, refit: true, refit_samples: 0, max_steps: 0 };
         Self::checked(resolved, section, settings)
     }
 
     fn checked(resolved: &Resolved, section: &str, settings: Self) -> Result<Self, SettingsError> {
-        let is_known = |name: &String| Term::ALL.iter().any(|term| term.name() == name);
+        let is_known = |name: &String| Term::ALL.iter().any(|term| term.name() == name.as_str());
+        for text in &settings.terms {
+            if let Err(problem) = text.parse::<Expression>() {
+                let key = format!("{section}.terms");
+                let own = resolved.settings().iter().find(|setting| setting.key() == key);
+                return Err(SettingsError::BadValue {
+                    origin: own.map_or(Origin::Default, |setting| setting.origin.clone()),
+                    key,
+                    found: text.clone(),
+                    expected: format!("expressions; {problem}"),
+                    unit: String::new(),
+                });
+            }
+        }
         if let Some(unknown) = settings.library.iter().find(|name| !is_known(name)) {
             let key = format!("{section}.library");
             let own = resolved.settings().iter().find(|setting| setting.key() == key);
             let origin = own.map_or(Origin::Default, |setting| setting.origin.clone());
-            let known = Term::ALL.iter().map(|term| term.name().to_owned()).collect();
+            let known = Term::ALL.iter().map(|term| term.name().into_owned()).collect();
             return Err(SettingsError::unknown_name(origin, "library term", unknown, known));
         }
         Ok(settings)
@@ -152,15 +176,17 @@ impl SparseSettings {
     /// The terms that the data can have: no input without one, no sine of a displacement, and no sine where the swings
     /// are so small that a spring and its cube make the same.
     pub(crate) fn terms(&self, data: &DataSet) -> Vec<Term> {
-        let has = |term: Term| self.library.iter().any(|name| name == term.name());
-        let same = has(Term::Position) && has(Term::Cube) && sine_is_cubic(data);
+        let has = |term: &Term| self.library.iter().any(|name| *name == term.name());
+        let same = has(&Term::Position) && has(&Term::Cube) && sine_is_cubic(data);
         let applies = |term: &Term| match term {
             Term::Input => data.is_driven(),
             Term::Sine => data.unit == "rad" && !same,
             Term::Cosine => data.unit == "rad",
+            Term::Own(expression) => data.is_driven() || !expression.reads(Variable::Input),
             _ => true,
         };
-        Term::ALL.into_iter().filter(|term| has(*term)).filter(applies).collect()
+        let own = self.terms.iter().filter_map(|text| text.parse().ok()).map(Term::Own);
+        Term::ALL.into_iter().filter(has).chain(own).filter(applies).collect()
     }
 
     pub(crate) fn finishing(&self) -> Finishing {

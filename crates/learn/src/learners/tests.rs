@@ -45,6 +45,27 @@ fn sindy_finds_drag_and_a_stiffening_spring_under_an_input() {
     assert!(scores.free_run_rmse < 1.05 * ceiling.free_run_rmse, "{scores:?} {ceiling:?}");
 }
 
+/// The sine that the law needs stands in the user's terms only, beside one that it does not need.
+#[test]
+fn sindy_takes_the_users_own_terms() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let law = ["library=theta,theta_dot,sign(theta_dot)", "terms=sin(theta),theta*|theta_dot|", "members=0"];
+    let fitted = learner("sindy", &law).fit(&data, &context()).unwrap();
+    let names: Vec<&str> = fitted.model.coefficients().iter().map(|own| own.name.as_str()).collect();
+    assert_eq!(
+        names,
+        ["theta", "theta_dot", "sign(theta_dot)", "sin(theta)"],
+        "{:?}",
+        fitted.model.equation()
+    );
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    assert!(truth.torque_error(fitted.model.as_ref()).unwrap() < 0.01);
+    let bytes = fitted.model.stored().unwrap().to_bytes().unwrap();
+    let again = (super::find("sindy").unwrap().restore)(&crate::Stored::from_bytes(&bytes).unwrap()).unwrap();
+    assert_eq!(runs(again.as_ref(), &data), runs(fitted.model.as_ref(), &data));
+}
+
 #[test]
 fn without_a_refit_noise_leaves_a_bias() {
     let system = friction_and_gravity();
@@ -111,6 +132,38 @@ fn a_posterior_has_the_exact_fits_center_and_width() {
     }
 }
 
+#[test]
+fn a_pinn_infers_coefficients_within_three_standard_errors() {
+    let (free, driven) = (friction_and_gravity(), drag_and_cubic());
+    for (system, data, law) in [
+        (&free, data_set(&free, false, 1e-3), r#"["theta","theta_dot","sign(theta_dot)","sin(theta)"]"#),
+        (
+            &driven,
+            data_set(&driven, true, 2e-3),
+            r#"["theta","theta_dot","theta_dot*|theta_dot|","theta^3","u"]"#,
+        ),
+    ] {
+        let fitted =
+            learner("pinn", &[&format!("library={law}"), "samples=2000"]).fit(&data, &context()).unwrap();
+        let truth = Truth::new(system, &data).unwrap().unwrap();
+        for error in truth.coefficient_errors(fitted.model.as_ref()).unwrap() {
+            assert!(error.std_errors.unwrap().abs() < 3.0, "{error:?}");
+            let size = (error.value - error.truth) / error.std_errors.unwrap();
+            assert!(size < 0.3 * error.truth.abs(), "{error:?}");
+        }
+    }
+}
+
+#[test]
+fn symbolic_regression_finds_a_law_that_predicts() {
+    let system = friction_and_gravity();
+    let data = data_set(&system, false, 1e-3);
+    let fitted = learner("symbolic", &[]).fit(&data, &context()).unwrap();
+    let truth = Truth::new(&system, &data).unwrap().unwrap();
+    let error = truth.torque_error(fitted.model.as_ref()).unwrap();
+    assert!(error < 0.02, "{error} {:?}", fitted.model.equation());
+}
+
 /// What the training does is in the weights: without a step they are the nominal simulator's.
 #[test]
 fn an_untrained_network_is_the_nominal_simulator() {
@@ -150,6 +203,12 @@ fn quick(entry: &crate::Entry) -> &'static [&'static str] {
     let has = |key: &str| entry.fields.iter().any(|field| field.key == key);
     if has("refit") {
         &["members=5", "refit_samples=1500"]
+    } else if has("epochs") {
+        &["epochs=1", "windows=32", "samples_per_period=16"]
+    } else if has("generations") {
+        &["generations=3", "population=20", "samples=600", "max_steps=2"]
+    } else if has("window_periods") {
+        &["samples=300", "max_steps=1"]
     } else if has("draws") {
         &["samples=600", "warm_up=5", "draws=10"]
     } else {

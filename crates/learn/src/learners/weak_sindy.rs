@@ -115,7 +115,7 @@ fn weak_row(
 }
 
 /// (1 − s²)ⁿ with its first two derivatives with respect to s; 0 outside of −1 to 1.
-fn test_function(s: f64) -> [f64; 3] {
+pub(super) fn test_function(s: f64) -> [f64; 3] {
     let (n, base) = (f64::from(EXPONENT), 1.0 - s * s);
     if base <= 0.0 {
         return [0.0; 3];

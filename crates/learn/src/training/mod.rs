@@ -20,7 +20,10 @@ use serde::{Deserialize, Serialize};
 /// A model with a loss.
 pub trait Trainable {
     /// Weights to begin from, drawn from a seed.
-    fn initial(&self, seed: &Seed) -> Vec<f64>;
+    ///
+    /// # Errors
+    /// [`LearnError`] where they cannot be drawn.
+    fn initial(&self, seed: &Seed) -> Result<Vec<f64>, LearnError>;
 
     /// Mean loss of a batch of windows, and its gradient into `gradient`, which is as long as the weights and zero.
     ///
@@ -33,6 +36,11 @@ pub trait Trainable {
     /// # Errors
     /// [`LearnError`] where it cannot be computed.
     fn validation(&self, weights: &[f64]) -> Result<f64, LearnError>;
+
+    /// Root of the loss's unit, in the position's unit.
+    fn unit(&self) -> f64 {
+        1.0
+    }
 }
 
 /// How a model is trained.
@@ -86,7 +94,8 @@ const DECAYS: [f64; 2] = [0.9, 0.999];
 /// Keeps Adam's denominator from vanishing.
 const SMALL: f64 = 1e-8;
 
-/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch.
+/// Trains on windows, from the beginning or from a state that was kept; `keep` is called after every epoch, and with
+/// the state before the epoch in which the training was interrupted.
 ///
 /// The order of the windows in an epoch follows from the seed and the epoch's number alone, so that a resumed training
 /// sees what an uninterrupted one would.
@@ -99,7 +108,7 @@ pub fn train(
     training: &Training,
     from: Option<State>,
     context: &Context<'_>,
-    keep: &mut dyn FnMut(&State),
+    keep: &mut dyn FnMut(&State) -> Result<(), LearnError>,
 ) -> Result<Trained, LearnError> {
     if windows.is_empty() {
         let problem =
@@ -113,17 +122,24 @@ pub fn train(
     let of_epoch = windows.len().div_ceil(training.batch.max(1)) as u64;
     let budget = context.steps(training.epochs * of_epoch);
     while state.steps < budget && state.waited < training.patience {
-        let loss = state.epoch(model, windows, training, (of_epoch, budget), context)?;
+        let before = state.clone();
+        let loss = match state.epoch(model, windows, training, (of_epoch, budget), context) {
+            Err(LearnError::Interrupted) => {
+                keep(&before)?;
+                return Err(LearnError::Interrupted);
+            }
+            loss => loss?,
+        };
         let validation = model.validation(&state.weights)?;
         state.judge(validation);
         let phase = format!("epoch {}", state.epoch);
         (context.observe)(&Step {
             step: state.steps,
             phase,
-            train: loss.sqrt(),
+            train: loss.sqrt() * model.unit(),
             validation: Some(validation),
         });
-        keep(&state);
+        keep(&state)?;
     }
     let stopped_early = state.waited >= training.patience;
     Ok(Trained { state, stopped_early })
@@ -131,7 +147,7 @@ pub fn train(
 
 impl State {
     fn new(model: &dyn Trainable, context: &Context<'_>) -> Result<Self, LearnError> {
-        let weights = model.initial(&context.seed.child("initial weights"));
+        let weights = model.initial(&context.seed.child("initial weights"))?;
         let best_validation = model.validation(&weights)?;
         let zeros = vec![0.0; weights.len()];
         let best = weights.clone();

@@ -14,8 +14,8 @@ impl Line {
 }
 
 impl Trainable for Line {
-    fn initial(&self, _seed: &Seed) -> Vec<f64> {
-        vec![0.0, 0.0]
+    fn initial(&self, _seed: &Seed) -> Result<Vec<f64>, LearnError> {
+        Ok(vec![0.0, 0.0])
     }
 
     fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError> {
@@ -50,7 +50,7 @@ fn line() -> (Line, Vec<Window>) {
 #[test]
 fn adam_reaches_the_least_squares_line() {
     let (model, all) = line();
-    let trained = train(&model, &all, &training(200), None, &context(), &mut |_| ()).unwrap();
+    let trained = train(&model, &all, &training(200), None, &context(), &mut |_| Ok(())).unwrap();
     // A sampled oscillation is its own doubled last value less the one before, nearly.
     assert!(trained.state.best_validation < 0.02, "{:?}", trained.state);
     assert!((trained.state.best[1] - 1.9).abs() < 0.2 && (trained.state.best[0] + 0.95).abs() < 0.2);
@@ -59,16 +59,17 @@ fn adam_reaches_the_least_squares_line() {
 #[test]
 fn a_resumed_training_ends_in_the_same_bits() {
     let (model, all) = line();
-    let whole = train(&model, &all, &training(12), None, &context(), &mut |_| ()).unwrap();
+    let whole = train(&model, &all, &training(12), None, &context(), &mut |_| Ok(())).unwrap();
     let mut kept = None;
     train(&model, &all, &training(12), None, &context(), &mut |state| {
         if state.epoch == 5 {
             kept = Some(serde_json::to_string(state).unwrap());
         }
+        Ok(())
     })
     .unwrap();
     let from = serde_json::from_str(&kept.unwrap()).unwrap();
-    let resumed = train(&model, &all, &training(12), Some(from), &context(), &mut |_| ()).unwrap();
+    let resumed = train(&model, &all, &training(12), Some(from), &context(), &mut |_| Ok(())).unwrap();
     assert_eq!(resumed, whole);
 }
 
@@ -76,14 +77,14 @@ fn a_resumed_training_ends_in_the_same_bits() {
 fn training_stops_where_validation_gets_no_better() {
     let (model, all) = line();
     let impatient = Training { patience: 3, ..training(5000) };
-    let trained = train(&model, &all, &impatient, None, &context(), &mut |_| ()).unwrap();
+    let trained = train(&model, &all, &impatient, None, &context(), &mut |_| Ok(())).unwrap();
     assert!(trained.stopped_early && trained.state.epoch < 5000);
 }
 
 #[test]
 fn without_a_window_there_is_nothing_to_train_on() {
     let (model, _) = line();
-    let error = train(&model, &[], &training(1), None, &context(), &mut |_| ()).unwrap_err().to_string();
+    let error = train(&model, &[], &training(1), None, &context(), &mut |_| Ok(())).unwrap_err().to_string();
     assert!(error.contains("shorten them"), "{error}");
 }
 

@@ -10,6 +10,7 @@ pub(crate) mod init;
 pub(crate) mod learn;
 pub(crate) mod list;
 pub(crate) mod manual;
+pub(crate) mod new;
 pub(crate) mod predict;
 pub(crate) mod report;
 pub(crate) mod run;

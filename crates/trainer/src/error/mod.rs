@@ -3,6 +3,7 @@
 mod kept;
 mod launch;
 mod learn;
+mod new;
 mod resume;
 mod sweep;
 mod table;
@@ -24,6 +25,7 @@ use workflow::WorkflowError;
 pub(crate) use kept::KeptError;
 pub(crate) use launch::LaunchError;
 pub(crate) use learn::LearnCommandError;
+pub(crate) use new::NewError;
 pub(crate) use resume::ResumeError;
 pub(crate) use sweep::SweepCommandError;
 pub(crate) use table::TableError;
@@ -88,6 +90,8 @@ pub(crate) enum TrainerError {
     Workflow(#[from] WorkflowError),
     #[error(transparent)]
     Learn(#[from] LearnCommandError),
+    #[error(transparent)]
+    New(#[from] NewError),
     #[error(transparent)]
     Kept(#[from] KeptError),
     #[error("{folder}: cannot be listed: {problem}; expected a folder with a folder for each case")]
@@ -164,6 +168,7 @@ impl TrainerError {
             | Self::Workflow(_)
             | Self::Kept(_)
             | Self::Learn(_)
+            | Self::New(_)
             | Self::Cases { .. }
             | Self::NoCases { .. }
             | Self::Labels { .. }

@@ -36,7 +36,8 @@ pub fn tried(
         }
     };
     let start = Instant::now();
-    let fitted = attempt(ready, method, &Context { seed, max_steps, cancel, observe: &observe });
+    let fitted =
+        attempt(ready, method, &Context { seed, max_steps, cancel, observe: &observe, checkpoints: None });
     let seconds = start.elapsed().as_secs_f64();
     Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
 }

@@ -7,18 +7,17 @@
 
 mod nuts;
 
-use super::library::{Library, Regression, Term, restore, thresholded};
+use super::library::{Library, Regression, law, restore, thresholded};
 use super::sindy::SparseSettings;
 use super::torque::{Progress, progressive};
 use super::weak_sindy;
 use crate::data::{DataSet, Trajectory};
-use crate::flow::{FieldShooter, Fit, FlowModel, Penalty, Posterior, Running, Shooter, State};
+use crate::flow::{FieldShooter, Fit, Penalty, Posterior, Running, Shooter, State};
 use crate::judge::validation_error;
-use crate::{Coefficient, Context, Entry, Fitted, Kind, LearnError, Learner};
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner};
 use estimator::Reached;
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 use serde::Deserialize;
-use serde_json::json;
 use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
 
 /// Identifier.
@@ -120,7 +119,7 @@ impl Learner for Bayesian {
         let start = thresholded(&regression, 0.0);
         let flat = Penalty { mean: vec![0.0; terms.len()], precision: vec![0.0; terms.len()] };
         let plain = |weights: &[f64]| {
-            model(&library, weights, None, Posterior::default(), Running::new(data, data.noise), data)
+            law(ID, &library, (weights, None), Posterior::default(), Running::new(data, data.noise), data)
         };
         let validate = |weights: &[f64]| validation_error(&plain(weights), data);
         let progress = Progress { samples: self.keys.samples, most_steps: self.keys.max_steps };
@@ -131,7 +130,7 @@ impl Learner for Bayesian {
             draws.iter().step_by((draws.len() / BAND).max(1)).map(|draw| draw.as_slice().to_vec()).collect();
         let posterior = Posterior { draws: kept };
         let running = Running::new(data, fit.rms());
-        let whole = model(&library, &mean, Some(&spread), posterior, running, data);
+        let whole = law(ID, &library, (&mean, Some(&spread)), posterior, running, data);
         Ok(Fitted { model: Box::new(whole), reached: Reached::Converged, steps: steps + sampled })
     }
 }
@@ -239,33 +238,4 @@ fn moments(draws: &[DVector<f64>], count: usize) -> (Vec<f64>, Vec<f64>) {
         sum + away.component_mul(&away)
     }) / number;
     (mean.as_slice().to_vec(), square.map(f64::sqrt).as_slice().to_vec())
-}
-
-fn model(
-    library: &Library,
-    weights: &[f64],
-    spread: Option<&[f64]>,
-    posterior: Posterior,
-    running: Running,
-    data: &DataSet,
-) -> FlowModel {
-    let errors = spread.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
-    let coefficients =
-        library.terms().iter().zip(weights).zip(errors).map(|((term, value), std_error)| Coefficient {
-            name: Term::name(*term).to_owned(),
-            value: *value,
-            unit: term.unit(&data.unit),
-            std_error,
-            inclusion: None,
-        });
-    FlowModel {
-        learner: ID,
-        coefficients: coefficients.collect(),
-        equation: Some(library.equation(weights)),
-        form: json!({ "terms": library.terms() }),
-        field: Box::new(library.clone()),
-        weights: weights.to_vec(),
-        posterior,
-        running,
-    }
 }

@@ -1,13 +1,12 @@
 //! From a regression's terms to a model: weights refitted to whole trajectories, superfluous terms taken out.
 
-use super::{Library, Term};
+use super::{Library, Term, law};
 use crate::data::{DataSet, Trajectory};
 use crate::flow::{Field, FieldShooter, Fit, FlowModel, Posterior, Running, Shooting, first_guess, fit};
 use crate::judge::validation_error;
-use crate::{Coefficient, Context, Fitted, LearnError, Model, Stored};
+use crate::{Context, Fitted, LearnError, Model, Stored};
 use estimator::Reached;
 use nalgebra::DMatrix;
-use serde_json::json;
 
 /// How a regression's law is finished.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,9 +42,9 @@ pub fn finish(
 ) -> Result<Fitted, LearnError> {
     let (terms, weights, inclusion) = start;
     let kept: Vec<(Term, f64)> =
-        terms.iter().copied().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0).collect();
+        terms.iter().cloned().zip(weights.iter().copied()).filter(|(_, weight)| *weight != 0.0).collect();
     let share =
-        |term: Term| terms.iter().zip(inclusion).find(|(own, _)| **own == term).map(|(_, share)| *share);
+        |term: &Term| terms.iter().zip(inclusion).find(|(own, _)| *own == term).map(|(_, share)| *share);
     let (terms, weights): (Vec<Term>, Vec<f64>) = kept.into_iter().unzip();
     let plain = || Law { terms: terms.clone(), weights: weights.clone(), fit: None };
     let (law, steps, reached) = if finishing.refit {
@@ -59,9 +58,9 @@ pub fn finish(
     } else {
         (plain(), 1, Reached::Converged)
     };
-    let mut model = law.model(learner, data, context)?;
+    let mut model = law.model(learner, data, context);
     for (coefficient, term) in model.coefficients.iter_mut().zip(&law.terms) {
-        coefficient.inclusion = share(*term);
+        coefficient.inclusion = share(term);
     }
     Ok(Fitted { model: Box::new(model), reached, steps })
 }
@@ -79,35 +78,14 @@ impl Law {
         Library::new(self.terms.clone())
     }
 
-    fn model(
-        &self,
-        learner: &'static str,
-        data: &DataSet,
-        context: &Context<'_>,
-    ) -> Result<FlowModel, LearnError> {
+    fn model(&self, learner: &'static str, data: &DataSet, context: &Context<'_>) -> FlowModel {
         let covariance = self.fit.as_ref().and_then(Fit::covariance);
-        let error =
-            |place: usize| covariance.as_ref().and_then(|all| all.get((place, place))).map(|own| own.sqrt());
-        let coefficients =
-            self.terms.iter().zip(&self.weights).enumerate().map(|(place, (term, weight))| Coefficient {
-                name: term.name().to_owned(),
-                value: *weight,
-                unit: term.unit(&data.unit),
-                std_error: error(place).filter(|error| error.is_finite()),
-                inclusion: None,
-            });
+        let errors: Option<Vec<f64>> =
+            covariance.as_ref().map(|all| all.diagonal().iter().map(|own| own.sqrt()).collect());
         let drawn = |all: &DMatrix<f64>| Posterior::normal(&self.weights, all, &context.seed);
-        let library = self.library();
-        Ok(FlowModel {
-            learner,
-            coefficients: coefficients.collect(),
-            equation: Some(library.equation(&self.weights)),
-            form: json!({ "terms": self.terms }),
-            field: Box::new(library),
-            weights: self.weights.clone(),
-            posterior: covariance.as_ref().map(drawn).unwrap_or_default(),
-            running: Running::new(data, self.fit.as_ref().map_or(data.noise, Fit::rms)),
-        })
+        let posterior = covariance.as_ref().map(drawn).unwrap_or_default();
+        let running = Running::new(data, self.fit.as_ref().map_or(data.noise, Fit::rms));
+        law(learner, &self.library(), (&self.weights, errors.as_deref()), posterior, running, data)
     }
 
     /// The same law fitted to pieces; `None` where the motion runs away.
@@ -181,7 +159,7 @@ fn refitted(
             steps += shorter.fit.as_ref().map_or(0, |fit| fit.steps);
             law = shorter;
         }
-        let error = validation_error(&law.model(learner, data, context)?, data);
+        let error = validation_error(&law.model(learner, data, context), data);
         // The next length may have use for what this one is too short to tell.
         let weight_of =
             |term: &Term| law.terms.iter().zip(&law.weights).find(|(own, _)| *own == term).map(|(_, w)| *w);

@@ -2,10 +2,12 @@
 
 mod ensemble;
 mod finish;
+mod law;
 mod terms;
 mod thresholding;
 
 pub use ensemble::inclusion;
 pub use finish::{Finishing, finish, restore};
+pub use law::law;
 pub use terms::{Library, Term};
 pub use thresholding::{Regression, thresholded};

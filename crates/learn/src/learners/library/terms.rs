@@ -1,11 +1,13 @@
 //! Terms of a law and the field they make.
 
 use crate::Place;
+use crate::expression::Expression;
 use crate::flow::{Field, Slope};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 
 /// A term of the acceleration.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Term {
     /// 1: a constant torque, a rest position.
     #[serde(rename = "1")]
@@ -37,10 +39,13 @@ pub enum Term {
     /// u: the input.
     #[serde(rename = "u")]
     Input,
+    /// A term of the user's own.
+    #[serde(rename = "own")]
+    Own(Expression),
 }
 
 impl Term {
-    /// Every term.
+    /// Every term that has a name here.
     pub const ALL: [Self; 10] = [
         Self::Constant,
         Self::Position,
@@ -56,8 +61,8 @@ impl Term {
 
     /// Name in configurations and tables.
     #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
+    pub fn name(&self) -> Cow<'static, str> {
+        let name = match self {
             Self::Constant => "1",
             Self::Position => "theta",
             Self::Velocity => "theta_dot",
@@ -68,12 +73,14 @@ impl Term {
             Self::Sine => "sin(theta)",
             Self::Cosine => "cos(theta)",
             Self::Input => "u",
-        }
+            Self::Own(expression) => return Cow::Owned(expression.to_string()),
+        };
+        Cow::Borrowed(name)
     }
 
     /// Unit of its coefficient, for positions in `unit`.
     #[must_use]
-    pub fn unit(self, unit: &str) -> String {
+    pub fn unit(&self, unit: &str) -> String {
         match self {
             Self::Constant | Self::Direction | Self::Sine | Self::Cosine => format!("{unit}/s^2"),
             Self::Position => "1/s^2".to_owned(),
@@ -82,12 +89,13 @@ impl Term {
             Self::Cube => format!("1/(s^2 {unit}^2)"),
             Self::Drag => format!("1/{unit}"),
             Self::Input => format!("{unit}/s^2 per unit of u"),
+            Self::Own(_) => format!("{unit}/s^2 per unit of the term"),
         }
     }
 
     /// Its value at a place.
     #[must_use]
-    pub fn value(self, place: &Place) -> f64 {
+    pub fn value(&self, place: &Place) -> f64 {
         let Place { position: x, velocity: v, direction, input } = *place;
         match self {
             Self::Constant => 1.0,
@@ -100,12 +108,13 @@ impl Term {
             Self::Sine => x.sin(),
             Self::Cosine => x.cos(),
             Self::Input => input,
+            Self::Own(expression) => expression.dual(place)[0],
         }
     }
 
     /// Its derivatives with respect to position and velocity.
     #[must_use]
-    pub fn slope(self, place: &Place) -> [f64; 2] {
+    pub fn slope(&self, place: &Place) -> [f64; 2] {
         let Place { position: x, velocity: v, direction, .. } = *place;
         match self {
             Self::Constant | Self::Direction | Self::Input => [0.0, 0.0],
@@ -116,18 +125,25 @@ impl Term {
             Self::Drag => [0.0, 2.0 * direction * v],
             Self::Sine => [x.cos(), 0.0],
             Self::Cosine => [-x.sin(), 0.0],
+            Self::Own(expression) => {
+                let [_, by_x, by_v] = expression.dual(place);
+                [by_x, by_v]
+            }
         }
     }
 
     /// Whether it depends on the direction of the motion.
     #[must_use]
-    pub fn is_directed(self) -> bool {
-        matches!(self, Self::Direction | Self::Drag)
+    pub fn is_directed(&self) -> bool {
+        match self {
+            Self::Own(expression) => expression.is_directed(),
+            other => matches!(other, Self::Direction | Self::Drag),
+        }
     }
 }
 
 /// A sum of terms, each with a weight.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Library {
     terms: Vec<Term>,
 }
@@ -159,6 +175,7 @@ impl Library {
             let size = weight.abs();
             text.push_str(&match term {
                 Term::Constant => format!("{sign}{size:.5}"),
+                Term::Own(own) => format!("{sign}{size:.5}*({own})"),
                 _ => format!("{sign}{size:.5}*{}", term.name()),
             });
         }

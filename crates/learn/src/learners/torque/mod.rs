@@ -1,9 +1,11 @@
 //! Torques learned as functions: the nominal oscillator, what is linear, dry friction, and a correction of any form.
 
 mod corrected;
+mod learned;
 mod pretraining;
 mod progressive;
 
 pub use corrected::{Base, Corrected, Correction};
+pub use learned::{Kept, finished, fit, model, restored};
 pub use pretraining::pretrained;
 pub use progressive::{Progress, progressive};

@@ -1,11 +1,12 @@
 //! `task = "learn"`: learners beside baselines, on records that they never saw.
 
 mod keep;
+mod kept;
 pub(crate) mod problem;
 mod summary;
 
 use crate::error::TrainerError;
-use crate::folders::resume::{Beginning, Begun, begin, end};
+use crate::folders::resume::{Beginning, Begun, Ledger, begin, end};
 use crate::options::ExperimentArguments;
 use crate::outcome::Outcome;
 use crate::terminal::console;
@@ -13,16 +14,19 @@ use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
 use ::learn::LearnError;
 use estimator::Cancel;
-use experiment::LearnStudy;
+use experiment::{CheckpointSettings, LearnStudy};
 use keep::Row;
+use kept::Trying;
 use problem::{Prepared, prepare};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use results::LearnKind;
-use seed::Seed;
 use serde_json::json;
 use std::time::Instant;
 use workflow::learning::{Method, Ready, methods};
+
+/// A training is kept every ten seconds, at the end of an epoch.
+const KEPT: CheckpointSettings = CheckpointSettings { interval_s: 10.0, interval_steps: None };
 
 /// Prepares every data set, fits every method on each, keeps going where one fails, and puts the table together.
 pub(crate) fn learn(
@@ -44,10 +48,15 @@ pub(crate) fn learn(
         Begun::Finished(outcome) => return Ok(outcome),
     };
     let start = Instant::now();
-    let tried = try_all(study, &problems, &methods, &pool, cancel, output.quiet || output.json);
+    let ledger = Ledger::open(&folder, KEPT)?;
+    let trying = Trying { seed: study.seed, max_steps: study.settings.max_steps, cancel, ledger: &ledger };
+    let tried = try_all(&trying, &problems, &methods, &pool, output.quiet || output.json)?;
     let _saving = Saving::begin();
     let interrupted = tried.iter().any(|row| matches!(row.tried.fitted, Err(LearnError::Interrupted)));
     let result = keep::result(study, &problems, &tried, start.elapsed().as_secs_f64());
+    if interrupted {
+        ledger.flush()?;
+    }
     keep::write(&folder, &result, &tried)?;
     end(&folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
     output.print(&result, || summary::summary(&result, folder.path()))?;
@@ -67,13 +76,12 @@ fn beginning<'a>(study: &'a LearnStudy, pool: &ThreadPool, problems: &[Prepared]
 
 /// Every method on every data set that is there, in the order of the configuration, whatever the threads.
 fn try_all<'a>(
-    study: &LearnStudy,
+    trying: &Trying<'_>,
     problems: &'a [Prepared],
     methods: &'a [Method<'a>],
     pool: &ThreadPool,
-    cancel: &'static Cancel,
     silent: bool,
-) -> Vec<Row<'a>> {
+) -> Result<Vec<Row<'a>>, TrainerError> {
     let jobs: Vec<(&Prepared, &Ready, &Method<'_>)> = problems
         .iter()
         .filter_map(|problem| Some((problem, problem.ready.as_ref().ok()?)))
@@ -84,11 +92,9 @@ fn try_all<'a>(
     let tried = pool.install(|| {
         jobs.into_par_iter()
             .map(|(problem, ready, method)| {
-                let seed = Seed::new(study.seed).child("learn").child(&problem.id).child(method.id);
-                let tried =
-                    workflow::learning::tried(ready, method, seed, study.settings.max_steps, cancel, &|_| ());
+                let tried = trying.tried(&problem.id, ready, method)?;
                 progress.one_of_many_done();
-                Row { problem, ready, method, tried }
+                Ok(Row { problem, ready, method, tried })
             })
             .collect()
     });

@@ -9,6 +9,8 @@ use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::terminal::console;
 use crate::terminal::table::table;
+use ::learn::Entry;
+use ::learn::learners::LEARNERS;
 use clap::ValueEnum;
 use dynamics::{Class, Coordinate, Description, Kind, REGISTRY, Units};
 use runs::list_runs;
@@ -19,6 +21,8 @@ use std::path::Path;
 pub(crate) enum Listing {
     /// The estimators
     Estimators,
+    /// The learners of `task = "learn"`
+    Learners,
     /// The effects that a simulator may lack
     Effects,
     /// The runs that are kept in a folder, newest first
@@ -29,6 +33,7 @@ pub(crate) fn list(what: Listing, folder: Option<&Path>, output: Output) -> Resu
     let name = match what {
         Listing::Runs => None,
         Listing::Estimators => Some("estimators"),
+        Listing::Learners => Some("learners"),
         Listing::Effects => Some("effects"),
     };
     if let (Some(what), Some(folder)) = (name, folder) {
@@ -37,6 +42,7 @@ pub(crate) fn list(what: Listing, folder: Option<&Path>, output: Output) -> Resu
     match what {
         Listing::Runs => return list_runs(folder, output),
         Listing::Estimators => estimators(output)?,
+        Listing::Learners => learners(output),
         Listing::Effects => effects(output),
     }
     Ok(Outcome::Done)
@@ -75,6 +81,27 @@ fn estimators(output: Output) -> Result<(), TrainerError> {
         .collect();
     console::result(&table(&["name", "no. in the paper", "family", "what it does"], rows));
     Ok(())
+}
+
+fn learners(output: Output) {
+    if output.json {
+        let rows: Vec<_> = LEARNERS
+            .iter()
+            .map(|entry| {
+                json!({
+                    "id": entry.id,
+                    "kind": entry.kind.name(),
+                    "title": entry.title,
+                    "summary": entry.summary,
+                    "reference": entry.reference,
+                })
+            })
+            .collect();
+        console::result(&json!({ "learners": rows }).to_string());
+        return;
+    }
+    let row = |entry: &Entry| [entry.id, entry.kind.name(), entry.summary].map(str::to_owned).to_vec();
+    console::result(&table(&["name", "kind", "what it does"], LEARNERS.iter().map(row).collect()));
 }
 
 fn effects(output: Output) {

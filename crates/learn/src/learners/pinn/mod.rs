@@ -1,0 +1,225 @@
+//! A physics-informed network: trajectories as networks of time, the coefficients of a stated law inferred with them.
+//!
+//! Every window of the training records gets a network θ̂(t) with Fourier features. Weights and coefficients minimize
+//! Σ (θ̂(tᵢ) − yᵢ)²/σ² + Σ (θ̂″ − Σ cⱼ·fⱼ(θ̂, θ̂′, u))²/τ² together, by Levenberg–Marquardt with the networks eliminated
+//! window by window; τ falls from half the typical acceleration to a thousandth of it. Dry friction jumps where the motion
+//! turns back and a network cannot, so the windows of a law that has it end there. Standard errors are those of the
+//! linearized problem. What predicts is the law with the inferred coefficients.
+//!
+//! Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686 (inverse problems); Tancik et al.,
+//! NeurIPS 33 (2020) (Fourier features).
+
+mod trajectory;
+mod windows;
+
+use super::library::{Library, law, restore, thresholded};
+use super::sindy::SparseSettings;
+use super::weak_sindy;
+use crate::data::DataSet;
+use crate::flow::{Posterior, Running};
+use crate::judge::validation_error;
+use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Step};
+use estimator::Reached;
+use serde::Deserialize;
+use settings::{Default, Field, Kind as Value, Resolved, SettingsError};
+use trajectory::Shape;
+use windows::{Problem, Sizes, Unknowns, jumps, stretches};
+
+/// Identifier.
+const ID: &str = "pinn";
+
+/// The registry's line.
+pub const ENTRY: Entry = Entry {
+    id: ID,
+    title: "Physics-informed network",
+    summary: "Fits networks of time to windows of the records and infers the coefficients of a stated law with them.",
+    reference: "Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686-707",
+    kind: Kind::Regressor,
+    fields: FIELDS,
+    build: |resolved| Ok(Box::new(Pinn::read(resolved)?) as Box<dyn Learner>),
+    restore: |stored| restore(ID, stored),
+};
+
+const PLAIN: Field =
+    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+const FIELDS: &[Field] = &[
+    Field {
+        key: "library",
+        kind: Value::Texts { at_least: 1, at_most: 10 },
+        default: Default::Texts(&[
+            "theta",
+            "theta_dot",
+            "sign(theta_dot)",
+            "theta_dot*|theta_dot|",
+            "theta^3",
+            "u",
+        ]),
+        meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
+                  have no input.",
+        ..PLAIN
+    },
+    Field {
+        key: "window_periods",
+        kind: Value::Float { min: 0.1, max: 100.0 },
+        default: Default::Float(1.0),
+        unit: "periods",
+        meaning: "Length of the window that one network describes.",
+        ..PLAIN
+    },
+    Field {
+        key: "frequencies",
+        kind: Value::Integer { min: 1, max: 64 },
+        default: Default::Integer(8),
+        meaning: "Fourier features: this many frequencies, half a cycle of the window apart.",
+        source: "Tancik et al. 2020",
+        ..PLAIN
+    },
+    Field {
+        key: "hidden_units",
+        kind: Value::Integer { min: 0, max: 512 },
+        default: Default::Integer(4),
+        meaning: "Hidden units of each network.",
+        ..PLAIN
+    },
+    Field {
+        key: "samples",
+        kind: Value::Integer { min: 100, max: 10_000_000 },
+        default: Default::Integer(6_000),
+        unit: "samples",
+        meaning: "Most training samples; of more, evenly chosen windows.",
+        ..PLAIN
+    },
+    Field {
+        key: "max_steps",
+        kind: Value::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(20),
+        unit: "steps",
+        meaning: "Most steps at each weight of the physics.",
+        ..PLAIN
+    },
+];
+
+/// The learner. Ranges and defaults stand in the registry's fields.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pinn {
+    library: SparseSettings,
+    keys: Keys,
+}
+
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+struct Keys {
+    library: Vec<String>,
+    window_periods: f64,
+    frequencies: usize,
+    hidden_units: usize,
+    samples: usize,
+    max_steps: u64,
+}
+
+/// Tolerated residuals of the law over the typical acceleration, one after the other.
+const TOLERANCES: [f64; 5] = [0.5, 0.1, 0.02, 0.005, 0.001];
+
+/// Relative change of the objective below which a weight of the physics is done with.
+const SMALL: f64 = 1e-5;
+
+impl Pinn {
+    fn read(resolved: &Resolved) -> Result<Self, SettingsError> {
+        let keys: Keys = resolved.section(ID)?;
+        Ok(Self { library: SparseSettings::of_terms(resolved, ID, keys.library.clone())?, keys })
+    }
+}
+
+impl Learner for Pinn {
+    fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
+        let terms = self.library.terms(data);
+        let library = Library::new(terms.clone());
+        let shape = Shape { frequencies: self.keys.frequencies, hidden: self.keys.hidden_units };
+        let seconds = self.keys.window_periods * data.period_s;
+        let pieces = stretches(data, jumps(&library), seconds, self.keys.samples);
+        if pieces.is_empty() {
+            let problem = "no stretch of ten samples between two turning points; give records sampled faster"
+                .to_owned();
+            return Err(LearnError::Unsolvable { what: "pinn", problem });
+        }
+        let problem = Problem::new(shape, &library, &pieces, data);
+        let seed = context.seed.child("initial weights");
+        let networks = (0..pieces.len()).map(|at| shape.start(&seed.child(&at.to_string()))).collect();
+        // A first guess by the weak form; the coefficients move from the first step on.
+        let start = thresholded(&weak_sindy::regression(data, &terms), 0.0);
+        let mut search = Search {
+            problem: &problem,
+            unknowns: Unknowns { coefficients: start, networks },
+            sizes: Sizes { noise: data.noise, tolerance: data.scale.acceleration },
+            steps: 0,
+            converged: true,
+        };
+        for tolerance in TOLERANCES {
+            search.sizes.tolerance = tolerance * data.scale.acceleration;
+            search.settle(context.steps(self.keys.max_steps), context)?;
+        }
+        let standing = problem.standing(&search.unknowns, search.sizes);
+        // What is left decides how much the observations and the law are worth.
+        let sizes = Sizes {
+            noise: standing.misfit.max(data.noise),
+            tolerance: standing.residual.max(search.sizes.tolerance),
+        };
+        let covariance = problem.equations(&search.unknowns, sizes).covariance();
+        let weights = &search.unknowns.coefficients;
+        let spread: Option<Vec<f64>> =
+            covariance.as_ref().map(|all| all.diagonal().iter().map(|own| own.sqrt()).collect());
+        let posterior =
+            covariance.as_ref().map(|all| Posterior::normal(weights, all, &context.seed)).unwrap_or_default();
+        let model = |posterior, noise| {
+            law(ID, &library, (weights, spread.as_deref()), posterior, Running::new(data, noise), data)
+        };
+        let error = validation_error(&model(Posterior::default(), data.noise), data);
+        let noise = if error.is_finite() { error } else { standing.misfit };
+        let reached = if search.converged { Reached::Converged } else { Reached::BudgetSpent };
+        Ok(Fitted { model: Box::new(model(posterior, noise)), reached, steps: search.steps })
+    }
+}
+
+/// A search on its way.
+struct Search<'a> {
+    problem: &'a Problem<'a>,
+    unknowns: Unknowns,
+    sizes: Sizes,
+    steps: u64,
+    converged: bool,
+}
+
+impl Search<'_> {
+    /// Levenberg–Marquardt at one weight of the physics.
+    fn settle(&mut self, most: u64, context: &Context<'_>) -> Result<(), LearnError> {
+        let mut damping = 1e-4;
+        let mut standing = self.problem.standing(&self.unknowns, self.sizes);
+        self.converged = false;
+        for _ in 0..most {
+            context.check()?;
+            let equations = self.problem.equations(&self.unknowns, self.sizes);
+            let mut gained = None;
+            while gained.is_none() && damping < 1e8 {
+                let next = equations.step(&self.unknowns, damping);
+                let found = next.map(|next| (self.problem.standing(&next, self.sizes), next));
+                gained = found.filter(|(found, _)| found.objective < standing.objective);
+                damping *= if gained.is_some() { 0.1 } else { 10.0 };
+            }
+            let Some((found, next)) = gained else {
+                self.converged = true;
+                break;
+            };
+            let small = standing.objective - found.objective < SMALL * standing.objective;
+            (standing, self.unknowns) = (found, next);
+            damping = damping.max(1e-12);
+            self.steps += 1;
+            let phase = format!("law held to {:.3e}", self.sizes.tolerance);
+            (context.observe)(&Step { step: self.steps, phase, train: standing.misfit, validation: None });
+            if small {
+                self.converged = true;
+                break;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,65 @@
+//! A weighted sum of expressions as a law of motion.
+
+use crate::Place;
+use crate::expression::Expression;
+use crate::flow::{Field, Slope};
+
+/// An acceleration Σ wₖ·gₖ(θ, θ̇, u).
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Sum {
+    pub(super) parts: Vec<Expression>,
+}
+
+impl Sum {
+    /// Number of nodes of all parts.
+    pub(super) fn nodes(&self) -> usize {
+        self.parts.iter().map(|part| 1 + part.nodes()).sum()
+    }
+
+    /// The law as text.
+    pub(super) fn equation(&self, weights: &[f64]) -> String {
+        let mut text = "theta_ddot =".to_owned();
+        for (number, (part, weight)) in self.parts.iter().zip(weights).enumerate() {
+            let sign = match (number, *weight < 0.0) {
+                (0, true) => " -",
+                (0, false) => " ",
+                (_, true) => " - ",
+                (_, false) => " + ",
+            };
+            let size = weight.abs();
+            let part = match part {
+                Expression::Join(..) => format!("({part})"),
+                _ => part.to_string(),
+            };
+            text.push_str(&format!("{sign}{size:.5}*{part}"));
+        }
+        text
+    }
+}
+
+impl Field for Sum {
+    fn weights(&self) -> usize {
+        self.parts.len()
+    }
+
+    fn is_directed(&self) -> bool {
+        self.parts.iter().any(Expression::is_directed)
+    }
+
+    fn acceleration(&self, weights: &[f64], place: &Place) -> f64 {
+        self.parts.iter().zip(weights).map(|(part, weight)| weight * part.dual(place)[0]).sum()
+    }
+
+    fn sloped(&self, weights: &[f64], place: &Place, slope: &mut Slope) -> f64 {
+        (slope.position, slope.velocity) = (0.0, 0.0);
+        let mut sum = 0.0;
+        for ((part, weight), own) in self.parts.iter().zip(weights).zip(&mut slope.weights) {
+            let [value, by_x, by_v] = part.dual(place);
+            *own = value;
+            sum += weight * value;
+            slope.position += weight * by_x;
+            slope.velocity += weight * by_v;
+        }
+        sum
+    }
+}

@@ -1,0 +1,92 @@
+//! Records in weak form, ready for any expression: ∫φ̈·θ = Σ wₖ·∫φ·gₖ over windows of a period.
+
+use super::super::weak_sindy::test_function;
+use crate::data::{InputHold, Trajectory, local_states};
+use crate::expression::Expression;
+use crate::{LearnError, Place};
+use nalgebra::{DMatrix, DVector};
+
+/// States with the windows that they are in.
+pub(super) struct Weak {
+    places: Vec<Place>,
+    /// Of each window: its first place, and the weight of each place from there on.
+    windows: Vec<(usize, Vec<f64>)>,
+    /// The integral of the acceleration over each window.
+    pub(super) right: DVector<f64>,
+}
+
+impl Weak {
+    /// Windows of one period, a quarter of a period apart or as far as keeps them to `most`.
+    pub(super) fn new(parts: &[Trajectory], period_s: f64, hold: InputHold, most: usize) -> Self {
+        let whole: f64 = parts.iter().map(Trajectory::duration_s).sum();
+        let step = (whole / most.max(1) as f64).max(0.25 * period_s);
+        let half = 0.5 * period_s;
+        let (mut places, mut windows, mut right) = (Vec::new(), Vec::new(), Vec::new());
+        for part in parts {
+            let states = local_states(part, period_s / 8.0);
+            let (Some(first), Some(last)) = (states.first(), states.last()) else { continue };
+            let count = ((last.time_s - first.time_s - 2.0 * half) / step).floor().max(0.0) as usize;
+            let times = part.times_s();
+            for number in 0..count {
+                let center = first.time_s + half + number as f64 * step;
+                let from = states.partition_point(|state| state.time_s < center - half);
+                let to = states.partition_point(|state| state.time_s <= center + half);
+                let mut sum = 0.0;
+                let mut weights = Vec::new();
+                for state in states.get(from..to).unwrap_or_default() {
+                    let [value, _, curvature] = test_function((state.time_s - center) / half);
+                    let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
+                    let interval = 0.5 * (time(state.sample + 1) - time(state.sample.saturating_sub(1)));
+                    let observed = part.values().get(state.sample).copied().unwrap_or(state.position);
+                    sum += interval * curvature / (half * half) * observed;
+                    weights.push(interval * value);
+                }
+                windows.push((places.len() + from, weights));
+                right.push(sum);
+            }
+            places.extend(states.iter().map(|state| {
+                let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1)));
+                let input = match hold {
+                    InputHold::Zero => 0.5 * (state.input + before.copied().unwrap_or(state.input)),
+                    InputHold::Linear => state.input,
+                };
+                let direction = state.velocity.signum();
+                Place { position: state.position, velocity: state.velocity, direction, input }
+            }));
+        }
+        Self { places, windows, right: DVector::from_vec(right) }
+    }
+
+    /// The integral of an expression over each window; `None` where it is not finite.
+    pub(super) fn column(&self, part: &Expression) -> Option<DVector<f64>> {
+        let values: Vec<f64> = self.places.iter().map(|place| part.dual(place)[0]).collect();
+        let of = |(from, weights): &(usize, Vec<f64>)| -> f64 {
+            weights.iter().zip(values.iter().skip(*from)).map(|(weight, value)| weight * value).sum()
+        };
+        let column = DVector::from_iterator(self.windows.len(), self.windows.iter().map(of));
+        column.iter().all(|value| value.is_finite()).then_some(column)
+    }
+
+    /// The columns of several expressions.
+    pub(super) fn columns(&self, parts: &[Expression]) -> Option<DMatrix<f64>> {
+        let columns: Option<Vec<DVector<f64>>> = parts.iter().map(|part| self.column(part)).collect();
+        columns.map(|columns| DMatrix::from_columns(&columns))
+    }
+
+    /// Squared errors of a weighted sum, one for each window, over the mean square of the right side.
+    pub(super) fn errors(&self, parts: &[Expression], weights: &[f64]) -> Option<Vec<f64>> {
+        let off = self.columns(parts)? * DVector::from_column_slice(weights) - &self.right;
+        let size = self.right.norm_squared() / self.right.len().max(1) as f64;
+        Some(off.iter().map(|off| off * off / size).collect())
+    }
+
+    /// Refuses records that have no window.
+    pub(super) fn checked(self) -> Result<Self, LearnError> {
+        if self.windows.is_empty() {
+            let problem =
+                "no record is as long as a period and a quarter; set period_s, or give longer records";
+            return Err(LearnError::Unsolvable { what: "symbolic", problem: problem.to_owned() });
+        }
+        Ok(self)
+    }
+}

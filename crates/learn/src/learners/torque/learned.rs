@@ -1,0 +1,103 @@
+//! From a corrected field to a model, for corrections of any form.
+
+use super::{Base, Corrected, Correction, Progress, progressive};
+use crate::data::DataSet;
+use crate::flow::{Field, Fit, FlowModel, Penalty, Posterior, Running};
+use crate::judge::validation_error;
+use crate::linear::inverse;
+use crate::{Context, Fitted, LearnError, Model, Stored};
+use estimator::Reached;
+use nalgebra::{DMatrix, DVector};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+
+/// A correction that can be kept in a file.
+pub trait Kept: Correction + Clone + Serialize + DeserializeOwned + 'static {}
+
+impl<C: Correction + Clone + Serialize + DeserializeOwned + 'static> Kept for C {}
+
+/// Stored form that a field is made from again.
+#[derive(Serialize, Deserialize)]
+struct Form<C> {
+    base: Base,
+    #[serde(alias = "network", alias = "basis")]
+    correction: C,
+}
+
+/// A corrected field with weights as a model.
+#[must_use]
+pub fn model<C: Kept>(
+    learner: &'static str,
+    field: &Corrected<C>,
+    weights: &[f64],
+    posterior: Posterior,
+    running: Running,
+) -> FlowModel {
+    let form = Form { base: field.base, correction: field.correction.clone() };
+    FlowModel {
+        learner,
+        form: serde_json::to_value(form).unwrap_or_default(),
+        field: Box::new(field.clone()),
+        weights: weights.to_vec(),
+        posterior,
+        running,
+        coefficients: Vec::new(),
+        equation: None,
+    }
+}
+
+/// A model from its file.
+///
+/// # Errors
+/// [`LearnError::Stored`] for a file of another form.
+pub fn restored<C: Kept>(learner: &'static str, stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
+    let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
+        let form: Form<C> = serde_json::from_value(form.clone())
+            .map_err(|error| LearnError::Stored { problem: format!("the form of the torque: {error}") })?;
+        Ok(Box::new(Corrected { base: form.base, correction: form.correction }))
+    };
+    Ok(Box::new(FlowModel::restore(learner, stored, field)?))
+}
+
+/// Fits a field on growing pieces: the fit that validates best, with the steps of all.
+///
+/// # Errors
+/// As [`progressive`].
+pub fn fit<C: Kept>(
+    learner: &'static str,
+    field: &Corrected<C>,
+    data: &DataSet,
+    context: &Context<'_>,
+    how: (&Penalty, Progress),
+    start: Vec<f64>,
+) -> Result<(Fit, u64), LearnError> {
+    let validate = |weights: &[f64]| {
+        let running = Running::new(data, data.noise);
+        validation_error(&model(learner, field, weights, Posterior::default(), running), data)
+    };
+    progressive(field, data, context, how, start, &validate)
+}
+
+/// The model of a fit, with bands by Laplace's approximation.
+#[must_use]
+pub fn finished<C: Kept>(
+    learner: &'static str,
+    field: &Corrected<C>,
+    data: &DataSet,
+    context: &Context<'_>,
+    (fit, steps, penalty): (&Fit, u64, &Penalty),
+) -> Fitted {
+    let posterior = laplace(fit, penalty, context);
+    let reached = if fit.converged { Reached::Converged } else { Reached::BudgetSpent };
+    let whole = model(learner, field, &fit.weights, posterior, Running::new(data, fit.rms()));
+    Fitted { model: Box::new(whole), reached, steps }
+}
+
+/// Draws of the weights by Laplace's approximation.
+fn laplace(fit: &Fit, penalty: &Penalty, context: &Context<'_>) -> Posterior {
+    let precision = DMatrix::from_diagonal(&DVector::from_column_slice(&penalty.precision));
+    let covariance = inverse(&(&fit.information / fit.variance() + precision));
+    covariance
+        .map(|covariance| Posterior::normal(&fit.weights, &covariance, &context.seed))
+        .unwrap_or_default()
+}

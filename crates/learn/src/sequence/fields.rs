@@ -1,0 +1,125 @@
+//! Settings that every sequence model has.
+
+use serde::Deserialize;
+use settings::{Default, Field, Kind as Value};
+
+const OWN: Field =
+    Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
+
+/// Settings of the training and of the windows. Ranges and defaults stand in the fields below.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+pub struct Settings {
+    /// Most samples of a period.
+    pub samples_per_period: usize,
+    /// Length of a block in periods.
+    pub block_periods: f64,
+    /// Blocks of a free run in training.
+    pub blocks: usize,
+    /// Most windows of an epoch.
+    pub windows: usize,
+    /// Most epochs.
+    pub epochs: u64,
+    /// Windows of a batch.
+    pub batch: usize,
+    /// Largest learning rate.
+    pub learning_rate: f64,
+    /// Decay of the weights.
+    pub weight_decay: f64,
+    /// Epochs without a better validation before training ends.
+    pub patience: u64,
+}
+
+const SHARED: [Field; 9] = [
+    Field {
+        key: "samples_per_period",
+        kind: Value::Integer { min: 8, max: 1_000 },
+        default: Default::Integer(48),
+        meaning: "Most samples of a typical period that the model sees; records sampled faster are thinned out.",
+        ..OWN
+    },
+    Field {
+        key: "block_periods",
+        kind: Value::Float { min: 0.01, max: 100.0 },
+        default: Default::Float(0.5),
+        unit: "periods",
+        meaning: "Length of the block that is predicted at once; at least eight samples.",
+        ..OWN
+    },
+    Field {
+        key: "blocks",
+        kind: Value::Integer { min: 1, max: 1_000 },
+        default: Default::Integer(6),
+        meaning: "Blocks of a free run in training.",
+        ..OWN
+    },
+    Field {
+        key: "windows",
+        kind: Value::Integer { min: 1, max: 1_000_000 },
+        default: Default::Integer(1_024),
+        meaning: "Most windows of an epoch; of more, evenly chosen ones.",
+        ..OWN
+    },
+    Field {
+        key: "epochs",
+        kind: Value::Integer { min: 0, max: 1_000_000 },
+        default: Default::Integer(20),
+        meaning: "Most passes over the windows.",
+        ..OWN
+    },
+    Field {
+        key: "batch",
+        kind: Value::Integer { min: 1, max: 100_000 },
+        default: Default::Integer(32),
+        meaning: "Windows of a batch.",
+        ..OWN
+    },
+    Field {
+        key: "learning_rate",
+        kind: Value::Float { min: 1e-9, max: 1.0 },
+        default: Default::Float(5e-3),
+        meaning: "Largest learning rate of Adam; it rises over a twentieth of the steps and falls along a half cosine.",
+        source: "Kingma, Ba 2015",
+        ..OWN
+    },
+    Field {
+        key: "weight_decay",
+        kind: Value::Float { min: 0.0, max: 1.0 },
+        default: Default::Float(1e-3),
+        meaning: "Decay of the weights per step, over the learning rate.",
+        source: "Loshchilov, Hutter 2019",
+        ..OWN
+    },
+    Field {
+        key: "patience",
+        kind: Value::Integer { min: 1, max: 1_000_000 },
+        default: Default::Integer(10),
+        meaning: "Epochs without a better free run over the validation part after which training ends.",
+        ..OWN
+    },
+];
+
+/// A key that counts something: its range, its default, its meaning.
+#[must_use]
+pub const fn count(key: &'static str, [min, max]: [i64; 2], default: i64, meaning: &'static str) -> Field {
+    Field { key, kind: Value::Integer { min, max }, default: Default::Integer(default), meaning, ..OWN }
+}
+
+/// An architecture's own keys with those that every sequence model has; `ALL` is nine more than `N`.
+#[must_use]
+pub const fn with_shared<const N: usize, const ALL: usize>(own: [Field; N]) -> [Field; ALL] {
+    let mut all = [OWN; ALL];
+    let mut at = 0;
+    while at < ALL {
+        #[expect(
+            clippy::indexing_slicing,
+            reason = "evaluated while compiling, where a wrong ALL is an error"
+        )]
+        let field = if at < N { own[at] } else { SHARED[at - N] };
+        #[expect(clippy::indexing_slicing, reason = "as above")]
+        {
+            all[at] = field;
+        }
+        at += 1;
+    }
+    all
+}

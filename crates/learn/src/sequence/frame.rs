@@ -1,0 +1,210 @@
+//! Units, times and the linear prediction that a sequence model corrects.
+
+use super::Settings;
+use super::grid::evened;
+use crate::baselines::Arx;
+use crate::data::{DataSet, InputHold, Scale, Trajectory};
+use crate::{Ahead, LearnError, Model, Past};
+use burn::tensor::{Device, Tensor};
+use neural::tensor;
+use serde::{Deserialize, Serialize};
+
+/// Most samples of a past.
+const MOST_PAST: usize = 96;
+
+/// Fewest samples of a past, and of a block.
+const LEAST: usize = 8;
+
+/// Share of the position's spread that counts as the least typical error of the linear prediction.
+const LEAST_MISS: f64 = 1e-3;
+
+/// Ridges that the linear prediction is fitted with, as shares of the regressors' mean squares.
+const RIDGES: [f64; 3] = [1e-8, 1e-6, 1e-4];
+
+/// All that a sequence model takes from the training part besides its weights.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Frame {
+    /// Time between a model's samples, in seconds.
+    pub interval_s: f64,
+    /// Samples of the past.
+    pub past: usize,
+    /// Samples that are predicted at once.
+    pub block: usize,
+    /// True where there is an input.
+    pub driven: bool,
+    /// Behavior of inputs between samples.
+    pub hold: InputHold,
+    /// Scales of the training part.
+    pub scale: Scale,
+    /// The linear prediction of a block in scaled units, row-major: past positions by block.
+    from_positions: Vec<f64>,
+    /// Inputs of past and block by block; empty without an input.
+    from_inputs: Vec<f64>,
+    /// One for each sample of a block.
+    constant: Vec<f64>,
+    /// Typical error of the linear prediction for each sample of a block, in scaled units.
+    miss: Vec<f64>,
+}
+
+/// A training part in a frame's units and times.
+pub(super) struct Framed {
+    pub(super) frame: Frame,
+    pub(super) train: Vec<Trajectory>,
+    pub(super) validation: Vec<Trajectory>,
+}
+
+impl Framed {
+    /// Scales and evens out training and validation part, and fits the linear prediction.
+    pub(super) fn new(data: &DataSet, settings: &Settings) -> Result<Self, LearnError> {
+        let rates: Vec<f64> = data.train.iter().map(Trajectory::rate_hz).collect();
+        let own_s = rates.len() as f64 / rates.iter().sum::<f64>().max(f64::MIN_POSITIVE);
+        let stride = (data.period_s / own_s / settings.samples_per_period as f64).ceil().max(1.0);
+        let interval_s = own_s * stride;
+        let past =
+            ((data.warm_up_s / interval_s * (1.0 + 1e-9)).floor() as usize + 1).clamp(LEAST, MOST_PAST);
+        let block = ((settings.block_periods * data.period_s / interval_s).round() as usize).max(LEAST);
+        let mut frame = Frame {
+            interval_s,
+            past,
+            block,
+            driven: data.is_driven(),
+            hold: data.hold,
+            scale: data.scale,
+            from_positions: Vec::new(),
+            from_inputs: Vec::new(),
+            constant: Vec::new(),
+            miss: vec![1.0; block],
+        };
+        let framed = |parts: &[Trajectory]| -> Result<Vec<Trajectory>, LearnError> {
+            parts.iter().map(|part| frame.scaled(&evened(part, interval_s, data.hold)?)).collect()
+        };
+        let (train, validation) = (framed(&data.train)?, framed(&data.validation)?);
+        let unit = Scale { center: 0.0, position: 1.0, input_center: 0.0, input: 1.0, ..data.scale };
+        let scaled = DataSet {
+            train,
+            validation,
+            test: Vec::new(),
+            warm_up_s: (past as f64 - 1.0) * interval_s,
+            scale: unit,
+            ..data.clone()
+        };
+        frame.linearize(&Arx::validated(&scaled, &RIDGES)?.unbounded())?;
+        frame.measure(&scaled.train);
+        Ok(Self { frame, train: scaled.train, validation: scaled.validation })
+    }
+}
+
+impl Frame {
+    /// Numbers that describe a sample: its position, observed or linearly predicted, the input where there is one, and
+    /// whether it lies ahead.
+    #[must_use]
+    pub fn features(&self) -> usize {
+        2 + usize::from(self.driven)
+    }
+
+    /// Samples of past and block.
+    #[must_use]
+    pub fn length(&self) -> usize {
+        self.past + self.block
+    }
+
+    /// A position in scaled units.
+    #[must_use]
+    pub fn position_in(&self, position: f64) -> f64 {
+        (position - self.scale.center) / self.scale.position
+    }
+
+    /// A position in its own unit.
+    #[must_use]
+    pub fn position_out(&self, scaled: f64) -> f64 {
+        self.scale.center + self.scale.position * scaled
+    }
+
+    /// An input in scaled units.
+    #[must_use]
+    pub fn input_in(&self, input: f64) -> f64 {
+        (input - self.scale.input_center) / self.scale.input
+    }
+
+    fn scaled(&self, part: &Trajectory) -> Result<Trajectory, LearnError> {
+        let values = part.values().iter().map(|&value| self.position_in(value)).collect();
+        let input = part.input().map(|input| input.iter().map(|&value| self.input_in(value)).collect());
+        Trajectory::new(part.name(), part.times_s().to_vec(), values, input)
+    }
+
+    /// The autoregression's free run over a block is linear in past and inputs: column by column from unit vectors.
+    fn linearize(&mut self, model: &Arx) -> Result<(), LearnError> {
+        let times: Vec<f64> = (0..self.length()).map(|at| at as f64).collect();
+        let (before, after) = times.split_at(self.past);
+        let run = |one: Option<usize>, input_one: Option<usize>| {
+            let unit = |length: usize, one: Option<usize>| -> Vec<f64> {
+                (0..length).map(|at| if Some(at) == one { 1.0 } else { 0.0 }).collect()
+            };
+            let (values, input) = (unit(self.past, one), unit(self.length(), input_one));
+            let (input_before, input_after) = input.split_at(self.past);
+            let past = Past { times_s: before, values: &values, input: self.driven.then_some(input_before) };
+            let ahead = Ahead { times_s: after, input: self.driven.then_some(input_after) };
+            model.free_run(&past, &ahead).map(|found| found.values)
+        };
+        let constant = run(None, None)?;
+        let less = |found: Vec<f64>| -> Vec<f64> {
+            found.iter().zip(&constant).map(|(value, constant)| value - constant).collect()
+        };
+        let inputs = if self.driven { self.length() } else { 0 };
+        let positions =
+            (0..self.past).map(|at| run(Some(at), None).map(less)).collect::<Result<Vec<_>, _>>()?;
+        let from_inputs =
+            (0..inputs).map(|at| run(None, Some(at)).map(less)).collect::<Result<Vec<_>, _>>()?;
+        (self.from_positions, self.from_inputs) = (positions.concat(), from_inputs.concat());
+        self.constant = constant;
+        Ok(())
+    }
+
+    /// Root mean square error of the linear prediction over training windows, for each sample of a block.
+    fn measure(&mut self, train: &[Trajectory]) {
+        let (mut squares, mut count) = (vec![0.0; self.block], 0_usize);
+        for part in train {
+            let starts = (0..(part.len() + 1).saturating_sub(self.length())).step_by((self.block / 2).max(1));
+            for from in starts {
+                let positions = part.values().get(from..from + self.past).unwrap_or_default();
+                let ahead = part.values().get(from + self.past..from + self.length()).unwrap_or_default();
+                let inputs = part.input().and_then(|input| input.get(from..from + self.length()));
+                let predicted = self.linear(positions, inputs.unwrap_or_default());
+                for ((square, own), observed) in squares.iter_mut().zip(predicted).zip(ahead) {
+                    *square += (own - observed).powi(2);
+                }
+                count += 1;
+            }
+        }
+        let typical = |square: &f64| (square / count.max(1) as f64).sqrt().max(LEAST_MISS);
+        self.miss = squares.iter().map(typical).collect();
+    }
+
+    fn linear(&self, positions: &[f64], inputs: &[f64]) -> Vec<f64> {
+        let mut predicted = self.constant.clone();
+        let rows = self.from_positions.chunks(self.block).zip(positions);
+        for (row, value) in rows.chain(self.from_inputs.chunks(self.block).zip(inputs)) {
+            predicted.iter_mut().zip(row).for_each(|(sum, weight)| *sum += weight * value);
+        }
+        predicted
+    }
+
+    /// The parts of a frame that tensors are multiplied with, on a device.
+    pub(super) fn on(&self, device: &Device) -> OnDevice {
+        let matrix = |values: &[f64], rows: usize| tensor(values.to_vec(), [rows, self.block], device);
+        OnDevice {
+            from_positions: matrix(&self.from_positions, self.past),
+            from_inputs: self.driven.then(|| matrix(&self.from_inputs, self.length())),
+            constant: matrix(&self.constant, 1),
+            miss: matrix(&self.miss, 1),
+        }
+    }
+}
+
+/// A frame's matrices as tensors.
+pub(super) struct OnDevice {
+    pub(super) from_positions: Tensor<2>,
+    pub(super) from_inputs: Option<Tensor<2>>,
+    pub(super) constant: Tensor<2>,
+    pub(super) miss: Tensor<2>,
+}

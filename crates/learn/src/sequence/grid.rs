@@ -1,0 +1,121 @@
+//! Even times: sequence models count samples, records have stamps.
+
+use crate::data::{InputHold, Trajectory, interpolated};
+use crate::{Ahead, LearnError, Past};
+
+/// Mean of an input from `time` on for `interval` seconds; before the first and after the last sample it stays.
+fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f64, f64)) -> f64 {
+    let at = |time: f64| {
+        let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
+        let before = next.saturating_sub(1);
+        let pick = |column: &[f64], place: usize| column.get(place).copied().unwrap_or_default();
+        let (from, to) = (pick(times, before), pick(times, next));
+        let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
+        match hold {
+            InputHold::Linear => pick(input, before) + share * (pick(input, next) - pick(input, before)),
+            InputHold::Zero if share < 1.0 => pick(input, before),
+            InputHold::Zero => pick(input, next),
+        }
+    };
+    // Midpoints: where stamps are even, the first of them reads the sample itself.
+    let parts = 8;
+    let mid = |part: i32| at(time + (f64::from(part) + 0.5) * interval / f64::from(parts));
+    (0..parts).map(mid).sum::<f64>() / f64::from(parts)
+}
+
+/// A trajectory at even times from its first sample on.
+pub(super) fn evened(part: &Trajectory, interval: f64, hold: InputHold) -> Result<Trajectory, LearnError> {
+    let first = part.times_s().first().copied().unwrap_or_default();
+    let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
+    let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
+    let values = times.iter().map(|&time| interpolated(part.times_s(), part.values(), time)).collect();
+    let mean = |input: &[f64]| {
+        times.iter().map(|&time| averaged(part.times_s(), input, hold, (time, interval))).collect()
+    };
+    let input = part.input().map(mean);
+    Trajectory::new(part.name(), times, values, input)
+}
+
+/// The last `count` even times of a past, ending at its last sample: positions.
+pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
+    let (first, last) = (past.times_s.first().copied(), past.times_s.last().copied());
+    let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
+    // Jitter may shorten a past by a part of an interval; the cubic reaches that far.
+    let there = ((last - first) / interval + 0.5).floor() as usize + 1;
+    if there < count || past.times_s.len() < 4 {
+        return Err(LearnError::ShortPast {
+            samples: there.min(past.times_s.len()),
+            needed: count,
+            needed_s: (count as f64 - 1.0) * interval,
+        });
+    }
+    let time = |back: usize| last - back as f64 * interval;
+    Ok((0..count).rev().map(|back| interpolated(past.times_s, past.values, time(back))).collect())
+}
+
+/// The input at the last `before` even times of a past, its last sample among them, and at `after` times beyond; `None`
+/// without an input.
+pub(super) fn inputs(
+    (past, ahead): (&Past<'_>, &Ahead<'_>),
+    hold: InputHold,
+    interval: f64,
+    [before, after]: [usize; 2],
+) -> Option<Vec<f64>> {
+    let input = [past.input?, ahead.input?].concat();
+    let times = [past.times_s, ahead.times_s].concat();
+    let last = past.times_s.last().copied().unwrap_or_default();
+    let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
+    Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect())
+}
+
+/// Values at times of a record from values at even times, the first of which is `first`.
+pub(super) fn read_back(values: &[f64], first: f64, interval: f64, times: &[f64]) -> Vec<f64> {
+    let even: Vec<f64> = (0..values.len()).map(|at| first + at as f64 * interval).collect();
+    times.iter().map(|&time| interpolated(&even, values, time)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn even_stamps_give_the_samples_themselves() {
+        let times: Vec<f64> = (0..50).map(|at| 3.0 + f64::from(at) * 0.02).collect();
+        let values: Vec<f64> = times.iter().map(|time| (7.0 * time).sin()).collect();
+        let input: Vec<f64> = times.iter().map(|time| (5.0 * time).cos()).collect();
+        let part = Trajectory::new("a", times, values, Some(input)).unwrap();
+        let even = evened(&part, 0.02, InputHold::Zero).unwrap();
+        assert_eq!(even.len(), 50);
+        for (own, expected) in even.values().iter().zip(part.values()) {
+            assert!((own - expected).abs() < 1e-9);
+        }
+        for (own, expected) in even.input().unwrap().iter().zip(part.input().unwrap()) {
+            assert!((own - expected).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn uneven_stamps_are_evened_and_read_back() {
+        let times: Vec<f64> =
+            (0..200).map(|at| 0.02 * f64::from(at) + 0.006 * f64::from(at * at % 7) / 7.0).collect();
+        let motion = |time: f64| (6.0 * time).sin();
+        let values: Vec<f64> = times.iter().map(|&time| motion(time)).collect();
+        let past = Past { times_s: &times[..100], values: &values[..100], input: None };
+        let even = past_positions(&past, 0.02, 40).unwrap();
+        let last = times[99];
+        assert!((even[0] - motion(last - 39.0 * 0.02)).abs() < 1e-4);
+        let ahead: Vec<f64> = (0..100).map(|at| motion(last + 0.02 * f64::from(at))).collect();
+        let back = read_back(&ahead, last, 0.02, &times[100..190]);
+        for (own, &time) in back.iter().zip(&times[100..190]) {
+            assert!((own - motion(time)).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn a_past_that_is_too_short_says_how_long_it_has_to_be() {
+        let times = [0.0, 0.1, 0.2, 0.3, 0.4];
+        let past = Past { times_s: &times, values: &times, input: None };
+        let error = past_positions(&past, 0.1, 8).unwrap_err().to_string();
+        assert!(error.contains("5 of the 8 samples") && error.contains("0.700 s"), "{error}");
+    }
+}

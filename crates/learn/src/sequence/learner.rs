@@ -1,0 +1,95 @@
+//! The learner that every architecture gets.
+
+use super::frame::Framed;
+use super::model::SequenceModel;
+use super::roll::{Roll, sizes};
+use super::{Architecture, Settings, plain_device};
+use crate::data::{DataSet, Trajectory, Window, windows};
+use crate::training::{Schedule, State, Training, train};
+use crate::{Context, Fitted, LearnError, Learner, Model, Stored};
+use estimator::Reached;
+use settings::{Resolved, SettingsError};
+
+/// An architecture with its settings.
+struct SequenceLearner<A> {
+    architecture: A,
+    settings: Settings,
+}
+
+/// Share of the steps over which the learning rate rises, and its share at the end.
+const WARM_UP: f64 = 0.05;
+const LAST: f64 = 0.01;
+
+/// Norm that a gradient is cut to.
+const CLIP: f64 = 1.0;
+
+/// Most windows and most blocks of a validation.
+const HELD_WINDOWS: usize = 24;
+const HELD_BLOCKS: usize = 40;
+
+/// The learner of an architecture, from its section.
+///
+/// # Errors
+/// [`SettingsError`] for a section of another form.
+pub fn build<A: Architecture>(resolved: &Resolved) -> Result<Box<dyn Learner>, SettingsError> {
+    let architecture: A = resolved.section(A::ID)?;
+    Ok(Box::new(SequenceLearner { architecture, settings: resolved.section(A::ID)? }))
+}
+
+/// A model of an architecture, from its file.
+///
+/// # Errors
+/// [`LearnError::Stored`] for a file of another form.
+pub fn restore<A: Architecture>(stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
+    Ok(Box::new(SequenceModel::<A>::restored(stored)?))
+}
+
+/// Windows of the validation part: long ones of equal length, evenly chosen.
+fn held(parts: &[Trajectory], past: usize, block: usize) -> Vec<Window> {
+    let shortest = parts.iter().map(Trajectory::len).min().unwrap_or(0);
+    let blocks = (shortest.saturating_sub(past) / block).clamp(1, HELD_BLOCKS);
+    let all = windows(parts, past, blocks * block, blocks * block);
+    let stride = all.len().div_ceil(HELD_WINDOWS).max(1);
+    all.into_iter().step_by(stride).collect()
+}
+
+impl<A: Architecture> Learner for SequenceLearner<A> {
+    fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
+        let settings = &self.settings;
+        let Framed { frame, train: parts, validation } = Framed::new(data, settings)?;
+        let shortest = parts.iter().map(Trajectory::len).max().unwrap_or(0);
+        let blocks = (shortest.saturating_sub(frame.past) / frame.block).clamp(1, settings.blocks);
+        let future = blocks * frame.block;
+        let stride = windows(&parts, frame.past, future, 1).len().div_ceil(settings.windows).max(1);
+        let device = plain_device()?;
+        let roll = Roll {
+            architecture: &self.architecture,
+            held: held(&validation, frame.past, frame.block),
+            shape: self.architecture.init(sizes(&frame), &context.seed, &device)?,
+            frame: &frame,
+            train: &parts,
+            validation: &validation,
+        };
+        let training = Training {
+            epochs: settings.epochs,
+            batch: settings.batch,
+            schedule: Schedule { peak: settings.learning_rate, warm_up: WARM_UP, last: LAST },
+            clip: CLIP,
+            weight_decay: settings.weight_decay,
+            patience: settings.patience,
+        };
+        let all = windows(&parts, frame.past, future, stride);
+        let mut keep = |state: &State| context.checkpoint(state.steps, state);
+        let trained = train(&roll, &all, &training, context.resumed()?, context, &mut keep)?;
+        let state = trained.state;
+        let reached = if trained.stopped_early { Reached::Converged } else { Reached::BudgetSpent };
+        let network = neural::with_parameters(roll.shape.clone(), &state.best, &device)?;
+        let model = SequenceModel::<A>::new(
+            self.architecture.clone(),
+            frame.clone(),
+            &network,
+            state.best_validation,
+        )?;
+        Ok(Fitted { model: Box::new(model), reached, steps: state.steps })
+    }
+}

@@ -1,0 +1,117 @@
+//! A trained sequence model.
+
+use super::frame::Frame;
+use super::grid::{inputs, past_positions, read_back};
+use super::roll::{Rows, free_run, sizes};
+use super::{Architecture, plain_device};
+use crate::{Ahead, LearnError, Model, Past, Predicted, Stored, Tensor};
+use neural::{NamedTensor, named_parameters, with_parameters};
+use seed::Seed;
+use serde::{Deserialize, Serialize};
+
+/// Scaled position beyond which a prediction runs away.
+const BOUND: f64 = 1e3;
+
+/// An architecture's weights with the frame that they were trained in.
+pub(super) struct SequenceModel<A> {
+    architecture: A,
+    frame: Frame,
+    weights: Vec<NamedTensor>,
+    /// Root mean square error of free runs over the validation part, in the position's unit.
+    std: f64,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Described<A> {
+    architecture: A,
+    frame: Frame,
+    std: f64,
+}
+
+impl<A: Architecture> SequenceModel<A> {
+    pub(super) fn new(
+        architecture: A,
+        frame: Frame,
+        network: &A::Network,
+        std: f64,
+    ) -> Result<Self, LearnError> {
+        Ok(Self { architecture, frame, weights: named_parameters(network)?, std })
+    }
+
+    pub(super) fn restored(stored: &Stored) -> Result<Self, LearnError> {
+        let described: Described<A> = stored.described()?;
+        let Described { architecture, frame, std } = described;
+        let shape = architecture.init(sizes(&frame), &Seed::new(0), &plain_device()?)?;
+        let mut weights = Vec::new();
+        for own in named_parameters(&shape)? {
+            let found = stored.tensor(&own.name)?;
+            if found.shape != own.shape {
+                let problem = format!(
+                    "tensor `{}` has the shape {:?} where the network has {:?}",
+                    own.name, found.shape, own.shape
+                );
+                return Err(LearnError::Stored { problem });
+            }
+            weights.push(NamedTensor { values: found.values.clone(), ..own });
+        }
+        Ok(Self { architecture, frame, weights, std })
+    }
+
+    fn network(&self) -> Result<A::Network, LearnError> {
+        let device = plain_device()?;
+        let shape = self.architecture.init(sizes(&self.frame), &Seed::new(0), &device)?;
+        let flat: Vec<f64> = self.weights.iter().flat_map(|own| own.values.iter().copied()).collect();
+        Ok(with_parameters(shape, &flat, &device)?)
+    }
+}
+
+impl<A: Architecture> Model for SequenceModel<A> {
+    fn free_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
+        let frame = &self.frame;
+        let (Some(&now), Some(&end)) = (past.times_s.last(), ahead.times_s.last()) else {
+            return Ok(Predicted::default());
+        };
+        // Two samples more than the last time needs, so that the cubic that reads it has both sides.
+        let needed = ((end - now) / frame.interval_s).ceil() as usize + 2;
+        let after = needed.div_ceil(frame.block) * frame.block;
+        let start = past_positions(past, frame.interval_s, frame.past)?;
+        let mut positions: Vec<f64> = start.iter().map(|&value| frame.position_in(value)).collect();
+        positions.resize(frame.past + after, 0.0);
+        let given = inputs((past, ahead), frame.hold, frame.interval_s, [frame.past, after]);
+        let rows = Rows {
+            count: 1,
+            length: positions.len(),
+            positions,
+            inputs: given.map(|given| given.into_iter().map(|value| frame.input_in(value)).collect()),
+        };
+        let whole = free_run(&self.network()?, frame, &rows, &plain_device()?)?;
+        if let Some(place) = whole.iter().position(|value| value.is_nan() || value.abs() > BOUND) {
+            let time_s = (place as f64 - frame.past as f64) * frame.interval_s;
+            return Err(LearnError::Diverged { time_s, bound: BOUND * frame.scale.position });
+        }
+        let whole: Vec<f64> = whole.into_iter().map(|value| frame.position_out(value)).collect();
+        let first = now - (frame.past as f64 - 1.0) * frame.interval_s;
+        Ok(Predicted { values: read_back(&whole, first, frame.interval_s, ahead.times_s), std: None })
+    }
+
+    fn banded_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
+        let found = self.free_run(past, ahead)?;
+        let std = Some(vec![self.std; found.values.len()]);
+        Ok(Predicted { std, ..found })
+    }
+
+    fn parameters(&self) -> usize {
+        self.weights.iter().map(|own| own.values.len()).sum()
+    }
+
+    fn stored(&self) -> Option<Stored> {
+        let described =
+            Described { architecture: self.architecture.clone(), frame: self.frame.clone(), std: self.std };
+        let tensors = self.weights.iter().map(|own| Tensor {
+            name: own.name.clone(),
+            shape: own.shape.clone(),
+            values: own.values.clone(),
+        });
+        Stored::new(A::ID, &described, tensors.collect()).ok()
+    }
+}

@@ -1,0 +1,191 @@
+//! Free runs in batches, and their gradient.
+//!
+//! The tape of an automatic differentiation costs more than linearly in its length, so each block has a tape of its own:
+//! a forward pass keeps the positions only, and on the way back each block is computed again, the adjoint of its
+//! prediction given by all that came after it.
+
+use super::frame::{Frame, OnDevice};
+use super::{Architecture, Batch, Network, Sizes, plain_device};
+use crate::LearnError;
+use crate::data::{Trajectory, Window};
+use crate::training::Trainable;
+use burn::tensor::{Device, Tensor};
+use estimator::FitError;
+use neural::{flat_gradient, named_parameters, tensor, values, with_parameters};
+use seed::Seed;
+
+/// A sequence model in training.
+pub(super) struct Roll<'a, A: Architecture> {
+    pub(super) architecture: &'a A,
+    pub(super) frame: &'a Frame,
+    pub(super) train: &'a [Trajectory],
+    pub(super) validation: &'a [Trajectory],
+    /// Windows of the validation part.
+    pub(super) held: Vec<Window>,
+    /// A network of the right shape.
+    pub(super) shape: A::Network,
+}
+
+/// Windows as rows of numbers: positions and, where there is one, the input, each of `length` samples.
+pub(super) struct Rows {
+    pub(super) count: usize,
+    pub(super) length: usize,
+    pub(super) positions: Vec<f64>,
+    pub(super) inputs: Option<Vec<f64>>,
+}
+
+impl Rows {
+    fn of(parts: &[Trajectory], windows: &[Window]) -> Self {
+        let column = |of: &dyn Fn(&Trajectory) -> Option<&[f64]>| -> Option<Vec<f64>> {
+            let rows =
+                windows.iter().map(|window| of(parts.get(window.trajectory)?)?.get(window.from..window.to));
+            Some(rows.collect::<Option<Vec<_>>>()?.concat())
+        };
+        Self {
+            count: windows.len(),
+            length: windows.first().map_or(0, |window| window.to - window.from),
+            positions: column(&|part| Some(part.values())).unwrap_or_default(),
+            inputs: column(&|part| part.input()),
+        }
+    }
+
+    /// The samples `from..from + length` of every row.
+    fn cut(&self, of: &[f64], from: usize, length: usize) -> Vec<f64> {
+        let rows = of.chunks(self.length.max(1));
+        rows.flat_map(|row| row.get(from..from + length).unwrap_or_default().iter().copied()).collect()
+    }
+
+    fn input(&self, from: usize, length: usize, device: &Device) -> Option<Tensor<2>> {
+        let inputs = self.inputs.as_ref()?;
+        Some(tensor(self.cut(inputs, from, length), [self.count, length], device))
+    }
+}
+
+/// Predicts a block from past positions, windows × past, and inputs, windows × (past + block).
+fn block<N: Network>(
+    network: &N,
+    (frame, matrices): (&Frame, &OnDevice),
+    positions: Tensor<2>,
+    inputs: Option<Tensor<2>>,
+) -> Tensor<2> {
+    let [windows, _] = positions.dims();
+    let device = positions.device();
+    let mut linear = positions.clone().matmul(matrices.from_positions.clone()) + matrices.constant.clone();
+    if let Some((inputs, weights)) = inputs.clone().zip(matrices.from_inputs.clone()) {
+        linear = linear + inputs.matmul(weights);
+    }
+    let ahead = Tensor::<2>::cat(
+        vec![Tensor::zeros([windows, frame.past], &device), Tensor::ones([windows, frame.block], &device)],
+        1,
+    );
+    let mut features = vec![Tensor::cat(vec![positions, linear.clone()], 1)];
+    features.extend(inputs);
+    features.push(ahead);
+    let tokens = Tensor::cat(features.into_iter().map(|own| own.unsqueeze_dim::<3>(2)).collect(), 2);
+    linear + network.forward(Batch { tokens, block: frame.block }) * matrices.miss.clone()
+}
+
+/// Free run of every row from its first `frame.past` positions to its end: the positions with those after the past
+/// replaced by predictions. `rows.length` is the past and a whole number of blocks.
+pub(super) fn free_run<N: Network>(
+    network: &N,
+    frame: &Frame,
+    rows: &Rows,
+    device: &Device,
+) -> Result<Vec<f64>, LearnError> {
+    let matrices = frame.on(device);
+    let mut whole = rows.positions.clone();
+    for from in starts(frame, rows) {
+        let positions = tensor(rows.cut(&whole, from, frame.past), [rows.count, frame.past], device);
+        let inputs = rows.input(from, frame.length(), device);
+        let predicted = values(block(network, (frame, &matrices), positions, inputs))?;
+        for (row, own) in whole.chunks_mut(rows.length).zip(predicted.chunks(frame.block)) {
+            if let Some(place) = row.get_mut(from + frame.past..from + frame.length()) {
+                place.copy_from_slice(own);
+            }
+        }
+    }
+    Ok(whole)
+}
+
+/// Starts of the windows of the blocks, one after the other.
+fn starts(frame: &Frame, rows: &Rows) -> impl DoubleEndedIterator<Item = usize> + use<> {
+    let (block, blocks) = (frame.block, rows.length.saturating_sub(frame.past) / frame.block);
+    (0..blocks).map(move |number| number * block)
+}
+
+impl<A: Architecture> Roll<'_, A> {
+    /// Adds the gradient with respect to the weights, given the derivatives with respect to each position of a run.
+    fn pass_back(
+        &self,
+        weights: &[f64],
+        rows: &Rows,
+        whole: &[f64],
+        mut adjoint: Vec<f64>,
+        gradient: &mut [f64],
+    ) -> Result<(), LearnError> {
+        let recording = plain_device()?.autodiff();
+        let network = with_parameters(self.shape.clone(), weights, &recording)?;
+        let (frame, matrices) = (self.frame, self.frame.on(&recording));
+        let none = || FitError::Backend { problem: "no gradient of a block's past".to_owned() };
+        for from in starts(frame, rows).rev() {
+            let cut = rows.cut(whole, from, frame.past);
+            let positions = tensor(cut, [rows.count, frame.past], &recording).require_grad();
+            let inputs = rows.input(from, frame.length(), &recording);
+            let predicted = block(&network, (frame, &matrices), positions.clone(), inputs);
+            let by = rows.cut(&adjoint, from + frame.past, frame.block);
+            let by = tensor(by, [rows.count, frame.block], &recording);
+            let gradients = (predicted * by).sum().backward();
+            let own = flat_gradient(&network, &gradients)?;
+            gradient.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+            let by_past = values(positions.grad(&gradients).ok_or_else(none)?)?;
+            for (row, own) in adjoint.chunks_mut(rows.length).zip(by_past.chunks(frame.past)) {
+                let places = row.iter_mut().skip(from);
+                places.zip(own).for_each(|(sum, own)| *sum += own);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<A: Architecture> Trainable for Roll<'_, A> {
+    fn initial(&self, seed: &Seed) -> Result<Vec<f64>, LearnError> {
+        let frame = self.frame;
+        let network = self.architecture.init(sizes(frame), seed, &plain_device()?)?;
+        Ok(named_parameters(&network)?.into_iter().flat_map(|own| own.values).collect())
+    }
+
+    fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError> {
+        let device = plain_device()?;
+        let rows = Rows::of(self.train, batch);
+        let network = with_parameters(self.shape.clone(), weights, &device)?;
+        let whole = free_run(&network, self.frame, &rows, &device)?;
+        let count = (rows.count * rows.length.saturating_sub(self.frame.past)).max(1) as f64;
+        let errors: Vec<f64> =
+            whole.iter().zip(&rows.positions).map(|(own, observed)| own - observed).collect();
+        let loss = errors.iter().map(|error| error * error).sum::<f64>() / count;
+        let adjoint = errors.iter().map(|error| 2.0 * error / count).collect();
+        self.pass_back(weights, &rows, &whole, adjoint, gradient)?;
+        Ok(loss)
+    }
+
+    fn validation(&self, weights: &[f64]) -> Result<f64, LearnError> {
+        let device = plain_device()?;
+        let rows = Rows::of(self.validation, &self.held);
+        let network = with_parameters(self.shape.clone(), weights, &device)?;
+        let whole = free_run(&network, self.frame, &rows, &device)?;
+        let count = (rows.count * rows.length.saturating_sub(self.frame.past)).max(1) as f64;
+        let square: f64 =
+            whole.iter().zip(&rows.positions).map(|(own, observed)| (own - observed).powi(2)).sum();
+        Ok((square / count).sqrt() * self.unit())
+    }
+
+    fn unit(&self) -> f64 {
+        self.frame.scale.position
+    }
+}
+
+/// Lengths that a frame asks of a network.
+pub(super) fn sizes(frame: &Frame) -> Sizes {
+    Sizes { features: frame.features(), length: frame.length(), block: frame.block }
+}

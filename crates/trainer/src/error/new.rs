@@ -1,0 +1,26 @@
+//! Reasons why no skeleton was written.
+
+use thiserror::Error;
+
+/// A fault, and its remedy.
+#[derive(Debug, Error)]
+pub(crate) enum NewError {
+    #[error(
+        "`{name}` is no identifier; expected small letters, digits and hyphens, each word beginning with a letter, as in \
+         `echo-state`, and no word that Rust keeps for itself"
+    )]
+    Name { name: String },
+    #[error("there is a learner `{name}` already, or a file of its name; choose another name")]
+    Taken { name: String },
+    #[error(
+        "{folder} is not in a checkout of Ringdown, which a new estimator becomes a part of; change into one, or name it with \
+         --workspace DIR"
+    )]
+    NoCheckout { folder: String },
+    #[error("{file}: cannot be read: {reason}")]
+    Unreadable { file: String, reason: String },
+    #[error(
+        "{file}: the registry has another form than this version of trainer knows; add the module and its ENTRY by hand"
+    )]
+    Registry { file: String },
+}
