@@ -137,7 +137,7 @@ mod tests {
     fn diagnosed(effects: &[(&str, &[f64])], rate: f64) -> Diagnosis {
         let nominal = Nominal::new(1.0, 0.3, 400.0, 0.0).unwrap();
         let effects = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
-        let system = System::new(nominal.clone(), effects).unwrap();
+        let system = System::new(nominal, effects).unwrap();
         let times: Vec<f64> = (0..600).map(|at| f64::from(at) / 50.0).collect();
         let mut generator = Seed::new(5).child("noise").generator();
         let mut observe = |start: f64, rate: f64| {
