@@ -169,7 +169,7 @@ fn a_new_learner_takes_one_command_and_trains() {
         assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
         text
     };
-    let text = run(&["test", "--offline", "--workspace", "--lib", "--", "learners::tests::a_model_predicts"]);
+    let text = run(&["test", "--offline", "-p", "learn", "--lib", "--", "learners::tests::a_model_predicts"]);
     assert!(text.contains("a_model_predicts_the_same_from_its_file ... ok"), "{text}");
     let listed = run(&["run", "--offline", "-p", "trainer", "--", "list", "learners"]);
     assert!(["one-layer", "power-torque", "plain-law"].iter().all(|name| listed.contains(name)), "{listed}");

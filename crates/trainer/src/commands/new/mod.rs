@@ -11,6 +11,13 @@ use std::path::{Path, PathBuf};
 
 /// Arguments of `trainer new`.
 #[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  trainer new estimator echo-state --kind sequence
+  trainer new estimator spline-torque --kind field
+Then:
+  cargo run --release -p trainer -- configs/learn/echo-state.toml
+  cargo test -p learn learners")]
 pub(crate) struct NewArguments {
     #[command(subcommand)]
     what: What,
@@ -20,13 +27,6 @@ pub(crate) struct NewArguments {
 enum What {
     /// Writes the skeleton of an estimator of dynamics into a checkout of Ringdown: one file, its two lines in the registry and
     /// a configuration
-    #[command(after_help = "\
-Examples:
-  trainer new estimator echo-state --kind sequence
-  trainer new estimator spline-torque --kind field
-Then:
-  cargo run --release -p trainer -- configs/learn/echo-state.toml
-  cargo test -p learn learners")]
     Estimator {
         /// Its identifier: small letters, digits and hyphens
         name: String,
