@@ -14,9 +14,6 @@ use std::cmp::Ordering;
 /// Most effects that a set can hold.
 const MOST_EFFECTS: usize = 5;
 
-/// Effects of a set before it is known that more are asked for.
-const AT_FIRST: usize = 3;
-
 /// Searches on longer shooting intervals at most.
 const MOST_INTERVALS: usize = 3;
 
@@ -39,8 +36,7 @@ impl Searched {
             additions: 4,
         };
         let Question { candidates, coarse, coarse_base, enough, .. } = question;
-        let first = Breadth { most_effects: breadth.most_effects.min(AT_FIRST), ..breadth };
-        let (interval, mut found) = explore(coarse, coarse_base, candidates, &first, *enough, is_whole);
+        let (interval, mut found) = explore(coarse, coarse_base, candidates, &breadth, *enough, is_whole);
         plain_family(&interval.data, &interval.calibrated, candidates, &mut found);
         further(&interval, candidates, &breadth, *enough, &mut found);
         Self { interval, found, breadth }
