@@ -24,7 +24,7 @@ for program in munged slurmctld slurmd sbatch; do
         munge slurm-client slurmctld slurmd; } >/dev/null 2>&1 || skip "its packages cannot be installed"
 done
 
-place=$(mktemp -d /tmp/slurm-single-node.XXXXXX)
+place=$(mktemp -d -t slurm-single-node.XXXXXX)
 chmod 755 "$place"
 daemons=()
 take_down() {
