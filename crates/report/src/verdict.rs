@@ -184,6 +184,18 @@ pub(crate) fn common_origin<'a>(mut stated: impl Iterator<Item = &'a str>) -> Or
     }
 }
 
+/// That of several records where all share it; `apart` says where each one's stands.
+pub(crate) fn origin_of_all<'a>(stated: impl Iterator<Item = &'a str>, apart: &'static str) -> Origin {
+    let mut stated: Vec<&str> = stated.collect();
+    stated.sort_unstable();
+    stated.dedup();
+    match stated[..] {
+        [one] => origin(one),
+        [] => origin("unstated"),
+        _ => Origin { class: "unstated", label: "Records of different origins", note: apart },
+    }
+}
+
 pub(crate) fn origin(stated: &str) -> Origin {
     match stated {
         "measured" => {

@@ -157,18 +157,11 @@ fn headline(result: &FleetResult) -> Verdict {
 
 /// That of the records, where all share it.
 fn origin(result: &FleetResult) -> Origin {
-    let mut stated: Vec<&str> = result.cases.iter().map(|case| case.origin.as_str()).collect();
-    stated.sort_unstable();
-    stated.dedup();
-    match stated[..] {
-        [one] => verdict::origin(one),
-        [] => verdict::origin("unstated"),
-        _ => Origin {
-            class: "unstated",
-            label: "Records of different origins",
-            note: "Some were measured, others simulated or not said to be either: the table of cases says which.",
-        },
-    }
+    let stated = result.cases.iter().map(|case| case.origin.as_str());
+    verdict::origin_of_all(
+        stated,
+        "Some were measured, others simulated or not said to be either: the table of cases says which.",
+    )
 }
 
 fn warnings(result: &FleetResult) -> Vec<String> {

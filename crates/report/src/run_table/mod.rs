@@ -81,19 +81,11 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
 
 /// That of the record, where all runs share it.
 fn origin(table: &RunTable) -> Origin {
-    let mut stated: Vec<&str> =
-        table.rows.iter().map(|row| row.origin.as_str()).filter(|origin| !origin.is_empty()).collect();
-    stated.sort_unstable();
-    stated.dedup();
-    match stated[..] {
-        [one] => verdict::origin(one),
-        [] => verdict::origin("unstated"),
-        _ => Origin {
-            class: "unstated",
-            label: "Records of different origins",
-            note: "Some were measured, others simulated or not said to be either: table.csv says which.",
-        },
-    }
+    let stated = table.rows.iter().map(|row| row.origin.as_str()).filter(|origin| !origin.is_empty());
+    verdict::origin_of_all(
+        stated,
+        "Some were measured, others simulated or not said to be either: table.csv says which.",
+    )
 }
 
 fn warnings(table: &RunTable) -> Vec<String> {

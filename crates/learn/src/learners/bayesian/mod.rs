@@ -7,7 +7,7 @@
 
 mod nuts;
 
-use super::library::{Library, Regression, law, restore, thresholded};
+use super::library::{LAW, Library, Regression, law, restore, thresholded};
 use super::sindy::SparseSettings;
 use super::torque::{Progress, progressive};
 use super::weak_sindy;
@@ -39,21 +39,7 @@ const PLAIN: Field =
     Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
 const FIELDS: &[Field] = &[
-    Field {
-        key: "library",
-        kind: Value::Texts { at_least: 1, at_most: 10 },
-        default: Default::Texts(&[
-            "theta",
-            "theta_dot",
-            "sign(theta_dot)",
-            "theta_dot*|theta_dot|",
-            "theta^3",
-            "u",
-        ]),
-        meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
-                  have no input.",
-        ..PLAIN
-    },
+    LAW,
     Field {
         key: "warm_up",
         kind: Value::Integer { min: 1, max: 1_000_000 },

@@ -5,6 +5,25 @@ use crate::Coefficient;
 use crate::data::DataSet;
 use crate::flow::{FlowModel, Posterior, Running};
 use serde_json::json;
+use settings::{Default, Field, Kind};
+
+/// Setting for the terms of a law that is stated, and not searched.
+pub(crate) const LAW: Field = Field {
+    key: "library",
+    kind: Kind::Texts { at_least: 1, at_most: 10 },
+    default: Default::Texts(&[
+        "theta",
+        "theta_dot",
+        "sign(theta_dot)",
+        "theta_dot*|theta_dot|",
+        "theta^3",
+        "u",
+    ]),
+    meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
+              have no input.",
+    unit: "",
+    source: "",
+};
 
 /// The model of a law: its weights, and their standard errors where there are any.
 #[must_use]

@@ -8,6 +8,8 @@ mod thresholding;
 
 pub use ensemble::inclusion;
 pub use finish::{Finishing, finish, restore};
+pub(crate) use law::LAW;
 pub use law::law;
+pub(crate) use terms::signed;
 pub use terms::{Library, Term};
 pub use thresholding::{Regression, thresholded};

@@ -166,17 +166,11 @@ impl Library {
     pub fn equation(&self, weights: &[f64]) -> String {
         let mut text = "theta_ddot =".to_owned();
         for (number, (term, weight)) in self.terms.iter().zip(weights).enumerate() {
-            let sign = match (number, *weight < 0.0) {
-                (0, true) => " -",
-                (0, false) => " ",
-                (_, true) => " - ",
-                (_, false) => " + ",
-            };
-            let size = weight.abs();
+            let weight = signed(number, *weight);
             text.push_str(&match term {
-                Term::Constant => format!("{sign}{size:.5}"),
-                Term::Own(own) => format!("{sign}{size:.5}*({own})"),
-                _ => format!("{sign}{size:.5}*{}", term.name()),
+                Term::Constant => weight,
+                Term::Own(own) => format!("{weight}*({own})"),
+                _ => format!("{weight}*{}", term.name()),
             });
         }
         if self.terms.is_empty() { text + " 0" } else { text }
@@ -209,4 +203,15 @@ impl Field for Library {
         }
         sum
     }
+}
+
+/// Weight of a sum's member with its sign, the first number 0, as in "a = -1.00000*b + 2.00000*c".
+pub(crate) fn signed(number: usize, weight: f64) -> String {
+    let sign = match (number, weight < 0.0) {
+        (0, true) => " -",
+        (0, false) => " ",
+        (_, true) => " - ",
+        (_, false) => " + ",
+    };
+    format!("{sign}{:.5}", weight.abs())
 }

@@ -12,7 +12,7 @@
 mod trajectory;
 mod windows;
 
-use super::library::{Library, law, restore, thresholded};
+use super::library::{LAW, Library, law, restore, thresholded};
 use super::sindy::SparseSettings;
 use super::weak_sindy;
 use crate::data::DataSet;
@@ -44,21 +44,7 @@ const PLAIN: Field =
     Field { key: "", kind: Value::Text, default: Default::Absent, unit: "", meaning: "", source: "" };
 
 const FIELDS: &[Field] = &[
-    Field {
-        key: "library",
-        kind: Value::Texts { at_least: 1, at_most: 10 },
-        default: Default::Texts(&[
-            "theta",
-            "theta_dot",
-            "sign(theta_dot)",
-            "theta_dot*|theta_dot|",
-            "theta^3",
-            "u",
-        ]),
-        meaning: "The terms of the law, by the names of SINDy's library; every one is in it. \"u\" is left out where records \
-                  have no input.",
-        ..PLAIN
-    },
+    LAW,
     Field {
         key: "window_periods",
         kind: Value::Float { min: 0.1, max: 100.0 },

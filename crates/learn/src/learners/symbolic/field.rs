@@ -3,6 +3,7 @@
 use crate::Place;
 use crate::expression::Expression;
 use crate::flow::{Field, Slope};
+use crate::learners::library::signed;
 
 /// An acceleration Σ wₖ·gₖ(θ, θ̇, u).
 #[derive(Debug, Clone, PartialEq)]
@@ -20,18 +21,12 @@ impl Sum {
     pub(super) fn equation(&self, weights: &[f64]) -> String {
         let mut text = "theta_ddot =".to_owned();
         for (number, (part, weight)) in self.parts.iter().zip(weights).enumerate() {
-            let sign = match (number, *weight < 0.0) {
-                (0, true) => " -",
-                (0, false) => " ",
-                (_, true) => " - ",
-                (_, false) => " + ",
-            };
-            let size = weight.abs();
+            let weight = signed(number, *weight);
             let part = match part {
                 Expression::Join(..) => format!("({part})"),
                 _ => part.to_string(),
             };
-            text.push_str(&format!("{sign}{size:.5}*{part}"));
+            text.push_str(&format!("{weight}*{part}"));
         }
         text
     }
