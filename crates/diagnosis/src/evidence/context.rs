@@ -207,6 +207,8 @@ impl<'a> Context<'a> {
     /// interval from a bootstrap over segments.
     pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
         let count = repaired.hypothesis.candidates.len();
+        let closest = self.thin.pool.find(&repaired.hypothesis.candidates).map_or(0.0, |own| own.squares);
+        let effort = Stopping::share((self.thin.calibrated.squares - closest).max(0.0));
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
             .into_par_iter()
             .map(|set| {
@@ -219,8 +221,8 @@ impl<'a> Context<'a> {
                     .map(|(_, candidate)| *candidate)
                     .collect();
                 let known = self.thin.pool.find(&members).cloned();
-                let fitted =
-                    known.or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0));
+                let fitted = known
+                    .or_else(|| without(self.thin.data, repaired, |index| set & (1 << index) != 0, effort));
                 let calibrated = self.thin.calibrated;
                 let by_part = |fit: &Fit| -> Vec<f64> {
                     let parts = self.thin.data.by_part(&fit.residuals);
@@ -319,7 +321,8 @@ impl<'a> Context<'a> {
             .filter_map(|(left_out, candidate)| {
                 let rest: Vec<Candidate> = candidates.iter().copied().filter(|c| c != candidate).collect();
                 let known = self.pool.find(&rest).cloned();
-                let reduced = known.or_else(|| without(self.data, repaired, |index| index != left_out))?;
+                let reduced = known
+                    .or_else(|| without(self.data, repaired, |index| index != left_out, Stopping::SEARCH))?;
                 let d = (2.0 * ratio(repaired, &reduced, self.time)).max(0.0).sqrt();
                 Some(Detectability { effect: candidate.id(), d })
             })

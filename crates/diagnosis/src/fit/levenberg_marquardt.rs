@@ -384,9 +384,9 @@ pub(crate) fn fit(
     let mut damping = FIRST_DAMPING;
     let mut raise = RAISE;
     let mut converged = false;
-    let mut ending = Ending::new(effort);
     let uneven = !hypothesis.smooth();
     let mut wary = uneven && effort.wary;
+    let mut ending = Ending::new(if wary { effort.roughly() } else { effort });
     let mut weights = if wary { trust(&at) } else { vec![1.0; data.segments.len()] };
     let mut system = equations(&at, &weights, starts, globals);
     let mut settled = false;
@@ -435,7 +435,7 @@ pub(crate) fn fit(
             weights = vec![1.0; data.segments.len()];
             begin_again(&mut simulator, data, hypothesis, &mut point, &mut at)?;
             system = equations(&at, &weights, starts, globals);
-            ending.begin_again();
+            ending = Ending::new(effort);
             (damping, settled) = (FIRST_DAMPING, true);
             continue;
         }

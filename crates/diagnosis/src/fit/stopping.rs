@@ -13,8 +13,13 @@ pub(crate) struct Stopping {
     /// Log evidence that a step has to bring, where it is more than [`Self::small`]: half the relative decrease of the
     /// squares, times the samples, over the residual's autocorrelation time.
     pub(crate) worth: f64,
+    /// Squares that a step has to bring, where they are more than [`Self::small`] of them.
+    pub(crate) squares: f64,
     /// How many times the smallest gain is little.
     pub(crate) little: f64,
+    /// Relative decrease of the squares that a step may promise and fail to bring, and be the last all the same: the ground
+    /// is uneven there, and shorter steps win little of what a straight one would.
+    pub(crate) rough: f64,
     /// Steps at the beginning that leave widths, frequencies and phases of the effects where they are: a size that
     /// has still to grow says nothing about them.
     pub(crate) sizes_first: usize,
@@ -34,7 +39,9 @@ impl Stopping {
         steps: 40,
         small: 1e-4,
         worth: 0.1,
+        squares: 0.0,
         little: 2.0,
+        rough: 0.02,
         sizes_first: 2,
         wary: true,
         begins_again: true,
@@ -51,12 +58,24 @@ impl Stopping {
         steps: 60,
         small: 1e-6,
         worth: 3e-3,
+        squares: 0.0,
         little: 20.0,
+        rough: 0.0,
         sizes_first: 0,
         wary: false,
         begins_again: true,
         below: f64::INFINITY,
     };
+
+    /// For what a set takes away of a gap of so many squares: a thousandth of it is enough.
+    pub(crate) fn share(gap: f64) -> Self {
+        Self { squares: 1e-3 * gap, ..Self::SEARCH }
+    }
+
+    /// The same where segments are heeded less: that only leads to where the fit begins in earnest.
+    pub(crate) fn roughly(self) -> Self {
+        Self { small: self.small.max(self.rough), ..self }
+    }
 
     /// The same for a fit that is of use only where its squares come below a bound.
     pub(crate) fn below(self, squares: f64) -> Self {
@@ -106,7 +125,10 @@ impl Ending {
 
     /// A step under some damping has decreased the squares by a part of them.
     pub(crate) fn gained(&mut self, part: f64, damping: f64, predictions: &[Prediction]) {
-        if part < PLENTY {
+        if self.effort.squares > 0.0 {
+            let left: f64 = predictions.iter().map(|own| own.residual.norm_squared()).sum();
+            self.least = (self.effort.squares / left.max(f64::MIN_POSITIVE)).max(self.effort.small);
+        } else if part < PLENTY {
             // Samples of a residual with structure say less than so many independent ones: squares that fall by
             // little are no evidence then.
             let residuals: Vec<&[f64]> = predictions.iter().map(|p| p.residual.as_slice()).collect();
@@ -122,7 +144,7 @@ impl Ending {
     /// A step under some damping has failed; it had promised a part of the squares.
     pub(crate) fn failed(&mut self, promised: f64, damping: f64) {
         // Shorter steps promise less still.
-        self.spent = damping > SHORT && promised <= self.least;
+        self.spent = damping > SHORT && promised <= self.least.max(self.effort.rough);
     }
 
     /// Whether a step that promises this part of the squares is not worth a trial.

@@ -109,7 +109,12 @@ fn absent(set: &Fit, effects: &[(Candidate, Vec<f64>)]) -> Vec<(Candidate, Vec<f
 }
 
 /// The fit of a set with one member left out, and what that costs: begun where the set was.
-pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> Option<Fit> {
+pub(crate) fn without(
+    data: &Data,
+    full: &Fit,
+    keep: impl Fn(usize) -> bool,
+    effort: Stopping,
+) -> Option<Fit> {
     let parts = full.hypothesis.parts(&data.facts, &full.point.globals);
     let members: Vec<_> = full
         .hypothesis
@@ -125,5 +130,5 @@ pub(crate) fn without(data: &Data, full: &Fit, keep: impl Fn(usize) -> bool) -> 
     let calibrated = full.point.globals.iter().copied().take(full.hypothesis.calibrated.len());
     let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
     let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
-    fit(data, &hypothesis, Point { globals, starts }, Moving::All, Stopping::FINAL).ok()
+    fit(data, &hypothesis, Point { globals, starts }, Moving::All, effort).ok()
 }

@@ -71,9 +71,35 @@ impl<'a> March<'a> {
         march.mode = march.model.field.mode(&march.point());
         let frequency = (march.model.field.nominal.stiffness / march.model.field.nominal.inertia).sqrt();
         march.size = if frequency > 0.0 { 0.1 / frequency } else { 1e-3 * (end - time) };
+        march.scale_hidden(frequency);
         march.start_columns(start.hidden.is_none());
         march.prepare_response();
         march
+    }
+
+    /// A hidden state that is felt by its torque alone is measured by what moves the body as far as the spring does.
+    fn scale_hidden(&mut self, frequency: f64) {
+        let [position, velocity, ..] = self.scale;
+        let reach = position.max(velocity / frequency.max(f64::MIN_POSITIVE)) * frequency * frequency;
+        let point = self.point();
+        let (still, _) = self.model.field.rates(&point, &self.mode);
+        for term in &self.model.field.terms {
+            if term.effect.description().hidden_states != 1 {
+                continue;
+            }
+            let mut moved = point;
+            if let Some(slot) = moved.hidden.get_mut(term.hidden) {
+                *slot += 1.0;
+            }
+            let (own, _) = self.model.field.rates(&moved, &self.mode);
+            let felt = (own - still).abs();
+            if let Some(slot) = self.scale.get_mut(2 + term.hidden)
+                && felt > 0.0
+                && reach.is_finite()
+            {
+                *slot = slot.max(reach / felt);
+            }
+        }
     }
 
     fn start_columns(&mut self, relaxed: bool) {
