@@ -10,7 +10,7 @@
 //! most of the power.
 //!
 //! # Reference
-//! Whittle, Arkiv för Matematik 2 (1953) 423. Kennedy, O'Hagan, Journal of the Royal Statistical Society B 63 (2001) 425
+//! Ahmed, Natarajan, Rao, IEEE Transactions on Computers C-23 (1974) 90 (the cosine transform). Whittle, Arkiv för Matematik 2 (1953) 423. Kennedy, O'Hagan, Journal of the Royal Statistical Society B 63 (2001) 425
 //! (the discrepancy). Miller, Dunson, Journal of the American Statistical Association 114 (2019) 1113 (why a likelihood
 //! that takes a left-over for noise is too sure).
 
@@ -22,14 +22,12 @@ use std::f64::consts::TAU;
 /// Bands about every half harmonic of the swing, from its mean value up.
 pub(crate) const BANDS: usize = 25;
 
-/// Independent squares in a bin under a Hann window, with its neighbors in the same band: a third of those in three, whose
-/// amplitudes have the correlations 2/3 and 1/6.
-const WORTH: f64 = 36.0 / 29.0;
-
 /// The bins of one segment, as it was cut.
 #[derive(Debug, Clone)]
 struct Bins {
-    /// Two rows a bin: windowed cosine and sine, so that both squares together have white noise's variance for a mean.
+    /// A row a bin: the cosines of a discrete cosine transform, whose squares have white noise's variance for a mean. Every
+    /// sample counts as much as any other, those at a segment's ends too, and a line at one frequency falls off by the
+    /// fourth power beside it.
     waves: DMatrix<f64>,
     /// Band of each bin.
     bands: Vec<usize>,
@@ -51,21 +49,15 @@ impl Bins {
     fn new(times: &[f64], frequency: f64, interval: f64) -> Self {
         let first = times.first().copied().unwrap_or_default();
         let count = times.len();
-        // A window of as many steps as there are samples: neighboring bins are then alike in every segment.
         let length = times.last().map_or(0.0, |last| last - first) + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
-        let most = ((highest * length / TAU) as usize).min(count / 2);
-        let window: Vec<f64> = times
-            .iter()
-            .map(|time| 0.5 - 0.5 * (TAU * (time - first + 0.5 * interval) / length).cos())
-            .collect();
-        let norm = window.iter().map(|w| w * w).sum::<f64>().max(f64::MIN_POSITIVE).sqrt();
-        let mut rows = Vec::with_capacity(2 * (most + 1) * count);
-        let mut bands = Vec::with_capacity(most + 1);
-        for bin in 0..=most {
-            let omega = TAU * bin as f64 / length;
-            rows.extend(window.iter().zip(times).map(|(w, t)| w / norm * (omega * (t - first)).cos()));
-            rows.extend(window.iter().zip(times).map(|(w, t)| w / norm * (omega * (t - first)).sin()));
+        let bins = ((2.0 * highest * length / TAU) as usize + 1).min(count);
+        let mut rows = Vec::with_capacity(bins * count);
+        let mut bands = Vec::with_capacity(bins);
+        for bin in 0..bins {
+            let omega = 0.5 * TAU * bin as f64 / length;
+            let norm = (if bin == 0 { 1.0 } else { 2.0 } / count.max(1) as f64).sqrt();
+            rows.extend(times.iter().map(|time| norm * (omega * (time - first + 0.5 * interval)).cos()));
             bands.push(((2.0 * omega / frequency).round() as usize).min(BANDS - 1));
         }
         let mut counts = [0.0; BANDS];
@@ -74,16 +66,16 @@ impl Bins {
                 *slot += 1.0;
             }
         }
-        Self { waves: DMatrix::from_row_slice(2 * bands.len(), count, &rows), bands, counts }
+        Self { waves: DMatrix::from_row_slice(bands.len(), count, &rows), bands, counts }
     }
 
-    /// Sum of the periodogram by band.
+    /// Sum of the squares by band.
     fn powers(&self, residual: &DVector<f64>) -> [f64; BANDS] {
         let mut powers = [0.0; BANDS];
         let values = &self.waves * residual;
-        for (pair, band) in values.as_slice().chunks(2).zip(&self.bands) {
+        for (value, band) in values.iter().zip(&self.bands) {
             if let Some(slot) = powers.get_mut(*band) {
-                *slot += pair.iter().map(|value| value * value).sum::<f64>();
+                *slot += value * value;
             }
         }
         powers
@@ -157,10 +149,10 @@ fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize) -> f64 {
         if own > 0.0 {
             let power = powers.get(band).copied().unwrap_or_default();
             all += power;
-            square += power * power / own / (1.0 + 2.0 / (own * WORTH));
+            square += power * power / own / (1.0 + 2.0 / own);
             count += own;
         }
     }
     let share = if square > 0.0 { (all * all / (count * square)).min(1.0) } else { 1.0 };
-    WORTH * count * share
+    count * share
 }

@@ -163,11 +163,20 @@ fn around(
 
 /// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
 /// member too: begun here they often fit better than on their own.
-fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
+fn swaps(
+    data: &Data,
+    pool: &Archive,
+    base: &Fit,
+    candidates: &[Candidate],
+    breadth: &Breadth,
+) -> (Vec<Proposal>, Vec<Fit>) {
     let counted: Vec<Candidate> = base.hypothesis.candidates.iter().copied().filter(|c| c.counts()).collect();
     let of = |&member: &Candidate| {
         let reduced = proposal(data, base, &[member], &[]);
-        let bare = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?;
+        let bare = match pool.find(&reduced.hypothesis.candidates) {
+            Some(known) if !begins_closer(data, pool, &reduced) => known.clone(),
+            _ => fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?,
+        };
         let dictionary = Dictionary::at(data, &bare, candidates).ok()?;
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
@@ -249,33 +258,50 @@ fn begin(
     settle(data, pool, tried, proposals);
 }
 
-/// Searches sets of candidates, beginning at the calibrated nominal simulator.
-///
-/// `threshold` is the increase of the score that a further effect has to bring for the search to go on. Where there are
-/// `known` sets already, the search goes on from these.
-pub(crate) fn search(
-    data: &Data,
-    calibrated: &Fit,
-    known: Vec<Fit>,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-    threshold: f64,
-) -> Archive {
-    let mut pool = Archive::of(calibrated);
-    let mut tried = BTreeSet::new();
-    tried.insert(Vec::new());
+/// What is asked of a search.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    pub(crate) data: &'a Data,
+    /// The calibrated nominal simulator, where a search begins.
+    pub(crate) calibrated: &'a Fit,
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) breadth: &'a Breadth,
+    /// The increase of the score that a further effect has to bring for the search to go on.
+    pub(crate) threshold: f64,
+}
+
+/// How far a search has got: what it has fitted, and what need not be looked at again. Sets are known by their ranks.
+pub(crate) struct Explored {
+    pub(crate) archive: Archive,
+    tried: BTreeSet<Vec<usize>>,
+    expanded: BTreeSet<Vec<usize>>,
+    unmasked: BTreeSet<Vec<usize>>,
+}
+
+/// Searches sets of candidates. Where there are `known` sets already, the search goes on from these.
+pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
+    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
+    let mut archive = Archive::of(calibrated);
+    let mut tried = BTreeSet::from([Vec::new()]);
     let begun = !known.is_empty();
     for fit in known {
         tried.insert(fit.hypothesis.ranks());
-        pool.admit(data, fit);
+        archive.admit(data, fit);
     }
     if !begun {
-        begin(data, calibrated, candidates, breadth, threshold, &mut pool, &mut tried);
+        begin(data, calibrated, candidates, breadth, threshold, &mut archive, &mut tried);
     }
-    let mut expanded: BTreeSet<Vec<usize>> = BTreeSet::new();
-    let mut unmasked = BTreeSet::new();
+    let mut explored = Explored { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() };
+    go_on(asked, &mut explored);
+    explored
+}
+
+/// Goes on from the best sets that were not gone on from yet.
+pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
+    let &Asked { data, breadth, threshold, .. } = asked;
+    let Explored { archive: pool, tried, expanded, unmasked } = explored;
     for _ in 0..2 * breadth.most_effects {
-        unmask(data, &mut pool, &mut unmasked);
+        unmask(data, pool, unmasked);
         let time = pool.autocorrelation_time();
         let before = pool.highest(time);
         let bases: Vec<Fit> = pool
@@ -290,22 +316,8 @@ pub(crate) fn search(
         if bases.is_empty() {
             break;
         }
-        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> = bases
-            .par_iter()
-            .enumerate()
-            .map(|(place, base)| {
-                let mut own = around(data, base, candidates, breadth, threshold, place == 0);
-                let mut dropped = Vec::new();
-                own.extend(simplified(data, base, candidates));
-                if place == 0 {
-                    own.extend(generalized(data, base, candidates));
-                    let (proposals, without) = swaps(data, base, candidates, breadth);
-                    own.extend(proposals);
-                    dropped = without;
-                }
-                (own, dropped)
-            })
-            .collect();
+        let moves: Vec<(Vec<Proposal>, Vec<Fit>)> =
+            bases.par_iter().enumerate().map(|(place, base)| moves(asked, pool, base, place == 0)).collect();
         let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
             // What a better set has proposed already is begun from there.
@@ -316,7 +328,7 @@ pub(crate) fn search(
                 pool.admit(data, fit);
             }
         }
-        settle(data, &mut pool, &mut tried, proposals);
+        settle(data, pool, tried, proposals);
         let time = pool.autocorrelation_time();
         if pool.highest(time) - before < threshold
             && pool.ranked(time).first().is_some_and(|fit| expanded.contains(&fit.hypothesis.ranks()))
@@ -324,8 +336,21 @@ pub(crate) fn search(
             break;
         }
     }
-    polish(data, &mut pool);
-    pool
+    polish(data, pool);
+}
+
+/// What to fit around a set, and the sets that were fitted to find that out.
+fn moves(asked: &Asked<'_>, pool: &Archive, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fit>) {
+    let &Asked { data, candidates, breadth, threshold, .. } = asked;
+    let mut own = around(data, base, candidates, breadth, threshold, is_best);
+    own.extend(simplified(data, base, candidates));
+    if !is_best {
+        return (own, Vec::new());
+    }
+    own.extend(generalized(data, base, candidates));
+    let (proposals, dropped) = swaps(data, pool, base, candidates, breadth);
+    own.extend(proposals);
+    (own, dropped)
 }
 
 /// Takes leading sets out that are others in disguise once they are fitted to their end. What brings hidden motions into

@@ -11,7 +11,7 @@ use crate::fit::levenberg_marquardt::{Moving, Point, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::search::alternatives::alternatives;
 use crate::search::archive::Archive;
-use crate::search::beam::search;
+use crate::search::beam::{Asked, search};
 use crate::search::refine::refine;
 
 /// Everything fitted, on the segments as they were cut and on the shooting interval that the best sets follow.
@@ -47,7 +47,14 @@ impl Refined {
         let known = Archive::of(&base.calibrated);
         let mut archive = refine(&data, &known, &weighing.weigh(&found), &found.rejected, &candidates);
         if let Some((known, others)) = found.misled(&archive, &candidates) {
-            found = search(&coarse.data, &coarse.calibrated, known, &others, &breadth, enough);
+            let asked = Asked {
+                data: &coarse.data,
+                calibrated: &coarse.calibrated,
+                candidates: &others,
+                breadth: &breadth,
+                threshold: enough,
+            };
+            found = search(&asked, known).archive;
             let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
             archive = refine(&data, &archive, &weighing.weigh(&found), &found.rejected, &others);
         }

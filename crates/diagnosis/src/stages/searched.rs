@@ -6,7 +6,7 @@ use crate::data::shooting_interval::ShootingInterval;
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
-use crate::search::beam::{Breadth, WHITE, search};
+use crate::search::beam::{Asked, Breadth, Explored, WHITE, go_on, search};
 use crate::search::chains::chains;
 use crate::search::plain::plain_family;
 use std::cmp::Ordering;
@@ -36,9 +36,12 @@ impl Searched {
             additions: 4,
         };
         let Question { candidates, coarse, coarse_base, enough, .. } = question;
-        let (interval, mut found) = explore(coarse, coarse_base, candidates, &breadth, *enough, is_whole);
-        plain_family(&interval.data, &interval.calibrated, candidates, &mut found);
-        further(&interval, candidates, &breadth, *enough, &mut found);
+        let (interval, mut explored) = explore(coarse, coarse_base, candidates, &breadth, *enough, is_whole);
+        let ShootingInterval { data, calibrated, .. } = &interval;
+        let asked = Asked { data, calibrated, candidates, breadth: &breadth, threshold: *enough };
+        plain_family(data, calibrated, candidates, &mut explored.archive);
+        further(&asked, &mut explored);
+        let found = explored.archive;
         Self { interval, found, breadth }
     }
 
@@ -60,25 +63,15 @@ impl Searched {
 }
 
 /// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
-fn further(
-    interval: &ShootingInterval,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-    threshold: f64,
-    found: &mut Archive,
-) {
-    let (data, calibrated) = (&interval.data, &interval.calibrated);
+fn further(asked: &Asked<'_>, explored: &mut Explored) {
+    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
+    let found = &mut explored.archive;
     let best = found.ranked(found.autocorrelation_time()).first().map(|best| best.autocorrelation_time());
     if best.is_none_or(|time| time <= WHITE) {
         return;
     }
     chains(data, calibrated, candidates, breadth.most_effects, threshold, found);
-    let ranked = found.ranked(found.autocorrelation_time()).into_iter();
-    let named = ranked.filter(|set| !set.hypothesis.candidates.is_empty());
-    let known: Vec<Fit> = named.take(breadth.beam).cloned().collect();
-    for fit in search(data, calibrated, known, candidates, breadth, threshold).fits {
-        found.admit(data, fit);
-    }
+    go_on(asked, explored);
 }
 
 /// Searches on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
@@ -90,10 +83,12 @@ fn explore(
     breadth: &Breadth,
     threshold: f64,
     is_whole: bool,
-) -> (ShootingInterval, Archive) {
-    let begin = |horizon: &ShootingInterval| {
-        search(&horizon.data, &horizon.calibrated, Vec::new(), candidates, breadth, threshold)
+) -> (ShootingInterval, Explored) {
+    let from = |horizon: &ShootingInterval, known: Vec<Fit>| {
+        let ShootingInterval { data, calibrated, .. } = horizon;
+        search(&Asked { data, calibrated, candidates, breadth, threshold }, known)
     };
+    let begin = |horizon: &ShootingInterval| from(horizon, Vec::new());
     let shortest = ShootingInterval::shortest(segments, calibrated);
     // Parts that were left out of long records have nothing to go on through.
     if !is_whole {
@@ -102,13 +97,13 @@ fn explore(
     }
     let mut horizon = ShootingInterval::longest(segments, calibrated);
     let mut pool = begin(&horizon);
-    if horizon.by > 1 && !horizon.is_followed(segments, &pool) {
+    if horizon.by > 1 && !horizon.is_followed(segments, &pool.archive) {
         pool = begin(&shortest);
         horizon = shortest;
     }
     for _ in 0..MOST_INTERVALS {
-        let Some((longer, sets)) = horizon.beyond(segments, &pool) else { break };
-        pool = search(&longer.data, &longer.calibrated, sets, candidates, breadth, threshold);
+        let Some((longer, sets)) = horizon.beyond(segments, &pool.archive) else { break };
+        pool = from(&longer, sets);
         horizon = longer;
     }
     (horizon, pool)
