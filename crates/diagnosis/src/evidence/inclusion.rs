@@ -12,7 +12,7 @@ use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
 use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::{Doubt, probability};
-use crate::evidence::weights::{Weighed, acts, price, share};
+use crate::evidence::weights::{Weighed, acts, best_if_nothing_is_left, price, share};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -23,12 +23,13 @@ use dynamics::DynamicsError;
 use nalgebra::DVector;
 use seed::Seed;
 
-/// Sets that are asked for what they predict: the best, and the best of plain laws alone.
+/// Sets that are asked for what they predict: the best, the best of plain laws alone, and the best where nothing is left.
 const BEST: usize = 5;
 const PLAIN: usize = 2;
+const CLEAN: usize = 2;
 
-/// The sets that are asked for what they predict: the best, the best of plain laws alone, and for each class of the first
-/// one the best without it, and for each class of any the best with it.
+/// The sets that are asked for what they predict: the best, the best of plain laws alone, the best where nothing is left, and
+/// for each class of the first one the best without it, and for each class of any the best with it.
 pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let is_plain =
         |w: &&Weighed<'_>| w.fit.hypothesis.candidates.iter().all(|own| own.is_plain() || !own.counts());
@@ -41,7 +42,8 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
         named().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class()).collect();
     let with = classes.iter().filter_map(|class| named().find(|w| holds(w.fit, *class)));
     let plain = named().filter(is_plain).take(PLAIN);
-    for w in named().take(BEST).chain(plain).chain(without).chain(with) {
+    let clean = best_if_nothing_is_left(weighed.iter(), CLEAN);
+    for w in named().take(BEST).chain(plain).chain(clean).chain(without).chain(with) {
         if !asked.iter().any(|known| known.hypothesis.candidates == w.fit.hypothesis.candidates) {
             asked.push(w.fit);
         }

@@ -36,6 +36,30 @@ pub(crate) struct Weighed<'a> {
     pub(crate) probability: f64,
 }
 
+impl Weighed<'_> {
+    /// The evidence where nothing is left that flexible effects could soak up: whether that is so is known only once sets
+    /// were asked what they predict.
+    fn if_nothing_is_left(&self) -> f64 {
+        let flexible = self.fit.hypothesis.candidates.iter().filter(|own| own.counts() && own.is_flexible());
+        self.evidence + FLEXIBLE * flexible.count() as f64
+    }
+}
+
+/// The best of weighed sets with effects where nothing is left, so many of them.
+pub(crate) fn best_if_nothing_is_left<'a, 'b>(
+    weighed: impl Iterator<Item = &'b Weighed<'a>>,
+    most: usize,
+) -> Vec<&'b Weighed<'a>>
+where
+    'a: 'b,
+{
+    let mut best: Vec<&Weighed<'a>> =
+        weighed.filter(|own| !own.fit.hypothesis.candidates.is_empty()).collect();
+    best.sort_by(|a, b| b.if_nothing_is_left().total_cmp(&a.if_nothing_is_left()));
+    best.truncate(most);
+    best
+}
+
 /// Log likelihood ratio of a fit over another on the same data, tempered.
 pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
     let worth = fit.samples() as f64 / time;

@@ -1,7 +1,7 @@
 //! The best sets once more, on every sample and to convergence.
 
 use crate::data::segments::Data;
-use crate::evidence::weights::Weighed;
+use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -16,8 +16,9 @@ const FEWEST: usize = 3;
 /// and nobody would mistake it for the best.
 const HOPELESS: f64 = 30.0;
 
-/// Sets that are fitted again on every sample, and as many of their rivals.
+/// Sets that are fitted again on every sample, and as many of their rivals; and the best where nothing is left.
 const MOST: usize = 6;
+const CLEAN: usize = 2;
 
 /// Refits the best [`MOST`] of weighed sets on other data with the same segments, as many more that differ from the best of
 /// their size in one member (its rivals), and the best set with every class of effects and without every class of the best.
@@ -59,8 +60,10 @@ pub(crate) fn refine(
         let without = classes.filter_map(|class| waiting.iter().find(|w| lacks(w, class)));
         let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
         let with = classes.filter_map(|class| waiting.iter().find(|w| !lacks(w, class)));
+        let clean = best_if_nothing_is_left(waiting.iter().copied(), CLEAN);
         let mut chosen: Vec<&Fit> = Vec::new();
-        for fit in batch.iter().take(MOST).chain(further).chain(without).chain(with).map(|w| w.fit) {
+        for w in batch.iter().take(MOST).chain(further).chain(without).chain(with).chain(&clean) {
+            let fit = w.fit;
             if !chosen.iter().any(|known| counted(known).eq(counted(fit))) {
                 chosen.push(fit);
             }
