@@ -125,7 +125,7 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
         if probability < 0.01 && place.is_none() {
             continue;
         }
-        let best = inclusion.weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
+        let best = inclusion.sets.weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
         let source = if place.is_some() { Some(complete) } else { best.map(|w| w.fit) };
         list.push(EffectProbability {
             id: candidate.id(),

@@ -1,8 +1,7 @@
 //! Evidence for every class of effects, by replacement.
 //!
-//! Sets are weighed by what they predict of parts that they were not fitted to: what a flexible effect takes away of the
-//! segments that it was fitted to often does not come back on the others. A class is as well supported as the best set
-//! with it is over the best one without it, when everything else may take its place.
+//! A class is as well supported as the best set with it is over the best one without it, when everything else may take its
+//! place. [`crate::evidence::weighed_sets`] tells what sets are weighed by.
 
 use crate::answer::{ClassEvidence, EffectClass, Kind};
 use crate::data::segments::Data;
@@ -10,9 +9,9 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::likelihood::{BANDS, Likelihood};
 use crate::evidence::probability::{Doubt, probability};
-use crate::evidence::weights::{Weighed, acts, best_if_nothing_is_left, price, share};
+use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
+use crate::evidence::weights::{Weighed, acts, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -20,7 +19,6 @@ use crate::noise::floor;
 use crate::search::archive::vanished;
 use crate::search::proposals::proposal;
 use dynamics::DynamicsError;
-use nalgebra::DVector;
 use seed::Seed;
 
 /// Sets that are asked for what they predict: the best, the best of plain laws alone, and the best where nothing is left.
@@ -69,24 +67,10 @@ pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
     fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class() == class)
 }
 
-/// Sets weighed by what they predict.
+/// Sets weighed by what they leave.
 pub(crate) struct Inclusion<'a> {
-    /// The sets with their evidence, best first.
-    pub(crate) weighed: Vec<Weighed<'a>>,
-    /// For each of these the held-out error and the power that it leaves, by segment and band.
-    left: Vec<Left>,
-    likelihood: Likelihood,
-    /// Log likelihood of the recalibrated simulator.
-    bare: f64,
-    vocabulary: usize,
-    /// Probability that something is left beside the best set.
-    left_over: f64,
-}
-
-struct Left {
-    error: f64,
-    powers: Vec<[f64; BANDS]>,
-    price: f64,
+    pub(crate) sets: WeighedSets<'a>,
+    records: Records<'a>,
 }
 
 /// Error over the upper end of the white noise's interval up to which a residual counts as white.
@@ -102,52 +86,25 @@ const DRAWS: usize = 200;
 const TOLD: f64 = 0.9;
 
 impl<'a> Inclusion<'a> {
-    /// Weighs sets by what they predict of `segments`; the recalibrated simulator, `bare`, is the empty one.
+    /// Weighs what was predicted of the segments that a shooting interval's data were cut into.
     ///
     /// # Errors
     /// What the dynamics refuse.
     pub(crate) fn of<'b>(
-        data: &Data,
-        segments: &Data,
+        records: Records<'a>,
         predictions: &'b Predictions<'a>,
-        bare: &'a Fit,
-        vocabulary: usize,
     ) -> Result<Self, DynamicsError> {
         let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
-        let sets = predictions.sets.iter().map(own).chain([(bare, &predictions.recalibrated)]);
-        let sets: Vec<(&'a Fit, &'b HeldOut)> = sets.collect();
-        let square = |own: &[DVector<f64>]| own.iter().map(DVector::norm_squared).sum::<f64>();
-        let closest = sets.iter().min_by(|a, b| square(&a.1.continued).total_cmp(&square(&b.1.continued)));
-        let closest = closest.map(|own| own.1.continued.as_slice()).unwrap_or_default();
-        let noise = floor::floor(segments, closest).value;
-        let likelihood = Likelihood::of(segments, closest, noise);
-        let whole: Vec<usize> = (0..closest.len()).collect();
-        let mut all: Vec<(Weighed<'a>, Left)> = sets
-            .into_iter()
-            .map(|(fit, held)| {
-                let powers = likelihood.powers(&held.continued);
-                let evidence = likelihood.log_of(&powers, &whole);
-                let error = held.mean_square().sqrt();
-                (Weighed { fit, evidence, probability: 0.0 }, Left { error, powers, price: 0.0 })
-            })
-            .collect();
-        let of_certain =
-            |own: &(Weighed<'_>, Left)| own.0.evidence - price(segments, own.0.fit, vocabulary, 0.0);
-        let closest = all.iter().max_by(|a, b| of_certain(a).total_cmp(&of_certain(b)));
-        let (fit, error) = closest.map_or((bare, 0.0), |own| (own.0.fit, own.1.error));
-        let left_over = left_over(data, fit, error)?;
-        for (set, left) in &mut all {
-            left.price = price(segments, set.fit, vocabulary, left_over);
-            set.evidence -= left.price;
+        let bare = (records.bare, &predictions.recalibrated);
+        let sets: Vec<(&'a Fit, &'b HeldOut)> = predictions.sets.iter().map(own).chain([bare]).collect();
+        let mut doubt: f64 = 1.0;
+        for basis in [Basis::HeldOut, Basis::Fitted] {
+            if let Some((best, error)) = WeighedSets::of(&records, &sets, basis, 0.0).best() {
+                doubt = doubt.min(left_over(records.data, best, error)?);
+            }
         }
-        let base = all.last().map_or(0.0, |bare| bare.0.evidence);
-        all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
-        let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();
-        share(&mut weighed);
-        for w in &mut weighed {
-            w.evidence -= base;
-        }
-        Ok(Self { weighed, left, likelihood, bare: base, vocabulary, left_over })
+        let basis = if doubt > 0.5 { Basis::HeldOut } else { Basis::Fitted };
+        Ok(Self { sets: WeighedSets::of(&records, &sets, basis, doubt), records })
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
@@ -155,8 +112,8 @@ impl<'a> Inclusion<'a> {
     ///
     /// `odds` are the prior odds of a class.
     pub(crate) fn classes(&self, witness: Option<&Witness>, odds: f64, seed: &Seed) -> Vec<EffectClass> {
-        let doubt = Doubt { left_over: self.left_over, odds };
-        let members = self.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
+        let doubt = Doubt { left_over: self.sets.left_over, odds };
+        let members = self.sets.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         let (ids, mut rows): (Vec<EvidenceClass>, Vec<EffectClass>) = EvidenceClass::among(members)
             .into_iter()
             .filter_map(|class| Some((class, self.class(class, witness, doubt, seed)?)))
@@ -179,17 +136,17 @@ impl<'a> Inclusion<'a> {
     /// Probability that one of two classes acts that take each other's place, and that nothing else is left; none where they do
     /// not. Where something is left, there is always one of several that takes some of it.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, doubt: Doubt) -> Option<f64> {
-        let place = |has: &dyn Fn(&Fit) -> bool| self.weighed.iter().position(|w| has(w.fit));
+        let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| holds(fit, one))?;
         let with_other = place(&|fit| holds(fit, other))?;
         let neither = place(&|fit| !holds(fit, one) && !holds(fit, other))?;
-        let set = |at: usize| self.weighed.get(at).map(|w| w.fit);
+        let set = |at: usize| self.sets.weighed.get(at).map(|w| w.fit);
         if holds(set(with_one)?, other) || holds(set(with_other)?, one) {
             return None;
         }
         let best = with_one.min(with_other);
-        let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
-        let error = |at: usize| self.left.get(at).map_or(0.0, |left| left.error);
+        let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
+        let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let shown = ClassEvidence { replacement, half_swings: None };
         Some((1.0 - doubt.left_over) * probability(&shown, error(neither) / error(best), doubt))
@@ -202,10 +159,10 @@ impl<'a> Inclusion<'a> {
         doubt: Doubt,
         seed: &Seed,
     ) -> Option<EffectClass> {
-        let place = |with: bool| self.weighed.iter().position(|w| holds(w.fit, class) == with);
+        let place = |with: bool| self.sets.weighed.iter().position(|w| holds(w.fit, class) == with);
         let (with, without) = (place(true)?, place(false)?);
-        let evidence = |at: usize| self.weighed.get(at).map_or(0.0, |w| w.evidence);
-        let error = |at: usize| self.left.get(at).map_or(0.0, |left| left.error);
+        let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
+        let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let mut class_row = EffectClass {
             id: class.id(),
             probability: 0.0,
@@ -229,7 +186,7 @@ impl<'a> Inclusion<'a> {
     /// The best set of effects of some classes only.
     pub(crate) fn within(&self, classes: &[&str]) -> Option<&Weighed<'a>> {
         let is_one = |own: &Candidate| !own.counts() || classes.contains(&own.evidence_class().id());
-        self.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
+        self.sets.weighed.iter().find(|w| w.fit.hypothesis.candidates.iter().all(is_one))
     }
 
     /// A fit of the effects of some classes, all of them, where no set is known that has these and no others: begun at the
@@ -242,10 +199,10 @@ impl<'a> Inclusion<'a> {
             return None;
         }
         // The first of the best.
-        let base = self.weighed.iter().rev().max_by_key(|w| count(w.fit))?.fit;
+        let base = self.sets.weighed.iter().rev().max_by_key(|w| count(w.fit))?.fit;
         let mut added: Vec<(Candidate, Vec<f64>)> = Vec::new();
         for id in classes.iter().filter(|id| !has(base, id)) {
-            let Some(from) = self.weighed.iter().find(|w| has(w.fit, id)) else { continue };
+            let Some(from) = self.sets.weighed.iter().find(|w| has(w.fit, id)) else { continue };
             let parts = from.fit.hypothesis.parts(&data.facts, &from.fit.point.globals);
             let members = from.fit.hypothesis.candidates.iter().zip(parts);
             let own = members.filter(|(own, _)| is_of(**own, id));
@@ -258,18 +215,14 @@ impl<'a> Inclusion<'a> {
         (!vanished(data, &ended)).then_some(ended)
     }
 
-    /// Log evidence of a set by what it predicts, on the scale of the others.
-    pub(crate) fn evidence(&self, segments: &Data, set: &Predicted<'_>) -> f64 {
-        let whole: Vec<usize> = (0..set.after.residuals.len()).collect();
-        let powers = self.likelihood.powers(&set.after.continued);
-        self.likelihood.log_of(&powers, &whole)
-            - price(segments, set.followed, self.vocabulary, self.left_over)
-            - self.bare
+    /// Log evidence of a further set, on the scale of the others.
+    pub(crate) fn evidence(&self, set: &Predicted<'_>) -> f64 {
+        self.sets.evidence(&self.records, set)
     }
 
     /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
-        let with = || self.weighed.iter().filter(|w| holds(w.fit, class));
+        let with = || self.sets.weighed.iter().filter(|w| holds(w.fit, class));
         let best = with().next().map_or(0.0, |w| w.evidence);
         let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
         let total: f64 = with().map(odds).sum();
@@ -310,15 +263,16 @@ impl<'a> Inclusion<'a> {
 
     /// Part of the draws of segments in which the best set has the class.
     fn stability(&self, class: EvidenceClass, seed: &Seed) -> f64 {
-        let segments = self.left.first().map_or(0, |left| left.powers.len()).max(1);
+        let segments = self.sets.left.first().map_or(0, |left| left.powers.len()).max(1);
         let mut generator = seed.child("stability").generator();
         let comes_back = (0..DRAWS).filter(|_| {
             let drawn: Vec<usize> =
                 (0..segments).map(|_| rand::RngExt::random_range(&mut generator, 0..segments)).collect();
             let of = |(w, left): (&Weighed<'_>, &Left)| {
-                (self.likelihood.log_of(&left.powers, &drawn) - left.price, holds(w.fit, class))
+                (self.sets.likelihood.log_of(&left.powers, &drawn) - left.price, holds(w.fit, class))
             };
-            let best = self.weighed.iter().zip(&self.left).map(of).max_by(|a, b| a.0.total_cmp(&b.0));
+            let best =
+                self.sets.weighed.iter().zip(&self.sets.left).map(of).max_by(|a, b| a.0.total_cmp(&b.0));
             best.is_some_and(|best| best.1)
         });
         comes_back.count() as f64 / DRAWS as f64

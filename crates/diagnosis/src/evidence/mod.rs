@@ -12,4 +12,5 @@ pub(crate) mod left_over;
 pub(crate) mod likelihood;
 pub(crate) mod probability;
 pub(crate) mod score;
+pub(crate) mod weighed_sets;
 pub(crate) mod weights;

@@ -163,20 +163,11 @@ fn around(
 
 /// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
 /// member too: begun here they often fit better than on their own.
-fn swaps(
-    data: &Data,
-    pool: &Archive,
-    base: &Fit,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-) -> (Vec<Proposal>, Vec<Fit>) {
+fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
     let counted: Vec<Candidate> = base.hypothesis.candidates.iter().copied().filter(|c| c.counts()).collect();
     let of = |&member: &Candidate| {
         let reduced = proposal(data, base, &[member], &[]);
-        let bare = match pool.find(&reduced.hypothesis.candidates) {
-            Some(known) if !begins_closer(data, pool, &reduced) => known.clone(),
-            _ => fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?,
-        };
+        let bare = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?;
         let dictionary = Dictionary::at(data, &bare, candidates).ok()?;
         let confused = member.confused_with();
         let ranked = singles(&dictionary);
@@ -317,7 +308,7 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
             break;
         }
         let moves: Vec<(Vec<Proposal>, Vec<Fit>)> =
-            bases.par_iter().enumerate().map(|(place, base)| moves(asked, pool, base, place == 0)).collect();
+            bases.par_iter().enumerate().map(|(place, base)| moves(asked, base, place == 0)).collect();
         let mut proposals: Vec<Proposal> = Vec::new();
         for (own, dropped) in moves {
             // What a better set has proposed already is begun from there.
@@ -340,7 +331,7 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
 }
 
 /// What to fit around a set, and the sets that were fitted to find that out.
-fn moves(asked: &Asked<'_>, pool: &Archive, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fit>) {
+fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fit>) {
     let &Asked { data, candidates, breadth, threshold, .. } = asked;
     let mut own = around(data, base, candidates, breadth, threshold, is_best);
     own.extend(simplified(data, base, candidates));
@@ -348,7 +339,7 @@ fn moves(asked: &Asked<'_>, pool: &Archive, base: &Fit, is_best: bool) -> (Vec<P
         return (own, Vec::new());
     }
     own.extend(generalized(data, base, candidates));
-    let (proposals, dropped) = swaps(data, pool, base, candidates, breadth);
+    let (proposals, dropped) = swaps(data, base, candidates, breadth);
     own.extend(proposals);
     (own, dropped)
 }

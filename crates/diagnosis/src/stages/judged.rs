@@ -7,6 +7,7 @@ use crate::evidence::conclusion::likely;
 use crate::evidence::context::{Context, Held, Shift};
 use crate::evidence::half_swings::half_swings;
 use crate::evidence::inclusion::{Inclusion, asked};
+use crate::evidence::weighed_sets::Records;
 use crate::fit::levenberg_marquardt::Fit;
 use std::cell::OnceCell;
 
@@ -34,7 +35,9 @@ impl<'a> Judged<'a> {
         let segments = &refined.segments;
         let mut predictions = work.predictions(&asked(&refined.weighed()))?;
         let bare = refined.archive.find(&[]).unwrap_or(&refined.base.calibrated);
-        let inclusion = Inclusion::of(&refined.data, segments, &predictions, bare, refined.candidates.len())?;
+        let vocabulary = refined.candidates.len();
+        let inclusion =
+            Inclusion::of(Records { data: &refined.data, segments, bare, vocabulary }, &predictions)?;
         let frequency = request.simulator.angular_frequency();
         let swings = half_swings(request.records, &measured.free, frequency);
         let witness = swings.as_ref().map(|own| &own.witness);
@@ -45,7 +48,7 @@ impl<'a> Judged<'a> {
         if let Some(fit) = inclusion.completed(&refined.data, &names) {
             let least = within.map_or(0.0, |w| w.evidence) - WORSE;
             let set = work.predicted(completed.get_or_init(|| fit));
-            if let Some(set) = set.filter(|set| inclusion.evidence(segments, set) > least) {
+            if let Some(set) = set.filter(|set| inclusion.evidence(set) > least) {
                 chosen.clone_from(&set.followed.hypothesis.candidates);
                 predictions.sets.push(set);
             }

@@ -163,7 +163,7 @@ impl All<'_> {
             rms: (w.fit.squares / w.fit.freedom()).sqrt(),
             evidence: w.evidence,
         };
-        self.judged.inclusion.weighed.iter().map(score).collect()
+        self.judged.inclusion.sets.weighed.iter().map(score).collect()
     }
 
     fn series(&self) -> Series {

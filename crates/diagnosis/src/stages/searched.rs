@@ -3,6 +3,8 @@
 use super::{Question, Request};
 use crate::data::segments::Data;
 use crate::data::shooting_interval::ShootingInterval;
+use crate::evidence::left_over::unexplained;
+use crate::evidence::weights::acts;
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
@@ -66,8 +68,11 @@ impl Searched {
 fn further(asked: &Asked<'_>, explored: &mut Explored) {
     let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
     let found = &mut explored.archive;
-    let best = found.ranked(found.autocorrelation_time()).first().map(|best| best.autocorrelation_time());
-    if best.is_none_or(|time| time <= WHITE) {
+    let leaves_more = |best: &Fit| {
+        let left = || unexplained(data, best).map_or(f64::INFINITY, |left| left.evidence);
+        best.autocorrelation_time() > WHITE || acts(left()) > 0.5
+    };
+    if !found.ranked(found.autocorrelation_time()).first().is_some_and(|best| leaves_more(best)) {
         return;
     }
     chains(data, calibrated, candidates, breadth.most_effects, threshold, found);

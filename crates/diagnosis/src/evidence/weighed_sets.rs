@@ -1,0 +1,132 @@
+//! Sets of effects, weighed by what they leave of the records.
+//!
+//! Where something is left that no law explains, sets are weighed by what they predict of parts that they were not fitted to:
+//! what soaks a left-over up in one part does not come back in another. Such a prediction has the errors of coefficients that
+//! were fitted to half of the records, though, and two sets that leave the same noise can differ by a hundred nats there. So
+//! where nothing is left, sets are weighed by what they leave of the samples they were fitted to, and pay for their parameters.
+
+use crate::data::segments::Data;
+use crate::evidence::context::Predicted;
+use crate::evidence::held_out::HeldOut;
+use crate::evidence::likelihood::{BANDS, Likelihood};
+use crate::evidence::score::{further_starts, parameter_price};
+use crate::evidence::weights::{Weighed, price, share};
+use crate::fit::levenberg_marquardt::Fit;
+use crate::noise::floor;
+use nalgebra::DVector;
+
+/// What sets are weighed by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Basis {
+    /// Parts that they were not fitted to.
+    HeldOut,
+    /// The samples that they were fitted to.
+    Fitted,
+}
+
+/// Records, and what sets are compared with there.
+#[derive(Clone, Copy)]
+pub(crate) struct Records<'d> {
+    /// Those that sets were fitted to, and the same cut into segments.
+    pub(crate) data: &'d Data,
+    pub(crate) segments: &'d Data,
+    /// The recalibrated simulator.
+    pub(crate) bare: &'d Fit,
+    /// Effects that were asked for.
+    pub(crate) vocabulary: usize,
+}
+
+/// What a set leaves.
+pub(crate) struct Left {
+    /// Error on held-out parts, in the unit of the records.
+    pub(crate) error: f64,
+    /// Power by segment and band.
+    pub(crate) powers: Vec<[f64; BANDS]>,
+    /// Log evidence that the set pays for its effects and, where it was fitted, its parameters.
+    pub(crate) price: f64,
+}
+
+/// Sets with their evidence, best first, and what each leaves.
+pub(crate) struct WeighedSets<'a> {
+    pub(crate) weighed: Vec<Weighed<'a>>,
+    pub(crate) left: Vec<Left>,
+    pub(crate) likelihood: Likelihood,
+    basis: Basis,
+    /// Probability that something is left beside the best set.
+    pub(crate) left_over: f64,
+    /// Log evidence of the recalibrated simulator, which that of the others is relative to.
+    bare: f64,
+}
+
+impl Basis {
+    /// What a set leaves, by segment.
+    fn residuals(self, records: &Records<'_>, set: &Fit, held_out: &HeldOut) -> Vec<DVector<f64>> {
+        match self {
+            Self::HeldOut => held_out.continued.clone(),
+            Self::Fitted => records.data.by_part(&set.residuals),
+        }
+    }
+
+    /// What a set pays.
+    fn price(self, records: &Records<'_>, set: &Fit, worth: f64, left_over: f64) -> f64 {
+        let effects = price(records.segments, set, records.vocabulary, left_over);
+        let parameters = set.globals().saturating_sub(records.bare.globals()) + further_starts(set);
+        match self {
+            Self::HeldOut => effects,
+            Self::Fitted => effects + parameter_price(parameters, worth),
+        }
+    }
+}
+
+impl<'a> WeighedSets<'a> {
+    /// Weighs sets; the last of these is the recalibrated simulator.
+    pub(crate) fn of(
+        records: &Records<'_>,
+        sets: &[(&'a Fit, &HeldOut)],
+        basis: Basis,
+        left_over: f64,
+    ) -> Self {
+        let residuals: Vec<Vec<DVector<f64>>> =
+            sets.iter().map(|(fit, held)| basis.residuals(records, fit, held)).collect();
+        let square = |own: &&Vec<DVector<f64>>| own.iter().map(DVector::norm_squared).sum::<f64>();
+        let closest = residuals.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
+        let closest = closest.map(Vec::as_slice).unwrap_or_default();
+        let noise = floor::floor(records.segments, closest).value;
+        let likelihood = Likelihood::of(records.segments, closest, noise);
+        let of = |((fit, held), own): (&(&'a Fit, &HeldOut), &Vec<DVector<f64>>)| {
+            let powers = likelihood.powers(own);
+            let price = basis.price(records, fit, likelihood.worth(), left_over);
+            let left = Left { error: held.mean_square().sqrt(), powers, price };
+            (Weighed { fit, evidence: left.evidence(&likelihood), probability: 0.0 }, left)
+        };
+        let mut all: Vec<(Weighed<'a>, Left)> = sets.iter().zip(&residuals).map(of).collect();
+        let bare = all.last().map_or(0.0, |bare| bare.0.evidence);
+        all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
+        let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();
+        share(&mut weighed);
+        for own in &mut weighed {
+            own.evidence -= bare;
+        }
+        Self { weighed, left, likelihood, basis, left_over, bare }
+    }
+
+    /// The best set, and its error on held-out parts.
+    pub(crate) fn best(&self) -> Option<(&'a Fit, f64)> {
+        Some((self.weighed.first()?.fit, self.left.first()?.error))
+    }
+
+    /// Log evidence of a further set, on the scale of the others.
+    pub(crate) fn evidence(&self, records: &Records<'_>, set: &Predicted<'_>) -> f64 {
+        let residuals = self.basis.residuals(records, set.followed, &set.after);
+        let powers = self.likelihood.powers(&residuals);
+        let price = self.basis.price(records, set.followed, self.likelihood.worth(), self.left_over);
+        Left { error: 0.0, powers, price }.evidence(&self.likelihood) - self.bare
+    }
+}
+
+impl Left {
+    fn evidence(&self, likelihood: &Likelihood) -> f64 {
+        let all: Vec<usize> = (0..self.powers.len()).collect();
+        likelihood.log_of(&self.powers, &all) - self.price
+    }
+}
