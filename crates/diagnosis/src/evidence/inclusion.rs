@@ -97,12 +97,8 @@ impl<'a> Inclusion<'a> {
         let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
         let bare = (records.bare, &predictions.recalibrated);
         let sets: Vec<(&'a Fit, &'b HeldOut)> = predictions.sets.iter().map(own).chain([bare]).collect();
-        let mut doubt: f64 = 1.0;
-        for basis in [Basis::HeldOut, Basis::Fitted] {
-            if let Some((best, error)) = WeighedSets::of(&records, &sets, basis, 0.0).best() {
-                doubt = doubt.min(left_over(records.data, best, error)?);
-            }
-        }
+        let fitted = WeighedSets::of(&records, &sets, Basis::Fitted, 0.0);
+        let doubt = fitted.best().map_or(Ok(1.0), |(best, error)| left_over(records.data, best, error))?;
         let basis = if doubt > 0.5 { Basis::HeldOut } else { Basis::Fitted };
         Ok(Self { sets: WeighedSets::of(&records, &sets, basis, doubt), records })
     }
