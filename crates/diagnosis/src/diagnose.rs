@@ -66,7 +66,7 @@ pub fn diagnose_watched(
         };
         let Some(corrected) = clocks.corrected(data, fit)? else { continue };
         let other = search(&corrected)?;
-        if other.2.is_closer(&searched, corrected.price) {
+        if other.2.is_closer(&searched, question.candidates.len(), corrected.price) {
             (measured, question, searched) = other;
             clocks = corrected;
         }

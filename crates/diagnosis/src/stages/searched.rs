@@ -4,7 +4,8 @@ use super::{Question, Request};
 use crate::data::segments::Data;
 use crate::data::shooting_interval::ShootingInterval;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::weights::acts;
+use crate::evidence::score::score;
+use crate::evidence::weights::{acts, price};
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
@@ -53,11 +54,18 @@ impl Searched {
         ranked.first().map_or(&self.interval.calibrated, |best| *best)
     }
 
+    /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
+    fn evidence(&self, time: f64, vocabulary: usize) -> f64 {
+        let data = &self.interval.data;
+        let of = |fit: &Fit| score(fit, time) - price(data, fit, vocabulary, 1.0);
+        self.found.fits.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+    }
+
     /// Whether this search, on other clocks of the same records, has come closer than another by so much log evidence.
-    pub(crate) fn is_closer(&self, other: &Self, price: f64) -> bool {
+    pub(crate) fn is_closer(&self, other: &Self, vocabulary: usize, price: f64) -> bool {
         let time = self.found.autocorrelation_time().min(other.found.autocorrelation_time());
         match self.interval.by.cmp(&other.interval.by) {
-            Ordering::Equal => self.found.highest(time) - price > other.found.highest(time),
+            Ordering::Equal => self.evidence(time, vocabulary) - price > other.evidence(time, vocabulary),
             // Only a model that is right follows the motion further.
             longer => longer == Ordering::Greater,
         }
