@@ -3,7 +3,8 @@
 use crate::support::{measured, result, root, trainer};
 use std::path::PathBuf;
 
-fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+/// The files with an ending below a folder of the workspace, in the order of their paths.
+pub(crate) fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = Vec::new();
     let mut folders = vec![root().join(folder)];
     while let Some(folder) = folders.pop() {

@@ -115,7 +115,9 @@ impl Active {
     /// The values, in the order of the description's parameters.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        self.values.get(..self.effect.description().parameters.len()).unwrap_or_default()
+        let count = self.effect.description().parameters.len();
+        debug_assert!(count <= MOST_PARAMETERS, "{} has {count} parameters", self.id());
+        self.values.get(..count).unwrap_or(&self.values)
     }
 
     /// The value of a parameter.

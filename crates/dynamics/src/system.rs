@@ -137,6 +137,7 @@ impl System {
     }
 
     pub(crate) fn input_delay(&self) -> f64 {
+        // Without the effect the input arrives at once.
         self.field().terms.iter().find_map(|term| term.effect.input_delay(&term.values)).unwrap_or(0.0)
     }
 }
@@ -195,6 +196,7 @@ impl Field<f64> {
     /// torques that cancel is rounding. At rest only.
     pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
         let torque = self.over::<Rounded>().torque(&state.over(), &self.moving(state, 0.0));
+        // Without dry friction nothing is held, and only rounding is left.
         BALANCE * self.holding_torque().unwrap_or(0.0) + ROUNDING * torque.error
     }
 

@@ -116,9 +116,9 @@ impl RecommendedPipeline {
         let errors = log_std_errors(&decay, offset, noise, quantum);
         // Turning points on the same side are two apart.
         let period_s = median(differences(&times, 2)).unwrap_or(coarse_period);
-        let start = clock.times_s.first().copied().unwrap_or_default();
+        let first = decay.first().map(|turn| turn.time).ok_or_else(|| too_few(0))?;
         Ok(Extraction {
-            first_peak_s: times.first().copied().unwrap_or_default() - start,
+            first_peak_s: first - clock.start_s(),
             envelope: Envelope::new(times, log_amplitudes, TAU / period_s)?
                 .with_log_std_errors(errors)
                 .with_ratio(RatioDefinition::LogarithmicDecrement),

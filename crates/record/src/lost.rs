@@ -68,32 +68,8 @@ impl Numbers {
         let grouped = ends.len() < values.len();
         // A record may end within a group, whose last sample is not there.
         let whole = ends.len() - usize::from(grouped);
-        let lines = |ends: &[(f64, f64)]| {
-            let ends = ends.get(..whole).unwrap_or_default();
-            Bend::of(&Line::through(ends), ends)
-        };
-        let before = lines(ends);
-        let mut best: Option<(f64, Ends, Bend)> = None;
-        let starts = intervals(ends.get(..whole)?);
-        for (mut interval, takes_back) in starts.iter().flat_map(|start| [(*start, true), (*start, false)]) {
-            let mut counted = Vec::new();
-            for gain in GAINS {
-                counted = count(ends, interval, gain, takes_back, whole);
-                interval = Line::through(counted.get(..whole)?).slope;
-            }
-            for _ in 0..MOST_MENDED {
-                shift(&mut counted, &sizes, whole);
-                if !mend(&mut counted, &sizes, whole) {
-                    break;
-                }
-            }
-            let after = lines(&counted);
-            let squares = after.line.squares() / after.line.slope.powi(2);
-            if best.as_ref().is_none_or(|best| squares < best.0) {
-                best = Some((squares, counted, after));
-            }
-        }
-        let (_, counted, after) = best?;
+        let before = bend(ends, whole);
+        let (counted, after) = best_count(ends, &sizes, whole)?;
         let interval = after.line.slope;
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let gaps: Vec<usize> = (1..counted.len())
@@ -118,6 +94,40 @@ impl Numbers {
         let of_samples = place(ends, &counted, values, stamps.len());
         Some(Self { of_samples, ends: counted, lost: last as usize })
     }
+}
+
+/// The line with a bend through the whole groups.
+fn bend(ends: &[(f64, f64)], whole: usize) -> Bend {
+    debug_assert!(whole <= ends.len(), "{whole} whole groups of {}", ends.len());
+    // Never absent: asserted above.
+    let ends = ends.get(..whole).unwrap_or_default();
+    Bend::of(&Line::through(ends), ends)
+}
+
+/// The count of samples that lies nearest to an even clock which may drift, with that clock; from several first
+/// guesses of the interval.
+fn best_count(ends: &[(f64, f64)], sizes: &[f64], whole: usize) -> Option<(Ends, Bend)> {
+    let mut best: Option<(f64, Ends, Bend)> = None;
+    let starts = intervals(ends.get(..whole)?);
+    for (mut interval, takes_back) in starts.iter().flat_map(|start| [(*start, true), (*start, false)]) {
+        let mut counted = Vec::new();
+        for gain in GAINS {
+            counted = count(ends, interval, gain, takes_back, whole);
+            interval = Line::through(counted.get(..whole)?).slope;
+        }
+        for _ in 0..MOST_MENDED {
+            shift(&mut counted, sizes, whole);
+            if !mend(&mut counted, sizes, whole) {
+                break;
+            }
+        }
+        let after = bend(&counted, whole);
+        let squares = after.line.squares() / after.line.slope.powi(2);
+        if best.as_ref().is_none_or(|best| squares < best.0) {
+            best = Some((squares, counted, after));
+        }
+    }
+    best.map(|(_, counted, after)| (counted, after))
 }
 
 /// Moves lost samples between neighboring groups: where a burst lost its last ones, its last sample waited
@@ -158,6 +168,11 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let mut sums = [0.0; 4];
     let mut best = (-2.0 * (whole as f64).ln() / 12.0, 0, 0.0);
     for at in (1..whole).rev() {
+        debug_assert!(
+            [&residuals, &linear, &bent].iter().all(|series| series.len() == whole),
+            "one entry a group"
+        );
+        // Never absent: asserted above.
         let here = |series: &[f64]| series.get(at).copied().unwrap_or_default();
         let terms = [here(&residuals) / interval, constant, here(&linear), here(&bent) / length];
         for (sum, term) in sums.iter_mut().zip(terms) {
@@ -239,8 +254,9 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], values: &[f64], samples: u
         let mut early = 0;
         if lost > 0.5 && size > 1 {
             let from = numbers.len().saturating_sub(4);
-            let past: Vec<f64> = numbers.get(from..).unwrap_or_default().to_vec();
+            let past: Vec<f64> = numbers.iter().skip(from).copied().collect();
             let to = (numbers.len() + size + 4).min(values.len());
+            // Beyond the last sample nothing is seen.
             let seen = values.get(from..to).unwrap_or_default();
             let roughness = |early: usize| {
                 let next = (1..=4).map(|at| number.0 + f64::from(at));

@@ -79,6 +79,13 @@ impl Law {
         Self::new(mix(self.constant, other.constant), terms.collect(), trajectory.collect(), scaled)
     }
 
+    /// x at the first peak.
+    pub fn start(&self) -> f64 {
+        debug_assert!(!self.trajectory.is_empty(), "an envelope has at least three peaks");
+        // Never absent: asserted above.
+        self.trajectory.first().copied().unwrap_or(0.0)
+    }
+
     /// Largest distance of the trajectory from another at the same peaks.
     pub fn distance(&self, trajectory: &[f64]) -> f64 {
         let pairs = self.trajectory.iter().zip(trajectory);

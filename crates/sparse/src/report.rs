@@ -30,7 +30,7 @@ pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> Stri
 ///
 /// `method` is what a method adds of its own before the path, whole paragraphs or nothing.
 pub fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
-    let start = law.trajectory.first().copied().unwrap_or(0.0) + scaled.mean;
+    let start = law.start() + scaled.mean;
     let mut text = format!(
         "{}\n{}\nA(0) = {}\n\nA in the record's unit, t in seconds after the first peak.\n",
         law.equation(scaled),

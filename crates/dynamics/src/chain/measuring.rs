@@ -192,8 +192,9 @@ impl Extent {
         if let Some((index, (_, &value))) = pairs.enumerate().find(|(_, (before, after))| before >= after) {
             return Err(DynamicsError::BadTimes { index: index + 1, value });
         }
-        let duration_s =
-            times.last().copied().unwrap_or_default() - times.first().copied().unwrap_or_default();
+        // There are two at least: checked above.
+        let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
+        let duration_s = last - first;
         let values = motion.observed(observed);
         Ok(Self {
             duration_s,

@@ -21,6 +21,7 @@ impl Diagnostics {
     /// infinite, no effective draws.
     pub(crate) fn of(chains: &[Vec<f64>]) -> Self {
         let split = split(chains);
+        // Without chains there is no draw.
         let shortest = split.iter().map(Vec::len).min().unwrap_or_default();
         if shortest < 2 {
             return Self { r_hat: f64::INFINITY, bulk: 0.0, tail: 0.0 };

@@ -111,8 +111,9 @@ impl Encoder for Network {
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = |sequence: &Sequence| -> Vec<f64> {
-            let (first, interval) =
-                (sequence.times.first().copied().unwrap_or(0.0), sequence.mean_interval());
+            // A sequence without entries has no feature either.
+            let first = sequence.times.first().copied().unwrap_or(0.0);
+            let interval = sequence.mean_interval();
             let entries = sequence.times.iter().zip(&sequence.values);
             let features = entries.flat_map(|(time, value)| {
                 std::iter::once(*value).chain(time_encoding((time - first) / interval, self.width()))

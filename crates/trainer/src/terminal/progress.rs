@@ -100,16 +100,22 @@ impl Progress {
     pub(crate) fn run_done(&self, said: &str) {
         self.bar.inc(1);
         if self.lines {
-            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            let (done, all) = self.place();
             console::remark(&format!("{done} of {all}: {said}"));
         }
         self.bar.set_message(said.to_owned());
     }
 
+    /// How many are done, and of how many.
+    fn place(&self) -> (u64, u64) {
+        // A bar without a length has nothing to count to.
+        (self.bar.position(), self.bar.length().unwrap_or(0))
+    }
+
     /// One more of very many is done: a line for every tenth part of them.
     pub(crate) fn one_of_many_done(&self) {
         self.bar.inc(1);
-        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let (done, all) = self.place();
         if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));
         }
@@ -117,7 +123,7 @@ impl Progress {
 
     /// So many of very many are done: a line wherever another tenth part of them is.
     pub(crate) fn so_many_done(&self, done: u64) {
-        let (before, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let (before, all) = self.place();
         self.bar.set_position(done);
         if self.lines && all > 0 && done * 10 / all > before * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));
