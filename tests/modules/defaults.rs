@@ -36,16 +36,20 @@ const NUMERIC: &[&str] = &[
     "weak-sindy",
 ];
 
-/// Lines, from 1, with a zero in place of what is not there and no comment on the line or the one above.
+/// Lines, from 1, with a zero in place of what is not there and no comment on the line or the one above. Of crates that
+/// hold texts and lists more often than numbers, `any_default` is not set.
 fn without_reason(text: &str, any_default: bool) -> Vec<usize> {
     let code = without_tests(&code_only(text));
     let (said, written): (Vec<&str>, Vec<&str>) = (text.lines().collect(), code.lines().collect());
-    let is_zero = |line: &str| {
-        let is_number = line.split("unwrap_or(").skip(1).any(|rest| {
+    let after = |line: &str, call: &str| {
+        line.split(call).skip(1).any(|rest| {
             let rest = rest.trim_start_matches('&');
             rest.starts_with('0') && !rest.starts_with("0..")
-        });
-        is_number || any_default && line.contains("unwrap_or_default()")
+        })
+    };
+    let is_zero = |line: &str| {
+        after(line, "unwrap_or(")
+            || any_default && (line.contains("unwrap_or_default()") || after(line, "map_or("))
     };
     // A comment goes on to the end of its line, where a string leaves code behind it.
     let explains = |at: usize| {
@@ -90,7 +94,8 @@ fn a_zero_in_place_of_what_is_not_there_has_its_reason() {
 fn a_zero_without_a_reason_is_seen() {
     let text = "fn f() {\n    a.unwrap_or(0.0);\n    // Nothing moves.\n    b.unwrap_or(0);\n    c.unwrap_or(1.0);\n    \
                 d.unwrap_or_default(); // An empty list.\n    /// Of a doc \"// no\".\n    e\n        .unwrap_or(&0);\n    \
-                let s = \"// no reason\"; g.unwrap_or_default();\n}\n#[cfg(test)]\nmod tests { fn g() { h.unwrap_or(0); } }\n";
-    assert_eq!(without_reason(text, true), [2, 9, 10]);
+                let s = \"// no reason\"; g.unwrap_or_default();\n    \
+                h.map_or(0.0, f); i.map_or(1, f);\n    j.map_or(1, f);\n}\n#[cfg(test)]\nmod tests { fn g() { h.unwrap_or(0); } }\n";
+    assert_eq!(without_reason(text, true), [2, 9, 10, 11]);
     assert_eq!(without_reason(text, false), [2, 9]);
 }

@@ -241,6 +241,7 @@ pub(crate) struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     pub(crate) fn new(input: Option<&'a Input>, gain: f64, delay: f64, time: f64) -> Self {
+        // Without an input there is no piece to count.
         let index = input.map_or(0, |input| input.piece_index(time - delay));
         Self { input, index, gain, delay }
     }

@@ -116,6 +116,7 @@ impl<'a> Samples<'a> {
     }
 
     fn duration(&self) -> f64 {
+        // Without samples no time passes.
         self.times.first().zip(self.times.last()).map_or(0.0, |(first, last)| last - first)
     }
 

@@ -248,6 +248,7 @@ fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result
     .into_iter()
     .flatten()
     .collect();
+    // A value column is always among them.
     let needed = columns.iter().max().map_or(0, |at| at + 1);
     for (number, (line, row)) in rows.iter().enumerate() {
         if row.len() < needed {

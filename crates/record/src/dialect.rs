@@ -204,6 +204,7 @@ fn is_unit(cell: &str) -> bool {
 
 /// Cells up to the last that is not empty.
 fn filled(cells: &[&str]) -> usize {
+    // Where all are empty none is filled.
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
 }
 
@@ -263,6 +264,7 @@ fn most_common(counts: impl Iterator<Item = usize>) -> usize {
     for count in counts {
         *tally.entry(count).or_insert(0_usize) += 1;
     }
+    // Without lines no count is usual.
     tally.into_iter().max_by_key(|(count, lines)| (*lines, *count)).map_or(0, |(count, _)| count)
 }
 

@@ -71,6 +71,7 @@ impl Numbers {
         let before = bend(ends, whole);
         let (counted, after) = best_count(ends, &sizes, whole)?;
         let interval = after.line.slope;
+        // Asked for groups of `counted` only.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let gaps: Vec<usize> = (1..counted.len())
             .filter(|&at| number(at) - number(at - 1) > sizes.get(at - 1).copied().unwrap_or(1.0) + 0.5)
@@ -137,6 +138,7 @@ fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     let line = Line::through(ends);
     let late: Vec<f64> = line.residuals.iter().map(|residual| residual / line.slope).collect();
     for (at, late) in late.iter().enumerate().take(whole.saturating_sub(1)).skip(1) {
+        // Asked for whole groups only, which are fewer than all.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let lost = |at: usize| number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         let more =
@@ -180,6 +182,7 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
         }
         let [residual, level, slope, curve] = sums;
         let step = (whole - at) as f64 - level * level - slope * slope - curve * curve;
+        // Asked for whole groups only, which are fewer than all.
         let number = |at: usize| ends.get(at).map_or(0.0, |end| end.0);
         let lost = number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         for more in [1.0, -1.0] {
@@ -266,6 +269,7 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], values: &[f64], samples: u
             early = (0..=size)
                 .map(|early| (early, roughness(early)))
                 .min_by(|one, other| one.1.total_cmp(&other.1))
+                // There is always one: that all were lost before the group.
                 .map_or(0, |best| best.0);
         }
         numbers.extend(numbered(early));

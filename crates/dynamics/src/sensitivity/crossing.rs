@@ -92,7 +92,9 @@ fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> 
     // On the edge itself the lowest coefficients are rounding; what counts is how the margin goes on.
     let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
     let rounding = |rest: &[f64], power: f64| {
+        // Behind the last coefficient there is none, and without a resolution nothing is rounding.
         let next = rest.first().map_or(0.0, |next| next.abs() * power);
+        // As above.
         resolution.map_or(0.0, |resolution| ON_THE_EDGE * total + next * resolution)
     };
     while lowest.abs() * power <= rounding(rest, power) {

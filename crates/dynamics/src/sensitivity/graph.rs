@@ -143,7 +143,7 @@ impl Graph {
     /// parameters have to be set.
     pub(crate) fn prepare(&mut self) {
         for (number, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.constant) {
-            let of = |operand: usize| self.series.get(operand).map_or(0.0, first);
+            let of = |operand: usize| first(self.series(operand));
             let value = match node.operation {
                 Operation::Leaf(_) => continue,
                 Operation::Add(a, b) => of(a) + of(b),

@@ -2,7 +2,7 @@
 
 use super::expression::Operation;
 use super::node::Node;
-use super::series::{LENGTH, Series, convolve, dot_reversed, first, head};
+use super::series::{LENGTH, Series, convolve, dot_reversed, head};
 
 /// What has to be computed for each coefficient. Chains of sums and of products with constants are one linear
 /// combination each.
@@ -83,7 +83,7 @@ impl Program {
         let mut forms: Vec<Form> = Vec::with_capacity(nodes.len());
         for (number, node) in nodes.iter().enumerate() {
             let form = if node.constant {
-                Form { offset: series.get(number).map_or(0.0, first), terms: Vec::new() }
+                Form { offset: coefficient(series, number, 0), terms: Vec::new() }
             } else if node.varies() {
                 program.condense(number, node, nodes, &forms)
             } else {
@@ -158,10 +158,13 @@ impl Program {
                     put(series, target, degree, sum);
                 }
                 Instruction::Product { target, a, b } => {
+                    debug_assert!(a.max(b) < series.len(), "nodes {a} and {b} of {}", series.len());
+                    // Never absent: asserted above.
                     let value = pair(series, a, b).map_or(0.0, |(a, b)| convolve(a, b, degree));
                     put(series, target, degree, value);
                 }
                 Instruction::Quotient { target, a, b } => {
+                    debug_assert!(target.max(b) < series.len(), "nodes {target} and {b} of {}", series.len());
                     // a = q·b: everything but q_degree·b₀ is known.
                     let known = pair(series, target, b).map_or(0.0, |(quotient, b)| {
                         let [_, b @ ..] = b;

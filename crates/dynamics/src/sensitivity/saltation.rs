@@ -67,9 +67,10 @@ impl March<'_> {
             graph.set_leaf(STATE + variable, value, 0.0);
         }
         graph.extend(0);
+        debug_assert_eq!(graph.rates.len(), *states, "a rate for each state variable");
         for variable in 0..*states {
-            let rate = graph.rates.get(variable).map_or(0.0, |&node| graph.coefficient(node, 0));
-            graph.set_state(variable, 1, rate);
+            let Some(&node) = graph.rates.get(variable) else { continue };
+            graph.set_state(variable, 1, graph.coefficient(node, 0));
         }
         graph.extend(1);
         let speed = graph.coefficient(node, 1);

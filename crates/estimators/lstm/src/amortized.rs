@@ -74,6 +74,7 @@ impl Encoder for Reader {
     /// (s, ln Δ, z, its change): the entry's time, the logarithm of the mean time between entries, the
     /// value, and its change since the entry before, which tells scatter from a bend.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = sequences
             .iter()

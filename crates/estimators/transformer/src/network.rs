@@ -109,6 +109,7 @@ pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64
 impl Encoder for Network {
     /// z, then the encoding of the entry's time since the first.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = |sequence: &Sequence| -> Vec<f64> {
             // A sequence without entries has no feature either.

@@ -23,34 +23,9 @@ impl Progress {
         Self::new(seeds, unit, seeds == 1, quiet)
     }
 
-    /// Over the fits of several methods.
-    pub(crate) fn over_fits(fits: u64, quiet: bool) -> Self {
-        Self::new(fits, "fits", false, quiet)
-    }
-
-    /// Over the runs of a sweep.
-    pub(crate) fn over_runs(runs: u64, quiet: bool) -> Self {
-        Self::new(runs, "runs", false, quiet)
-    }
-
-    /// Over the records of a simulation.
-    pub(crate) fn over_records(records: u64, quiet: bool) -> Self {
-        Self::new(records, "records", false, quiet)
-    }
-
-    /// Over the cases of a batch.
-    pub(crate) fn over_cases(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases", false, quiet)
-    }
-
-    /// Over the cases of trials, as they are made.
-    pub(crate) fn over_cases_made(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases made", false, quiet)
-    }
-
-    /// Over the cases of trials, as their truths are opened and simpler diagnosers asked.
-    pub(crate) fn over_cases_opened(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases opened", false, quiet)
+    /// Over so many of something, such as `"fits"`.
+    pub(crate) fn over(count: u64, unit: &'static str, quiet: bool) -> Self {
+        Self::new(count, unit, false, quiet)
     }
 
     fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {

@@ -49,7 +49,7 @@ pub(super) fn execute(
     output: Output,
     cancel: &'static Cancel,
 ) -> Result<(), RunError> {
-    let progress = Progress::over_runs(jobs.len() as u64, output.quiet || output.json);
+    let progress = Progress::over(jobs.len() as u64, "runs", output.quiet || output.json);
     let queue = Queue::new(jobs);
     let fault: Mutex<Option<RunError>> = Mutex::new(None);
     let clerk = Mutex::new(Clerk::new(sweep));
@@ -322,7 +322,7 @@ mod tests {
     fn what_is_not_known_of_a_run_is_not_said_to_be_zero() {
         let bare = RunTableRow::without_numbers("0001", RunState::Done, "");
         let known = RunTableRow { zeta: Some(0.01), reached: "budget_spent".to_owned(), ..bare };
-        assert_eq!(said(&[known.clone()]), "budget spent, ζ 0.01000000");
+        assert_eq!(said(std::slice::from_ref(&known)), "budget spent, ζ 0.01000000");
         let all = RunTableRow {
             steps: Some(7),
             seconds: Some(0.25),
