@@ -112,7 +112,7 @@ impl Active {
         self.effect.id()
     }
 
-    /// The values, in the order of the description's parameters.
+    /// The values, in the order and the units of the description's parameters.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         let count = self.effect.description().parameters.len();
@@ -120,7 +120,7 @@ impl Active {
         self.values.get(..count).unwrap_or(&self.values)
     }
 
-    /// The value of a parameter.
+    /// The value of a parameter by its name, in the unit of the description; `None` where the effect has none of that name.
     #[must_use]
     pub fn value(&self, parameter: &str) -> Option<f64> {
         let index = self.effect.description().parameter_index(parameter)?;

@@ -68,13 +68,13 @@ impl Input {
         Ok(Self { times, values, hold })
     }
 
-    /// Sample times in seconds.
+    /// Sample times in seconds, increasing; as many as [`Self::values`].
     #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Sample values.
+    /// Sample values in the input's unit, before the nominal oscillator's gain.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values

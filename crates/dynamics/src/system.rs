@@ -90,7 +90,7 @@ impl System {
         &self.effects
     }
 
-    /// Number of hidden state variables.
+    /// Number of hidden state variables of all effects together, such as the states of hysteresis and of a second body.
     #[must_use]
     pub fn hidden_states(&self) -> usize {
         self.effects.iter().map(|active| active.effect().description().hidden_states).sum()

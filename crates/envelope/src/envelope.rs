@@ -111,7 +111,8 @@ impl Envelope {
         self.omega_rad_s
     }
 
-    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it. It grows as 1/A.
+    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it: one entry a peak, above 0. It grows
+    /// as 1/A.
     #[must_use]
     pub fn log_std_errors(&self) -> Option<&[f64]> {
         self.log_std_errors.as_deref()

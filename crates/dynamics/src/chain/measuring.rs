@@ -62,7 +62,7 @@ impl Chain {
         self.observed
     }
 
-    /// Standard deviation of the white noise, in the observed quantity's unit.
+    /// Standard deviation of the sensor's white noise, in the observed quantity's SI unit, 0 or more.
     #[must_use]
     pub fn noise(&self) -> f64 {
         self.noise

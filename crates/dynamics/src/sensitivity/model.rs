@@ -103,7 +103,7 @@ impl Model {
         })
     }
 
-    /// Number of columns.
+    /// Number of columns of every sensitivity: one for each free quantity, in the order given to the model.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.free.len()

@@ -54,7 +54,7 @@ impl Bounds {
         Ok(Self { low, high })
     }
 
-    /// No bounds on a number of parameters.
+    /// Bounds at −∞ and ∞ for a number of parameters.
     #[must_use]
     pub fn none(parameters: usize) -> Self {
         Self { low: vec![f64::NEG_INFINITY; parameters], high: vec![f64::INFINITY; parameters] }
