@@ -25,7 +25,7 @@ Examples:
   trainer init arm.csv --where joint=elbow     one of several series in a file
   trainer init log.csv --value phi --unit deg  where the file does not say it
 
-It prints the call of `trainer diagnose` that goes on from there. Nothing that exists is overwritten.")]
+It prints the `trainer diagnose` command to continue with. Nothing that exists is overwritten.")]
 pub(crate) struct InitArguments {
     /// The log: any text file with columns
     #[arg(value_name = "LOG")]
