@@ -231,7 +231,7 @@ fn the_terminal_has_one_screen_and_the_threads_change_nothing() {
     let (text, found) = run("1");
     assert!(["none", "calibration"].contains(&found["verdict"]["status"].as_str().unwrap()), "{text}");
     assert!(text.lines().count() < 50, "{text}");
-    for part in ["noise floor", "probabilit", "next experiment:", "measuring chain:", "took:", "report:"] {
+    for part in ["noise floor", "probabilit", "next experiment:", "measurement chain:", "took:", "report:"] {
         assert!(text.contains(part), "no `{part}` in {text}");
     }
     assert_eq!(found, run("2").1);
@@ -437,7 +437,7 @@ fn resumed_it_goes_on_or_gives_its_answer_again() {
     assert_eq!((again.status.code(), &again.stdout), (Some(0), &first.stdout), "given again");
     assert_eq!(std::fs::metadata(out.join("report.html")).unwrap().modified().unwrap(), page);
     let message = refusal(&[&arguments[..], &["--seed", "1"]].concat());
-    assert!(message.contains("was begun with another seed: 0, now 1"), "{message}");
+    assert!(message.contains("was started with another seed: 0, now 1"), "{message}");
     assert!(refusal(&arguments[..6]).contains("is not empty"), "only --resume goes into it");
 
     // What an interrupted diagnosis left.

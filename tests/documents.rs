@@ -3,7 +3,8 @@
 use crate::support::{measured, result, root, trainer};
 use std::path::PathBuf;
 
-fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
+/// The files with an ending below a folder of the workspace, in the order of their paths.
+pub(crate) fn files(folder: &str, ending: &str) -> Vec<PathBuf> {
     let mut found: Vec<PathBuf> = Vec::new();
     let mut folders = vec![root().join(folder)];
     while let Some(folder) = folders.pop() {
@@ -158,6 +159,24 @@ fn every_page_of_the_book_stands_in_its_contents_and_includes_what_exists() {
             assert!(is_there, "{name}: {file} has no anchor {anchor:?}");
         }
     }
+}
+
+#[test]
+fn every_term_of_the_glossary_is_defined_in_a_sentence_and_has_a_dated_source() {
+    let text = std::fs::read_to_string(root().join("book/src/glossary.md")).unwrap();
+    let rows: Vec<Vec<&str>> = (text.lines().skip_while(|line| !line.starts_with("|---")).skip(1))
+        .map(|line| line.trim_matches('|').split('|').map(str::trim).collect())
+        .collect();
+    assert!(rows.len() >= 40, "{}", rows.len());
+    for row in &rows {
+        let [term, means, source] = row[..] else { panic!("{row:?}") };
+        assert!(means.ends_with('.') && means.len() > 20, "{term}: {means}");
+        // A year, or the part of a standard.
+        let has_year = source.split(|letter: char| !letter.is_ascii_digit()).any(|number| number.len() >= 4);
+        assert!(has_year, "{term}: {source}");
+    }
+    let terms: Vec<String> = rows.iter().map(|row| row[0].to_lowercase()).collect();
+    assert!(terms.is_sorted(), "{terms:?}");
 }
 
 /// The words of every command of the documents that begins in one of these ways, lines that go on joined.

@@ -108,3 +108,14 @@ fn a_spring_where_there_is_none_is_not_determined() {
     assert!(text(folder.path(), "repaired.urdf.xml").contains(said));
     assert!(text(folder.path(), "report.html").contains("not determined by these data"));
 }
+
+#[test]
+fn an_effect_whose_id_is_no_text_is_refused_with_what_stands_there() {
+    let scratch = tempfile::tempdir().unwrap();
+    let path = scratch.path().join("drag.toml");
+    std::fs::write(&path, CONFIG.replace("id = \"quadratic_drag\"", "id = 3")).unwrap();
+    let simulated = trainer(&["simulate", path.to_str().unwrap(), "--quiet"]);
+    let message = String::from_utf8(simulated.stderr).unwrap();
+    assert_eq!(simulated.status.code(), Some(2), "{message}");
+    assert!(message.contains("unknown effect \"3\""), "{message}");
+}

@@ -1,4 +1,5 @@
-//! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace.
+//! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace: files
+//! and lines are read from its steps.
 
 use crate::support::{root, trainer};
 use std::fs;
@@ -23,6 +24,49 @@ fn edit(path: &Path, from: &str, to: &str) {
     let text = fs::read_to_string(path).unwrap();
     assert!(text.contains(from), "{} has no `{from}`", path.display());
     fs::write(path, text.replacen(from, to, 1)).unwrap();
+}
+
+/// The numbered steps below a heading of CONTRIBUTING.md, each as the words that it sets as code, `NAME` replaced.
+fn steps(heading: &str, name: &str) -> Vec<Vec<String>> {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let section = text.split(&format!("\n## {heading}\n")).nth(1).unwrap().split("\n## ").next().unwrap();
+    let list = section.split("\n1. ").nth(1).unwrap().split("\n\n").next().unwrap();
+    let starts = |line: &str| line.split_once(". ").is_some_and(|(number, _)| number.parse::<u8>().is_ok());
+    let mut steps = vec![String::new()];
+    for line in list.lines() {
+        if starts(line) {
+            steps.push(String::new());
+        }
+        steps.last_mut().unwrap().push_str(&format!("{line}\n"));
+    }
+    let code =
+        |step: &String| step.split('`').skip(1).step_by(2).map(|word| word.replace("NAME", name)).collect();
+    steps.iter().map(code).collect()
+}
+
+/// What was added to the crates of a copy: new files, and files with more lines together with how many.
+fn added(home: &Path) -> (Vec<String>, Vec<(String, usize)>) {
+    let (mut new, mut longer) = (Vec::new(), Vec::new());
+    let mut folders = vec![home.join("crates")];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            let name = path.strip_prefix(home).unwrap().to_str().unwrap().to_owned();
+            let own = || fs::read_to_string(&path).unwrap();
+            match fs::read(root().join(&name)) {
+                _ if path.is_dir() => folders.push(path),
+                Err(_) => new.push(name),
+                Ok(before) if before == fs::read(&path).unwrap() => {}
+                Ok(before) => {
+                    let before = String::from_utf8(before).unwrap();
+                    longer.push((name, own().lines().count() - before.lines().count()));
+                }
+            }
+        }
+    }
+    new.sort();
+    longer.sort();
+    (new, longer)
 }
 
 /// A copy of the workspace.
@@ -63,11 +107,14 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     let scratch = workspace();
     let home = scratch.path();
 
+    let steps = steps("Adding an estimator", "endpoints");
+    let [manifest, method, dependency, entry] = &steps[..] else { panic!("{steps:?}") };
     // Steps 1 and 2.
-    let own = home.join("crates/estimators/endpoints");
-    copy(&home.join("crates/estimators/baseline"), &own);
-    edit(&own.join("Cargo.toml"), "estimator-baseline", "estimator-endpoints");
-    let method = own.join("src/lib.rs");
+    let [manifest, template, package] = &manifest[..] else { panic!("{manifest:?}") };
+    let manifest = home.join(manifest);
+    copy(&home.join(template), manifest.parent().unwrap());
+    edit(&manifest, "estimator-baseline", package);
+    let method = home.join(&method[0]);
     edit(&method, "id: \"baseline\"", "id: \"endpoints\"");
     edit(&method, "&[Tag::Null]", "&[]");
     edit(&method, ", Tag};", "};");
@@ -80,17 +127,14 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
             }",
     );
     // Steps 3 and 4.
-    let registry = home.join("crates/registry");
-    edit(
-        &registry.join("Cargo.toml"),
-        "[dependencies]\n",
-        "[dependencies]\nestimator-endpoints.path = \"../estimators/endpoints\"\n",
-    );
-    edit(
-        &registry.join("src/lib.rs"),
-        "estimator_baseline::ENTRY,",
-        "estimator_baseline::ENTRY, estimator_endpoints::ENTRY,",
-    );
+    let [file, line] = &dependency[..] else { panic!("{dependency:?}") };
+    edit(&home.join(file), "[dependencies]\n", &format!("[dependencies]\n{line}\n"));
+    let [file, line] = &entry[..] else { panic!("{entry:?}") };
+    edit(&home.join(file), "estimator_baseline::ENTRY,", &format!("estimator_baseline::ENTRY,\n    {line}"));
+    let (new, longer) = added(home);
+    assert_eq!(new, ["crates/estimators/endpoints/Cargo.toml", "crates/estimators/endpoints/src/lib.rs"]);
+    let lines = longer.iter().map(|(file, lines)| (file.as_str(), *lines)).collect::<Vec<_>>();
+    assert_eq!(lines, [("crates/registry/Cargo.toml", 1), ("crates/registry/src/lib.rs", 1)]);
 
     let battery = |filter: &str| test_in(home, "battery", filter);
     let exact = battery("endpoints::it_recovers_a_pure_exponential");
@@ -110,29 +154,34 @@ fn a_new_effect_takes_two_files_and_is_diagnosed() {
     let home = scratch.path();
     let file = |name: &str| root().join("tests/recipe").join(name);
 
-    let dynamics = home.join("crates/dynamics/src");
-    fs::copy(file("law.rs"), dynamics.join("effects/sine_drag.rs")).unwrap();
-    edit(&dynamics.join("effects/mod.rs"), "mod quadratic_drag;", "mod quadratic_drag;\nmod sine_drag;");
+    let steps = steps("Adding an effect", "sine_drag");
+    let places: Vec<_> = steps.iter().map(|step| home.join(&step[0])).collect();
+    let [law, laws, registry, candidate, candidates] = &places[..] else { panic!("{steps:?}") };
+    fs::copy(file("law.rs"), law).unwrap();
+    edit(laws, "mod quadratic_drag;", "mod quadratic_drag;\nmod sine_drag;");
     edit(
-        &dynamics.join("effects/mod.rs"),
+        laws,
         "pub use quadratic_drag::QuadraticDrag;",
         "pub use quadratic_drag::QuadraticDrag;\npub use sine_drag::SineDrag;",
     );
-    edit(&dynamics.join("registry.rs"), "    QuadraticDrag,\n", "    QuadraticDrag,\n    SineDrag,\n");
+    edit(registry, "    QuadraticDrag,\n", "    QuadraticDrag,\n    SineDrag,\n");
 
-    let candidates = home.join("crates/diagnosis/src/model/candidates");
-    fs::copy(file("candidate.rs"), candidates.join("sine_drag.rs")).unwrap();
+    fs::copy(file("candidate.rs"), candidate).unwrap();
     edit(
-        &candidates.join("mod.rs"),
+        candidates,
         "pub(crate) mod quadratic_drag;",
         "pub(crate) mod quadratic_drag;\npub(crate) mod sine_drag;",
     );
     edit(
-        &candidates.join("mod.rs"),
+        candidates,
         "    Candidate::new(&quadratic_drag::QuadraticDrag),",
         "    Candidate::new(&quadratic_drag::QuadraticDrag),\n    Candidate::new(&sine_drag::SineDrag),",
     );
 
+    let (new, longer) = added(home);
+    assert_eq!(new, [steps[3][0].as_str(), steps[0][0].as_str()]);
+    let lines: Vec<usize> = longer.iter().map(|(_, lines)| *lines).collect();
+    assert_eq!((longer.len(), lines), (3, vec![2, 2, 1]), "{longer:?}");
     let tests = home.join("crates/diagnosis/tests");
     fs::create_dir(&tests).unwrap();
     fs::copy(file("diagnosed.rs"), tests.join("sine_drag.rs")).unwrap();

@@ -409,7 +409,7 @@ fn another_configuration_is_refused_with_the_difference() {
         said(&output)
     };
     let begun = refused(&["sweep", own, "seed=0,1"], &[]);
-    assert!(begun.contains("a sweep was begun there already; --resume goes on with it"), "{begun}");
+    assert!(begun.contains("a sweep was started there already; --resume continues it"), "{begun}");
     let longer = refused(&["sweep", own, "seed=0..2"], &["--resume"]);
     assert!(longer.contains("2 runs then, 3 now"), "{longer}");
     let other = refused(&["sweep", own, "seed=0,2"], &["--resume"]);

@@ -1,5 +1,6 @@
-//! The rooms of each crate: no circle among its modules, no function that goes on for pages.
+//! The rooms of each crate: no circle among its modules, no function that goes on for pages, no zero without a reason.
 
+mod defaults;
 mod graph;
 mod known;
 mod source;

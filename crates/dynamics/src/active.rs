@@ -112,13 +112,15 @@ impl Active {
         self.effect.id()
     }
 
-    /// The values, in the order of the description's parameters.
+    /// The values, in the order and the units of the description's parameters.
     #[must_use]
     pub fn values(&self) -> &[f64] {
-        self.values.get(..self.effect.description().parameters.len()).unwrap_or_default()
+        let count = self.effect.description().parameters.len();
+        debug_assert!(count <= MOST_PARAMETERS, "{} has {count} parameters", self.id());
+        self.values.get(..count).unwrap_or(&self.values)
     }
 
-    /// The value of a parameter.
+    /// The value of a parameter by its name, in the unit of the description; `None` where the effect has none of that name.
     #[must_use]
     pub fn value(&self, parameter: &str) -> Option<f64> {
         let index = self.effect.description().parameter_index(parameter)?;

@@ -85,21 +85,21 @@ pub enum DynamicsError {
         reason: &'static str,
     },
     /// One effect twice.
-    #[error("`{effect}` is given twice; add its parameters up in one")]
+    #[error("`{effect}` is given twice; combine the two into one")]
     Duplicate {
         /// The effect's id.
         effect: &'static str,
     },
     /// An effect of the measuring chain where one of the system is expected.
     #[error(
-        "`{effect}` belongs to the measuring chain and does not change the motion; apply it to the samples"
+        "`{effect}` belongs to the measurement chain and does not change the motion; apply it to the samples"
     )]
     NotInTheSystem {
         /// The effect's id.
         effect: &'static str,
     },
     /// An effect in the system where one of the measuring chain is expected.
-    #[error("`{effect}` changes the motion and does not belong to the measuring chain")]
+    #[error("`{effect}` changes the motion and does not belong to the measurement chain")]
     NotInTheChain {
         /// The effect's id.
         effect: &'static str,
@@ -177,7 +177,7 @@ pub enum DynamicsError {
     },
     /// The motion runs away.
     #[error(
-        "the motion leaves every bound at {time_s} s (position {position}): a negative stiffness without a stop?"
+        "the motion diverges at {time_s} s (position {position}): is there a negative stiffness without a stop?"
     )]
     Diverged {
         /// When, in seconds.

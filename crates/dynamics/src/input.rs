@@ -68,13 +68,13 @@ impl Input {
         Ok(Self { times, values, hold })
     }
 
-    /// Sample times in seconds.
+    /// Sample times in seconds, increasing; as many as [`Self::values`].
     #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
 
-    /// Sample values.
+    /// Sample values in the input's unit, before the nominal oscillator's gain.
     #[must_use]
     pub fn values(&self) -> &[f64] {
         &self.values
@@ -128,9 +128,12 @@ impl Input {
         let at = |list: &[f64], index: usize| list.get(index).copied();
         let until = at(&self.times, index).unwrap_or(f64::INFINITY);
         let Some(from) = index.checked_sub(1).and_then(|before| at(&self.times, before)) else {
+            // An input without samples drives nothing.
             let value = at(&self.values, 0).unwrap_or(0.0);
             return Piece { from: f64::NEG_INFINITY, value, slope: 0.0, until };
         };
+        debug_assert_eq!(self.times.len(), self.values.len(), "an input has a value for every time");
+        // There is one: the sample's time was found above.
         let value = at(&self.values, index - 1).unwrap_or(0.0);
         let slope = match (self.hold, at(&self.values, index)) {
             (Hold::Linear, Some(next)) => (next - value) / (until - from),

@@ -81,7 +81,7 @@ impl Nominal {
         Ok(Self { coefficients, coordinate: Coordinate::Angle, sensor_resolution: None })
     }
 
-    /// The same oscillator with another coordinate.
+    /// The same numbers read in another coordinate: an angle in radians or a displacement in meters. Nothing is converted.
     #[must_use]
     pub fn with_coordinate(self, coordinate: Coordinate) -> Self {
         Self { coordinate, ..self }
@@ -111,7 +111,7 @@ impl Nominal {
         Ok(Self { coefficients: checked.coefficients, ..self })
     }
 
-    /// All coefficients.
+    /// All coefficients, in SI units, or per inertia where the inertia is 1.
     #[must_use]
     pub fn coefficients(&self) -> Coefficients<f64> {
         self.coefficients
@@ -141,7 +141,7 @@ impl Nominal {
         self.coefficients.rest_angle
     }
 
-    /// Torque per unit of input.
+    /// Torque (N m) or force (N) per unit of input; with an inertia of 1, acceleration in rad/s² or m/s² per unit of input.
     #[must_use]
     pub fn input_gain(&self) -> f64 {
         self.coefficients.input_gain

@@ -123,6 +123,6 @@ mod tests {
         let known = KnownEffect { active, recalibrate: false };
         let nominal = Nominal::new(1.0, 0.1, 8.0, 0.0).unwrap();
         let error = NominalSimulator::new(nominal, vec![known, known]).unwrap_err();
-        assert_eq!(error.to_string(), "`coulomb_friction` is given twice; add its parameters up in one");
+        assert_eq!(error.to_string(), "`coulomb_friction` is given twice; combine the two into one");
     }
 }

@@ -90,7 +90,7 @@ impl System {
         &self.effects
     }
 
-    /// Number of hidden state variables.
+    /// Number of hidden state variables of all effects together, such as the states of hysteresis and of a second body.
     #[must_use]
     pub fn hidden_states(&self) -> usize {
         self.effects.iter().map(|active| active.effect().description().hidden_states).sum()
@@ -137,6 +137,7 @@ impl System {
     }
 
     pub(crate) fn input_delay(&self) -> f64 {
+        // Without the effect the input arrives at once.
         self.field().terms.iter().find_map(|term| term.effect.input_delay(&term.values)).unwrap_or(0.0)
     }
 }
@@ -195,6 +196,7 @@ impl Field<f64> {
     /// torques that cancel is rounding. At rest only.
     pub(crate) fn balance(&self, state: &State<f64>) -> f64 {
         let torque = self.over::<Rounded>().torque(&state.over(), &self.moving(state, 0.0));
+        // Without dry friction nothing is held, and only rounding is left.
         BALANCE * self.holding_torque().unwrap_or(0.0) + ROUNDING * torque.error
     }
 
@@ -239,6 +241,7 @@ pub(crate) struct Drive<'a> {
 
 impl<'a> Drive<'a> {
     pub(crate) fn new(input: Option<&'a Input>, gain: f64, delay: f64, time: f64) -> Self {
+        // Without an input there is no piece to count.
         let index = input.map_or(0, |input| input.piece_index(time - delay));
         Self { input, index, gain, delay }
     }

@@ -276,7 +276,7 @@ fn impossible_parameters_are_named_with_their_range() {
         (plain, ("stribeck_friction", &[0.5, 0.4, 1.0]), "`static_torque` is 0.4, but must be at least 0.5"),
         (plain, ("backlash", &[0.31]), "the dead zone of `backlash`, ±0.31, is wider than the release, 0.3"),
         (plain, ("end_stop", &[0.0, 1e4, 0.1]), "`angle` is 0, but must be above or below 0"),
-        (plain, ("sensor_lag", &[0.1]), "`sensor_lag` belongs to the measuring chain"),
+        (plain, ("sensor_lag", &[0.1]), "`sensor_lag` belongs to the measurement chain"),
         (plain, ("gravity", &[1.0]), "`gravity` takes 2 values, not 1"),
         (plain, ("columb_friction", &[1.0]), "unknown effect `columb_friction`; known are coulomb_friction"),
     ];
@@ -285,5 +285,5 @@ fn impossible_parameters_are_named_with_their_range() {
         assert!(message.contains(expected), "no `{expected}` in: {message}");
     }
     let twice = refusal(plain, &[("coulomb_friction", &[0.1]), ("coulomb_friction", &[0.2])]);
-    assert_eq!(twice, "`coulomb_friction` is given twice; add its parameters up in one");
+    assert_eq!(twice, "`coulomb_friction` is given twice; combine the two into one");
 }

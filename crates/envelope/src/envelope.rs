@@ -51,6 +51,7 @@ impl Envelope {
                 remedy: "Expected finite peaks at increasing times and a positive frequency.".to_owned(),
             });
         }
+        // There are three at least: checked above.
         let first = times_s.first().copied().unwrap_or_default();
         let times_s = times_s.into_iter().map(|time| time - first).collect();
         let ratio = RatioDefinition::default();
@@ -90,6 +91,14 @@ impl Envelope {
         &self.times_s
     }
 
+    /// Time from the first peak to the last one, in seconds, above 0.
+    #[must_use]
+    pub fn duration_s(&self) -> f64 {
+        debug_assert!(self.len() >= FEWEST_PEAKS, "checked when it was made");
+        // Never absent: asserted above.
+        self.times_s.last().copied().unwrap_or(0.0)
+    }
+
     /// Natural logarithms of the peaks' amplitudes, the amplitude in the record's unit.
     #[must_use]
     pub fn log_amplitudes(&self) -> &[f64] {
@@ -102,7 +111,8 @@ impl Envelope {
         self.omega_rad_s
     }
 
-    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it. It grows as 1/A.
+    /// Standard error of each ln A from the sensor's noise, where the pipeline knows it: one entry a peak, above 0. It grows
+    /// as 1/A.
     #[must_use]
     pub fn log_std_errors(&self) -> Option<&[f64]> {
         self.log_std_errors.as_deref()

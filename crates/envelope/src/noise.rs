@@ -17,6 +17,6 @@ pub fn noise_level(values: &[f64]) -> f64 {
             _ => None,
         })
         .collect();
-    // The median size of a Gaussian is 0.6745 standard deviations.
+    // The median size of a Gaussian is 0.6745 standard deviations. Fewer than five values tell no noise.
     median(sizes).unwrap_or(0.0) / 0.674_489_750_196_081_7 / 70_f64.sqrt()
 }

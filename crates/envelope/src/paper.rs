@@ -42,20 +42,8 @@ impl PaperPipeline {
     /// [`EnvelopeError`]: fewer than three peaks, a peak below the rest position, a grid or a smoothing
     /// window that does not fit.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
-        let first = clock.times_s.first().copied().unwrap_or_default();
-        let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
         let step = self.interpolation_step_s;
-        let duration = times.last().copied().unwrap_or_default();
-        if duration / step > MOST_POINTS as f64 {
-            return Err(EnvelopeError::GridTooFine {
-                duration_s: duration,
-                step_s: step,
-                points: duration / step,
-                most: MOST_POINTS,
-            });
-        }
-        let grid = resample(&times, record.values(), step);
-        let mut smooth = savitzky_golay(&grid, self.smoothing_window, self.smoothing_order)?;
+        let mut smooth = self.smooth(record, clock)?;
 
         // At least one point, at most all of them. The product is a rounding error above a whole number
         // for some lengths, which must not add a point.
@@ -86,7 +74,9 @@ impl PaperPipeline {
         let peak_times: Vec<f64> = peaks.iter().map(|&peak| peak as f64 * step).collect();
         let mut log_amplitudes = Vec::with_capacity(peaks.len());
         for ((number, &peak), &time_s) in peaks.iter().enumerate().zip(&peak_times) {
-            let amplitude = smooth.get(peak).copied().unwrap_or_default();
+            debug_assert!(peak < smooth.len(), "peak {peak} of {} values", smooth.len());
+            // Never absent: asserted above; and an amplitude of 0 is refused.
+            let amplitude = smooth.get(peak).copied().unwrap_or(0.0);
             if amplitude <= 0.0 {
                 return Err(EnvelopeError::AmplitudeNotPositive {
                     number: number + 1,
@@ -97,8 +87,11 @@ impl PaperPipeline {
             }
             log_amplitudes.push(amplitude.ln());
         }
-        let period_s = median(differences(&peak_times, 1)).unwrap_or_default();
-        let first_peak_s = peak_times.first().copied().unwrap_or_default();
+        debug_assert!(peak_times.len() >= FEWEST_PEAKS, "fewer are refused above");
+        // Never absent: asserted above.
+        let period_s = median(differences(&peak_times, 1)).unwrap_or(0.0);
+        // Likewise.
+        let first_peak_s = peak_times.first().copied().unwrap_or(0.0);
         Ok(Extraction {
             envelope: Envelope::new(peak_times, log_amplitudes, TAU / period_s)?,
             first_peak_s,
@@ -106,5 +99,23 @@ impl PaperPipeline {
             offset,
             samples: smooth.len(),
         })
+    }
+
+    /// The record on an even grid from its first sample on, smoothed.
+    fn smooth(&self, record: &Record, clock: &Clock) -> Result<Vec<f64>, EnvelopeError> {
+        let first = clock.start_s();
+        let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
+        let step = self.interpolation_step_s;
+        // A clock lies over two samples at least.
+        let duration = times.last().copied().unwrap_or_default();
+        if duration / step > MOST_POINTS as f64 {
+            return Err(EnvelopeError::GridTooFine {
+                duration_s: duration,
+                step_s: step,
+                points: duration / step,
+                most: MOST_POINTS,
+            });
+        }
+        savitzky_golay(&resample(&times, record.values(), step), self.smoothing_window, self.smoothing_order)
     }
 }

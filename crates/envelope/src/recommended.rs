@@ -71,6 +71,7 @@ impl RecommendedPipeline {
     /// [`EnvelopeError::TooFewPeaks`] for fewer than three turning points above the noise.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let values = record.values();
+        // Values on no lattice are not rounded.
         let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
         let noise = noise_level(values).max(quantum / 12_f64.sqrt());
         let floor = self.floor_in_noise * noise;
@@ -116,9 +117,9 @@ impl RecommendedPipeline {
         let errors = log_std_errors(&decay, offset, noise, quantum);
         // Turning points on the same side are two apart.
         let period_s = median(differences(&times, 2)).unwrap_or(coarse_period);
-        let start = clock.times_s.first().copied().unwrap_or_default();
+        let first = decay.first().map(|turn| turn.time).ok_or_else(|| too_few(0))?;
         Ok(Extraction {
-            first_peak_s: times.first().copied().unwrap_or_default() - start,
+            first_peak_s: first - clock.start_s(),
             envelope: Envelope::new(times, log_amplitudes, TAU / period_s)?
                 .with_log_std_errors(errors)
                 .with_ratio(RatioDefinition::LogarithmicDecrement),
@@ -186,9 +187,9 @@ fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64
     if scale <= 0.0 {
         return None;
     }
-    let design = DMatrix::from_fn(values.len(), order + 1, |row, power| {
-        times.get(row).map_or(0.0, |time| ((time - center) / scale).powi(power as i32))
-    });
+    let powers = (0..=order as i32)
+        .flat_map(|power| times.iter().map(move |time| ((time - center) / scale).powi(power)));
+    let design = DMatrix::from_iterator(values.len(), order + 1, powers);
     // Without a limit the decomposition of what is not finite never ends.
     let decomposition = design.clone().try_svd(true, true, 5.0 * f64::EPSILON, MOST_SWEEPS)?;
     let solution = decomposition.solve(&DVector::from_row_slice(values), 1e-12).ok()?;
@@ -263,6 +264,7 @@ fn free_decay(turns: &[Turn], center: f64, floor: f64, period: f64) -> Vec<Turn>
         .iter()
         .enumerate()
         .max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)))
+        // Without turning points none is left out.
         .map_or(0, |(index, _)| index);
     let turns: Vec<Turn> = turns.iter().skip(largest).copied().collect();
     let is_above_floor = |at: usize| {

@@ -36,6 +36,7 @@ pub fn savitzky_golay(values: &[f64], window: usize, order: usize) -> Result<Vec
         .windows(window)
         .map(|part| part.iter().zip(&center).map(|(value, weight)| value * weight).sum::<f64>());
     let end = |part: Option<&[f64]>| -> Vec<f64> {
+        // Both ends are there: a window that is longer than the values was refused.
         let fitted = &projection * DVector::from_row_slice(part.unwrap_or_default());
         fitted.iter().copied().collect()
     };

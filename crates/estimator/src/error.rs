@@ -17,7 +17,7 @@ pub enum FitError {
     },
     /// The envelope has more peaks than this method is allowed to spend its time on.
     #[error(
-        "{estimator} takes at most {most} peaks, its time going with their cube; the envelope has {found}: \
+        "{estimator} takes at most {most} peaks, since its time grows with their cube; the envelope has {found}: \
          thin the envelope or raise estimator.most_peaks"
     )]
     TooManyPeaks {

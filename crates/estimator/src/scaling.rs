@@ -23,7 +23,7 @@ impl Scaling {
     /// [`FitError::NoSpread`] where the logarithms differ by their rounding only, or where they lie so
     /// close in time that no rate can be written as a double.
     pub fn of(envelope: &Envelope) -> Result<Self, FitError> {
-        let duration = envelope.times_s().last().copied().unwrap_or_default();
+        let duration = envelope.duration_s();
         let logs = envelope.log_amplitudes();
         let count = logs.len() as f64;
         let mean = logs.iter().sum::<f64>() / count;

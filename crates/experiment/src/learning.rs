@@ -203,7 +203,7 @@ const PROBLEM: &[Field] = &[
         key: "remove_mean",
         kind: Kind::Boolean,
         default: Default::Boolean(false),
-        meaning: "Takes the mean of the observed column and of the input away: for channels with an arbitrary zero.",
+        meaning: "Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero.",
         ..PLAIN
     },
     Field {

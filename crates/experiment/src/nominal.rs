@@ -211,13 +211,8 @@ pub fn resolve_nominal(document: &Document) -> Result<StatedNominal, SettingsErr
     let nominal = nominal(&own, table, &keys)?;
     let known = effects.iter().zip(&parameters).map(|((table, effect), (parameters, _))| {
         let EffectKeys { recalibrate } = resolved.section(table)?;
-        let value = |name: &str| {
-            let key = format!("{parameters}.{name}");
-            let setting = resolved.settings().iter().find(|setting| setting.key() == key);
-            setting.and_then(|setting| setting.value.as_ref()?.as_float()).unwrap_or_default()
-        };
-        let values: Vec<f64> =
-            effect.description().parameters.iter().map(|parameter| value(parameter.name)).collect();
+        let keys = effect.description().parameters.iter().map(|parameter| dotted(parameters, parameter.name));
+        let values: Vec<f64> = keys.map(|key| resolved.float(&key)).collect::<Result<_, _>>()?;
         let active = Active::of(*effect, &values).map_err(|error| refused(error.to_string()))?;
         Ok(KnownEffect { active, recalibrate })
     });
@@ -256,9 +251,9 @@ fn effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> 
                 expected: format!("one of {}", ids().join(", ")),
             });
         };
-        let id = leaf.value.as_str().unwrap_or_default();
-        let Ok(effect) = Effect::find(id) else {
-            return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", id, ids()));
+        let id = leaf.value.as_str().map_or_else(|| leaf.value.to_string(), str::to_owned);
+        let Ok(effect) = Effect::find(&id) else {
+            return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", &id, ids()));
         };
         if found.iter().any(|(_, other)| *other == effect) {
             let expected = "each effect once";
@@ -286,10 +281,15 @@ fn parameter_fields(effect: Effect, units: Units) -> Vec<Field> {
 ///
 /// # Errors
 /// Where it states two of them, or none that it has to.
-fn one_of(document: &Document, table: &str, keys: &[&str]) -> Result<String, SettingsError> {
+fn one_of<const N: usize>(
+    document: &Document,
+    table: &str,
+    keys: &[&str; N],
+) -> Result<String, SettingsError> {
     let mut stated = keys.iter().filter(|key| document.get(&dotted(table, key)).is_some());
     let alternatives = keys.join(", ");
     let Some(first) = stated.next() else {
+        // A list of alternatives has a first one.
         let key = keys.first().copied().unwrap_or_default();
         let field = FIELDS.iter().find(|field| field.key == key);
         return Err(SettingsError::Missing {
@@ -329,7 +329,8 @@ fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, Set
     let inertia = given(keys.inertia, "inertia", 1.0)?;
     let omega = keys.natural_frequency_rad_s.or(keys.natural_frequency.map(|frequency| TAU * frequency));
     let omega = omega.or(keys.period.map(|period| TAU / period));
-    let stiffness = keys.stiffness.or(omega.map(|omega| inertia * omega * omega)).unwrap_or_default();
+    let stiffness =
+        keys.stiffness.or(omega.map(|omega| inertia * omega * omega)).ok_or_else(|| missing("stiffness"))?;
     if !by_damping && stiffness == 0.0 {
         let leaf = document.get(&dotted(table, "damping_ratio"));
         let found = leaf.map_or_else(String::new, |leaf| leaf.value.to_string());
@@ -338,7 +339,10 @@ fn nominal(document: &Document, table: &str, keys: &Keys) -> Result<Nominal, Set
         return Err(bad_value(origin, &dotted(table, "damping_ratio"), &found, expected));
     }
     let critical = 2.0 * (stiffness * inertia).sqrt();
-    let damping = keys.damping.or(keys.damping_ratio.map(|ratio| ratio * critical)).unwrap_or_default();
+    let damping = keys
+        .damping
+        .or(keys.damping_ratio.map(|ratio| ratio * critical))
+        .ok_or_else(|| missing("damping"))?;
     let rest_angle = given(keys.rest_angle, "rest_angle", 0.0)?;
     let input_gain = keys.input_gain;
     let made =

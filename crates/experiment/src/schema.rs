@@ -110,7 +110,7 @@ pub(crate) const DATA: &[Field] = &[
         key: "clock",
         kind: Kind::Choice(ClockChoice::NAMES),
         default: Default::Text("auto"),
-        meaning: "Which clock to believe: the stamps, an even one in the sample index, or whichever the stamps speak for.",
+        meaning: "Clock to use: the stamps, an even one in the sample index, or whichever stamps and values support.",
         ..PLAIN
     },
     Field {

@@ -170,7 +170,7 @@ fn latex_unit(unit: &str) -> String {
         match letter {
             ' ' => text.push_str("\\,"),
             '^' => {
-                let power = letters.next().unwrap_or_default();
+                let power = letters.next().map_or_else(String::new, String::from);
                 let _ = write!(text, "$^{power}$");
             }
             other => text.push(other),

@@ -114,6 +114,7 @@ pub fn urdf(repaired: &Repaired) -> String {
         text,
         "  <parent link=\"base\"/>\n  <child link=\"body\"/>\n{limit}  <dynamics damping=\"{:?}\" friction=\"{:?}\"/>\n</joint>\n",
         nominal.damping(),
+        // A joint without dry friction has the format's own default.
         terms.friction.unwrap_or(0.0)
     );
     text

@@ -160,26 +160,26 @@ impl JointTerms {
             Self { friction: None, rest: nominal.rest_angle(), weight: None, left_out: left_out(repaired) };
         for active in repaired.system.effects() {
             let Effect::System(effect) = active.effect() else { continue };
-            let value = |name: &str| active.value(name).unwrap_or_default();
-            match effect.export().joint {
-                Joint::Friction(torque) => terms.friction = Some(value(torque)),
+            let value = |name: &str| active.value(name);
+            let placed = match effect.export().joint {
+                Joint::Friction(torque) => value(torque).map(|torque| terms.friction = Some(torque)),
                 Joint::SpringShift(torque) if nominal.stiffness() > 0.0 => {
-                    terms.rest += value(torque) / nominal.stiffness();
+                    value(torque).map(|torque| terms.rest += torque / nominal.stiffness())
                 }
-                Joint::Weight { torque, angle }
-                    if nominal.coordinate() == dynamics::Coordinate::Angle && value(torque) > 0.0 =>
-                {
-                    terms.weight = Some((value(torque), value(angle)));
+                Joint::Weight { torque, angle } if nominal.coordinate() == dynamics::Coordinate::Angle => {
+                    let weight = value(torque).filter(|torque| *torque > 0.0).zip(value(angle));
+                    weight.map(|weight| terms.weight = Some(weight))
                 }
-                _ => {
-                    let description = active.effect().description();
-                    terms.left_out.push(format!(
-                        "{} has no place in a joint: {} ({})",
-                        description.title,
-                        description.equation,
-                        values(repaired, active)
-                    ));
-                }
+                _ => None,
+            };
+            if placed.is_none() {
+                let description = active.effect().description();
+                terms.left_out.push(format!(
+                    "{} has no place in a joint: {} ({})",
+                    description.title,
+                    description.equation,
+                    values(repaired, active)
+                ));
             }
         }
         terms

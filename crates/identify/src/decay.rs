@@ -43,8 +43,8 @@ fn half_period(envelope: &Envelope, rough: f64) -> Option<Estimated> {
     let numbers: Vec<f64> = times
         .windows(2)
         .scan(0.0, |number, pair| {
-            *number +=
-                pair.last().zip(pair.first()).map_or(0.0, |(next, one)| ((next - one) / rough).round());
+            let [one, next] = pair else { return None };
+            *number += ((next - one) / rough).round();
             Some(*number)
         })
         .collect();

@@ -34,7 +34,7 @@ pub enum Basis {
 }
 
 impl LinearOscillator {
-    /// Natural frequency ω₀/2π, in Hz; `None` without a restoring torque.
+    /// Undamped natural frequency ω₀/2π in Hz, with its standard error to first order; `None` without a restoring torque.
     #[must_use]
     pub fn natural_frequency_hz(&self) -> Option<Estimated> {
         let omega = self.omega()?;
@@ -43,7 +43,8 @@ impl LinearOscillator {
         Some(Estimated { value: omega, std_error }.times(1.0 / std::f64::consts::TAU))
     }
 
-    /// Damping ratio ζ; `None` without a restoring torque.
+    /// Damping ratio ζ = damping/(2ω₀), without unit, with the standard error of the damping alone; `None` without a restoring
+    /// torque.
     #[must_use]
     pub fn damping_ratio(&self) -> Option<Estimated> {
         // The frequency is known far better than the damping, so that its error adds nothing.

@@ -55,12 +55,11 @@ type Row = (f64, [f64; 4]);
 
 /// Damping, stiffness, shift and gain by least squares, each with its standard error; 0 for what is not fitted.
 fn fit(rows: &[Row], columns: usize, spring: bool) -> Result<[Estimated; 4], IdentifyError> {
+    debug_assert!(columns <= 4, "{columns} columns of 4");
     let free: Vec<usize> = (0..columns).filter(|column| spring || *column != 1).collect();
-    let entry = |row: usize, column: usize| {
-        let at = free.get(column).copied().unwrap_or_default();
-        rows.get(row).and_then(|(_, entries)| entries.get(at)).copied().unwrap_or_default()
-    };
-    let mut design = DMatrix::from_fn(rows.len(), free.len(), entry);
+    let entries =
+        free.iter().flat_map(|&at| rows.iter().filter_map(move |(_, entries)| entries.get(at).copied()));
+    let mut design = DMatrix::from_iterator(rows.len(), free.len(), entries);
     // Columns of size 1, so that the decomposition's cut-off means the same for each.
     let sizes: Vec<f64> = design.column_iter().map(|column| column.norm()).collect();
     if sizes.iter().any(|size| !size.is_finite() || *size <= 0.0) {
@@ -117,6 +116,7 @@ impl<'a> Samples<'a> {
     }
 
     fn duration(&self) -> f64 {
+        // Without samples no time passes.
         self.times.first().zip(self.times.last()).map_or(0.0, |(first, last)| last - first)
     }
 

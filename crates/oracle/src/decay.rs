@@ -35,7 +35,7 @@ pub struct DecayFit {
 }
 
 impl DecayFit {
-    /// The line ln A₀ − λ·t at a time in seconds.
+    /// Value of the line ln A₀ − λ·t at a time in seconds after the first peak; the amplitude in the record's unit.
     #[must_use]
     pub fn log_amplitude_at(&self, time_s: f64) -> f64 {
         self.log_amplitude - self.decay_rate * time_s

@@ -21,7 +21,7 @@ pub enum ClockChoice {
     Host,
     /// Even in the sample index, rate by regression.
     UniformIndex,
-    /// Whichever the stamps themselves speak for.
+    /// Whichever the stamps and the values support.
     #[default]
     Auto,
 }
@@ -97,11 +97,13 @@ impl Clock {
     /// [`Fault::NoTimePasses`] where all stamps are equal.
     pub fn new(record: &Record, choice: ClockChoice) -> Result<Self, Fault> {
         let stamps = record.stamps_s();
+        // A record has samples: checked when it was made.
         let first = stamps.first().copied().unwrap_or_default();
         let ends = group_ends(stamps);
         if ends.len() < 2 {
             return Err(Fault::NoTimePasses { stamp: first });
         }
+        // Stamps that lie on no lattice are not rounded.
         let rounding = stamp_rounding(stamps).unwrap_or(0.0);
         let numbers = Numbers::with_lost(&ends, record.values(), stamps, rounding)
             .unwrap_or_else(|| Numbers::plain(&ends, stamps.len()));
@@ -132,6 +134,14 @@ impl Clock {
             sample_rate_std_error_hz: line.slope_std_error() * rate * rate,
             statistics,
         })
+    }
+
+    /// Time of the first sample, in seconds.
+    #[must_use]
+    pub fn start_s(&self) -> f64 {
+        debug_assert!(!self.times_s.is_empty(), "a clock lies over two samples at least");
+        // Never absent: asserted above.
+        self.times_s.first().copied().unwrap_or(0.0)
     }
 }
 

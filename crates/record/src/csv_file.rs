@@ -63,6 +63,7 @@ impl<'a> Table<'a> {
     fn values(&self, at: usize) -> Vec<&'a str> {
         let (mut known, mut found) = (BTreeSet::new(), Vec::new());
         for (_, row) in &self.layout.rows {
+            // A row that ends before the column has an empty cell there.
             let value = self.layout.dialect.split(row).get(at).copied().unwrap_or_default();
             if !value.is_empty() && known.insert(value) {
                 found.push(value);
@@ -91,6 +92,7 @@ impl<'a> Table<'a> {
             column: self.title(at).to_owned(),
             count: values.len(),
             values: values.join(", "),
+            // Without a value there is no example.
             example: values.first().copied().unwrap_or_default().to_owned(),
         })
     }
@@ -246,6 +248,7 @@ fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result
     .into_iter()
     .flatten()
     .collect();
+    // A value column is always among them.
     let needed = columns.iter().max().map_or(0, |at| at + 1);
     for (number, (line, row)) in rows.iter().enumerate() {
         if row.len() < needed {
@@ -254,6 +257,7 @@ fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result
         if row.iter().skip(width).any(|field| !field.is_empty()) {
             return Err(Fault::ExtraFields { line: *line, found: row.len(), expected: width });
         }
+        // A row that ends before the column has an empty cell there.
         let cell = |at: usize| row.get(at).copied().unwrap_or_default();
         let missing: Vec<usize> = columns.iter().copied().filter(|at| is_missing(cell(*at))).collect();
         let read =

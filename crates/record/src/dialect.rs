@@ -91,6 +91,7 @@ impl Dialect {
 }
 
 fn cell(text: Option<&str>) -> &str {
+    // A cell that is not there is an empty one.
     let text = text.unwrap_or_default().trim();
     text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).map_or(text, str::trim)
 }
@@ -101,6 +102,7 @@ fn blanks(line: &str) -> Vec<&str> {
     let mut end = 0;
     for (at, sign) in line.char_indices().chain([(line.len(), ' ')]) {
         if sign.is_whitespace() && depth <= 0 {
+            // The end of the line leaves nothing behind it.
             let rest = line.get(at..).unwrap_or_default().trim_start();
             if let Some(from) = start.filter(|_| !rest.starts_with(['[', '('])) {
                 cells.push(cell(line.get(from..end)));
@@ -152,16 +154,17 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     let all = || text.lines().zip(1_u64..).map(|(line, number)| (number, line));
     let lines: Vec<(u64, &str)> =
         all().filter(|(_, line)| !line.trim().is_empty() && comment(line).is_none()).collect();
-    let last = lines.get(lines.len().saturating_sub(TOLD_FROM).max(usize::from(lines.len() > 1))..);
-    let dialect = tell(last.unwrap_or_default());
-    let width = usual_width(dialect, last.unwrap_or_default());
-    let usual = usual_numbers(dialect, last.unwrap_or_default());
+    let told_from = lines.len().saturating_sub(TOLD_FROM).max(usize::from(lines.len() > 1));
+    // An empty text has no lines to tell from.
+    let last = lines.get(told_from..).unwrap_or_default();
+    let dialect = tell(last);
+    let (width, usual) = (usual_width(dialect, last), usual_numbers(dialect, last));
     let is_data = |line: &str| {
         let count = dialect.numbers(&dialect.split(line));
         count > 0 && 2 * count > usual
     };
     let first = lines.iter().position(|(_, line)| is_data(line)).unwrap_or(lines.len());
-    let above = lines.get(..first).unwrap_or_default();
+    let (above, _) = lines.split_at(first);
     let is_title = |line: &str, width: usize| {
         let cells = dialect.split(line);
         dialect.numbers(&cells) == 0
@@ -182,12 +185,15 @@ pub(crate) fn layout(text: &str) -> Result<Layout<'_>, Fault> {
     }
     let (line, header) = row(at);
     let after = at + 1 + usize::from(units.is_some());
+    // A header may be the last line.
     let rows = lines.get(after..).unwrap_or_default();
     // A rule of dashes below the header.
     let is_rule =
         |line: &str| line.trim().chars().all(|sign| "-=_+|".contains(sign)) && line.trim().len() > 2;
-    let rows =
-        rows.get(usize::from(rows.first().is_some_and(|(_, line)| is_rule(line)))..).unwrap_or_default();
+    let rows = match rows {
+        [(_, line), below @ ..] if is_rule(line) => below,
+        rows => rows,
+    };
     Ok(Layout { dialect, line, titles: dialect.split(header), units, preamble: at, rows: rows.to_vec() })
 }
 
@@ -198,6 +204,7 @@ fn is_unit(cell: &str) -> bool {
 
 /// Cells up to the last that is not empty.
 fn filled(cells: &[&str]) -> usize {
+    // Where all are empty none is filled.
     cells.iter().rposition(|cell| !cell.is_empty()).map_or(0, |at| at + 1)
 }
 
@@ -257,6 +264,7 @@ fn most_common(counts: impl Iterator<Item = usize>) -> usize {
     for count in counts {
         *tally.entry(count).or_insert(0_usize) += 1;
     }
+    // Without lines no count is usual.
     tally.into_iter().max_by_key(|(count, lines)| (*lines, *count)).map_or(0, |(count, _)| count)
 }
 

@@ -59,6 +59,7 @@ fn columns(text: &str, source: &Source) -> Vec<ColumnLook> {
     let reading = &source.reading;
     let roles =
         [("time", reading.time.as_ref()), ("value", Some(&reading.value)), ("input", reading.input.as_ref())];
+    // A text that is no table was refused before it is looked at.
     let columns = Table::new(text).map(|table| table.columns).unwrap_or_default();
     let look = |column: crate::roles::Column| {
         let role =

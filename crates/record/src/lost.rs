@@ -68,33 +68,10 @@ impl Numbers {
         let grouped = ends.len() < values.len();
         // A record may end within a group, whose last sample is not there.
         let whole = ends.len() - usize::from(grouped);
-        let lines = |ends: &[(f64, f64)]| {
-            let ends = ends.get(..whole).unwrap_or_default();
-            Bend::of(&Line::through(ends), ends)
-        };
-        let before = lines(ends);
-        let mut best: Option<(f64, Ends, Bend)> = None;
-        let starts = intervals(ends.get(..whole)?);
-        for (mut interval, takes_back) in starts.iter().flat_map(|start| [(*start, true), (*start, false)]) {
-            let mut counted = Vec::new();
-            for gain in GAINS {
-                counted = count(ends, interval, gain, takes_back, whole);
-                interval = Line::through(counted.get(..whole)?).slope;
-            }
-            for _ in 0..MOST_MENDED {
-                shift(&mut counted, &sizes, whole);
-                if !mend(&mut counted, &sizes, whole) {
-                    break;
-                }
-            }
-            let after = lines(&counted);
-            let squares = after.line.squares() / after.line.slope.powi(2);
-            if best.as_ref().is_none_or(|best| squares < best.0) {
-                best = Some((squares, counted, after));
-            }
-        }
-        let (_, counted, after) = best?;
+        let before = bend(ends, whole);
+        let (counted, after) = best_count(ends, &sizes, whole)?;
         let interval = after.line.slope;
+        // Asked for groups of `counted` only.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let gaps: Vec<usize> = (1..counted.len())
             .filter(|&at| number(at) - number(at - 1) > sizes.get(at - 1).copied().unwrap_or(1.0) + 0.5)
@@ -120,6 +97,40 @@ impl Numbers {
     }
 }
 
+/// The line with a bend through the whole groups.
+fn bend(ends: &[(f64, f64)], whole: usize) -> Bend {
+    debug_assert!(whole <= ends.len(), "{whole} whole groups of {}", ends.len());
+    // Never absent: asserted above.
+    let ends = ends.get(..whole).unwrap_or_default();
+    Bend::of(&Line::through(ends), ends)
+}
+
+/// The count of samples that lies nearest to an even clock which may drift, with that clock; from several first
+/// guesses of the interval.
+fn best_count(ends: &[(f64, f64)], sizes: &[f64], whole: usize) -> Option<(Ends, Bend)> {
+    let mut best: Option<(f64, Ends, Bend)> = None;
+    let starts = intervals(ends.get(..whole)?);
+    for (mut interval, takes_back) in starts.iter().flat_map(|start| [(*start, true), (*start, false)]) {
+        let mut counted = Vec::new();
+        for gain in GAINS {
+            counted = count(ends, interval, gain, takes_back, whole);
+            interval = Line::through(counted.get(..whole)?).slope;
+        }
+        for _ in 0..MOST_MENDED {
+            shift(&mut counted, sizes, whole);
+            if !mend(&mut counted, sizes, whole) {
+                break;
+            }
+        }
+        let after = bend(&counted, whole);
+        let squares = after.line.squares() / after.line.slope.powi(2);
+        if best.as_ref().is_none_or(|best| squares < best.0) {
+            best = Some((squares, counted, after));
+        }
+    }
+    best.map(|(_, counted, after)| (counted, after))
+}
+
 /// Moves lost samples between neighboring groups: where a burst lost its last ones, its last sample waited
 /// for longer than an interval, and the loss seems to belong to the next burst.
 fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
@@ -127,6 +138,7 @@ fn shift(counted: &mut Ends, sizes: &[f64], whole: usize) {
     let line = Line::through(ends);
     let late: Vec<f64> = line.residuals.iter().map(|residual| residual / line.slope).collect();
     for (at, late) in late.iter().enumerate().take(whole.saturating_sub(1)).skip(1) {
+        // Asked for whole groups only, which are fewer than all.
         let number = |at: usize| counted.get(at).map_or(0.0, |end| end.0);
         let lost = |at: usize| number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         let more =
@@ -158,6 +170,11 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
     let mut sums = [0.0; 4];
     let mut best = (-2.0 * (whole as f64).ln() / 12.0, 0, 0.0);
     for at in (1..whole).rev() {
+        debug_assert!(
+            [&residuals, &linear, &bent].iter().all(|series| series.len() == whole),
+            "one entry a group"
+        );
+        // Never absent: asserted above.
         let here = |series: &[f64]| series.get(at).copied().unwrap_or_default();
         let terms = [here(&residuals) / interval, constant, here(&linear), here(&bent) / length];
         for (sum, term) in sums.iter_mut().zip(terms) {
@@ -165,6 +182,7 @@ fn mend(counted: &mut Ends, sizes: &[f64], whole: usize) -> bool {
         }
         let [residual, level, slope, curve] = sums;
         let step = (whole - at) as f64 - level * level - slope * slope - curve * curve;
+        // Asked for whole groups only, which are fewer than all.
         let number = |at: usize| ends.get(at).map_or(0.0, |end| end.0);
         let lost = number(at) - number(at - 1) - sizes.get(at - 1).copied().unwrap_or(1.0);
         for more in [1.0, -1.0] {
@@ -239,8 +257,9 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], values: &[f64], samples: u
         let mut early = 0;
         if lost > 0.5 && size > 1 {
             let from = numbers.len().saturating_sub(4);
-            let past: Vec<f64> = numbers.get(from..).unwrap_or_default().to_vec();
+            let past: Vec<f64> = numbers.iter().skip(from).copied().collect();
             let to = (numbers.len() + size + 4).min(values.len());
+            // Beyond the last sample nothing is seen.
             let seen = values.get(from..to).unwrap_or_default();
             let roughness = |early: usize| {
                 let next = (1..=4).map(|at| number.0 + f64::from(at));
@@ -250,6 +269,7 @@ fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], values: &[f64], samples: u
             early = (0..=size)
                 .map(|early| (early, roughness(early)))
                 .min_by(|one, other| one.1.total_cmp(&other.1))
+                // There is always one: that all were lost before the group.
                 .map_or(0, |best| best.0);
         }
         numbers.extend(numbered(early));

@@ -51,6 +51,7 @@ impl Parsed {
     ) -> Result<(Record, Statements, Vec<String>, Reading), Fault> {
         let input = (!self.input.is_empty()).then_some(self.input);
         let quantity = options.quantity.unwrap_or(self.reading.quantity);
+        // Without samples no time passes.
         let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
         let rate_hz = (self.stamps_s.len().max(1) - 1) as f64 / span;
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;

@@ -111,7 +111,8 @@ impl Reading {
         parts.extend(self.filter.as_ref().map(|filter| format!("lines with {filter}")));
         parts.push(match (&self.time, self.sample_rate_hz) {
             (Some(time), _) => column("time", time),
-            (None, rate) => format!("no time column, laid out at {} Hz", rate.unwrap_or_default()),
+            (None, Some(rate)) => format!("no time column, laid out at {rate} Hz"),
+            (None, None) => "no time column".to_owned(),
         });
         parts.push(column("value", &self.value));
         parts.push(self.input.as_ref().map_or_else(|| "no input".to_owned(), |input| column("input", input)));

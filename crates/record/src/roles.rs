@@ -126,6 +126,7 @@ pub(crate) fn quantity(heading: &Heading, options: &ReadOptions) -> Quantity {
         .quantity
         .or(unit.map(|unit| quantity_of(unit.order())))
         .or(observed(heading).map(|(quantity, _)| quantity))
+        // Where neither a unit nor a name tells, the quantity is that of most logs.
         .unwrap_or_default()
 }
 

@@ -77,6 +77,7 @@ fn length(weights: &[f64; 5]) -> f64 {
 
 /// Σ cᵢ·yᵢ with weights scaled to Σ cᵢ² = 1.
 fn weighed(weights: &[f64; 5], values: &[f64]) -> f64 {
+    debug_assert_eq!(values.len(), weights.len(), "a weight for each of five values");
     // Relative to the first value, so that values at rest lie on the cubic exactly.
     let origin = values.first().copied().unwrap_or_default();
     let sum: f64 = weights.iter().zip(values).map(|(weight, value)| weight * (value - origin)).sum();

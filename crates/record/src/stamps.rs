@@ -71,6 +71,7 @@ pub(crate) fn statistics(
     let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
     let mut ordered = steps.clone();
     ordered.sort_by(f64::total_cmp);
+    // Two groups of stamps at least have a step between them.
     let median = ordered.get(ordered.len() / 2).copied().unwrap_or_default();
     let largest_group = ends
         .iter()
@@ -82,7 +83,9 @@ pub(crate) fn statistics(
         .fold(0.0, f64::max);
     let repeated = stamps.len() - ends.len();
     let rounding_s = stamp_rounding(stamps);
+    // Stamps that lie on no lattice are not rounded.
     let long = 1.5 * median + rounding_s.unwrap_or_default().min(0.5 * median);
+    debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
     // A record may end within a group, whose last sample is not there.
     let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
     let bend = Bend::of(&Line::through(whole), whole);

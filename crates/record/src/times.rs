@@ -32,6 +32,7 @@ impl Stamp {
         let Some(exact) = exact.filter(|_| value.abs() >= 1e6) else {
             return Some(Self { whole: 0, fraction: value });
         };
+        // Digits only, as was asked above, so that this is a number.
         let part = format!("0.{fraction}0").parse().unwrap_or(0.0);
         Some(Self { whole: exact, fraction: if value < 0.0 { -part } else { part } })
     }

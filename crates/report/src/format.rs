@@ -25,8 +25,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     let digits = digits.max(1);
     let exponent = exponent_after_rounding(value, digits);
     if is_plain(exponent) {
-        let decimals = usize::try_from(to_i32(digits) - 1 - exponent).unwrap_or(0);
-        fixed(value, decimals)
+        fixed(value, places(to_i32(digits) - 1 - exponent))
     } else {
         let mantissa = value / 10f64.powi(exponent);
         times_power(&fixed(mantissa, digits - 1), exponent)
@@ -204,10 +203,10 @@ pub(crate) fn tick(value: f64, low: f64, high: f64, step: f64) -> String {
     let largest = exponent_after_rounding(low.abs().max(high.abs()), 1);
     let finest = exponent_after_rounding(step, 1);
     if (-3..6).contains(&largest) {
-        return fixed(value, usize::try_from(-finest).unwrap_or(0));
+        return fixed(value, places(-finest));
     }
     let mantissa = value / 10f64.powi(largest);
-    let text = fixed(mantissa, usize::try_from(largest - finest).unwrap_or(0));
+    let text = fixed(mantissa, places(largest - finest));
     if value.abs() < step / 2.0 { "0".to_owned() } else { times_power(&text, largest) }
 }
 
@@ -216,7 +215,13 @@ pub(crate) fn tick(value: f64, low: f64, high: f64, step: f64) -> String {
 fn decimals_for(value: f64, std_error: f64) -> usize {
     let carried = MOST_DIGITS - 1 - exponent_after_rounding(value, 1);
     let wanted = if std_error > 0.0 { 1 - exponent_after_rounding(std_error, 2) } else { 7 };
-    usize::try_from(wanted.min(carried)).unwrap_or(0)
+    places(wanted.min(carried))
+}
+
+/// Decimal places, none where a number ends before its point.
+fn places(wanted: i32) -> usize {
+    // Only a negative number is none.
+    usize::try_from(wanted).unwrap_or(0)
 }
 
 /// The decimal exponent of a value once it is rounded to `digits` significant digits, so that
@@ -229,6 +234,7 @@ fn exponent_after_rounding(value: f64, digits: usize) -> i32 {
 /// `"1.5e-7"` to `("1.5", -7)`.
 fn split_exponent(text: &str) -> (&str, i32) {
     match text.split_once('e') {
+        // The program wrote it.
         Some((mantissa, exponent)) => (mantissa, exponent.parse().unwrap_or(0)),
         None => (text, 0),
     }

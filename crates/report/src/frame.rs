@@ -37,6 +37,27 @@ impl<'a> Frame<'a> {
         self
     }
 
+    /// The frame without warnings, next steps, pipelines, data and findings; its files are those of a run's folder.
+    pub(crate) fn bare(texts: &RunTexts<'a>, kicker: &'static str, verdict: Verdict, origin: Origin) -> Self {
+        Self {
+            hues: &Hue::ALL,
+            name: texts.name,
+            kicker,
+            verdict,
+            origin,
+            warnings: Vec::new(),
+            next: Vec::new(),
+            pipelines: Vec::new(),
+            data: Vec::new(),
+            findings: Vec::new(),
+            files: [
+                ("Resolved configuration (config.toml)", texts.config),
+                ("Environment (environment.json)", texts.environment),
+                ("Every number, unrounded (result.json)", texts.result),
+            ],
+        }
+    }
+
     pub(crate) fn new(
         texts: &RunTexts<'a>,
         kicker: &'static str,
@@ -46,21 +67,11 @@ impl<'a> Frame<'a> {
         pipelines: &'a [PipelineRow],
     ) -> Self {
         Self {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker,
-            verdict,
-            origin: verdict::origin(&data.origin),
             warnings: remarks::warnings(oracle),
-            next: Vec::new(),
             pipelines: tables::pipelines(pipelines),
             data: tables::data(data),
             findings: remarks::noticed(data),
-            files: [
-                ("Resolved configuration (config.toml)", texts.config),
-                ("Environment (environment.json)", texts.environment),
-                ("Every number, unrounded (result.json)", texts.result),
-            ],
+            ..Self::bare(texts, kicker, verdict, verdict::origin(&data.origin))
         }
     }
 }

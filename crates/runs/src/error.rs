@@ -50,8 +50,8 @@ pub enum RunError {
     },
     /// The log of events is not what was written.
     #[error(
-        "{}:{line}: the line has been changed since it was written: {problem}; bring the file back as it was, or \
-         begin anew in another folder",
+        "{}:{line}: the line has been changed since it was written: {problem}; restore the file, or \
+         start again in another folder",
         path.display()
     )]
     Log {

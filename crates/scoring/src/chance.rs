@@ -12,6 +12,7 @@ use statrs::distribution::{Beta, Binomial, ContinuousCDF, DiscreteCDF, StudentsT
 pub fn binomial_interval(successes: f64, trials: f64) -> [f64; 2] {
     let failures = trials - successes;
     let quantile = |a: f64, b: f64, p: f64| Beta::new(a, b).map(|beta| beta.inverse_cdf(p)).ok();
+    // No successes leave no distribution for the lower end, which is 0 then; likewise 1 for the upper.
     let low = quantile(successes, failures + 1.0, 0.025).unwrap_or(0.0);
     let high = quantile(successes + 1.0, failures, 0.975).unwrap_or(1.0);
     [low, high]

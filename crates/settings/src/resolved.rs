@@ -94,6 +94,20 @@ impl Resolved {
             .ok_or_else(|| unknown_key(key, Origin::Override(key.to_owned()), &self.settings))
     }
 
+    /// The number with a dotted key.
+    ///
+    /// # Errors
+    /// [`SettingsError::UnknownKey`] with the key that is spelled most alike; [`SettingsError::Declaration`] where the key
+    /// has no value or one that is no number, which no declaration of a number with a default or required admits.
+    pub fn float(&self, key: &str) -> Result<f64, SettingsError> {
+        let setting = self.setting(key)?;
+        let number = setting.value.as_ref().and_then(Value::as_float);
+        number.ok_or_else(|| SettingsError::Declaration {
+            section: setting.section.clone(),
+            problem: format!("`{key}` is no number"),
+        })
+    }
+
     /// Reads one section into a struct.
     ///
     /// # Errors

@@ -252,3 +252,13 @@ fn equal_values_have_equal_texts_wherever_they_were_written() {
         "fit.duration = 2.0\nfit.hidden = [16, 16]\nfit.mode = \"slow\"\nseed = 7\n"
     );
 }
+
+#[test]
+fn a_number_is_read_by_its_key_and_nothing_else_passes_for_one() {
+    let document = Document::parse("exp.toml", "[fit]\nduration = 2.5\n").unwrap();
+    let resolved = Resolved::new(&document, SECTIONS).unwrap();
+    assert_eq!(resolved.float("fit.duration").unwrap(), 2.5);
+    assert!(matches!(resolved.float("fit.duratoin"), Err(SettingsError::UnknownKey { .. })));
+    let text = resolved.float("fit.mode").unwrap_err();
+    assert!(text.to_string().contains("`fit.mode` is no number"), "{text}");
+}

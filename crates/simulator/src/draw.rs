@@ -2,7 +2,6 @@
 
 use crate::generate::generate;
 use crate::generation_error::GenerationError;
-use crate::number::Number;
 use crate::plan::{Plan, PlannedEffect};
 use crate::prior::Prior;
 use dynamics::chain::Chain;
@@ -35,21 +34,18 @@ impl Plan {
             .draw_effects(&seed.child("effects"))?
             .into_iter()
             .partition(|active| matches!(active.effect(), Effect::System(_)));
-        let noise = self.noise.first().map_or(0.0, |noise| noise.draw(&seed.child("sensor")));
+        let noise = self.noise.draw(&seed.child("sensor"));
         let chain = Chain::new(self.observed, noise, sensing)?;
         let actual = System::new(nominal, acting)?;
         let truths = (0..self.records)
             .map(|record| {
                 let name = format!("record {record}");
-                let mut start =
-                    self.start.iter().map(|number| number.draw(&seed.child(&name).child("start")));
+                let [position, velocity] =
+                    self.start.each_ref().map(|number| number.draw(&seed.child(&name).child("start")));
                 Truth {
                     schema: TRUTH_SCHEMA.to_owned(),
                     system: actual.clone(),
-                    start: Start {
-                        position: start.next().unwrap_or_default(),
-                        velocity: start.next().unwrap_or_default(),
-                    },
+                    start: Start { position, velocity },
                     excitation: self.excitation,
                     chain: chain.clone(),
                     sampling: self.sampling,
@@ -74,15 +70,9 @@ impl Plan {
     }
 
     fn draw_nominal(&self, seed: &Seed) -> Result<Nominal, GenerationError> {
-        let mut numbers = self.nominal.coefficients.iter().map(|number: &Number| number.draw(seed));
-        let mut next = || numbers.next().unwrap_or_default();
-        let coefficients = Coefficients {
-            inertia: next(),
-            damping: next(),
-            stiffness: next(),
-            rest_angle: next(),
-            input_gain: next(),
-        };
+        let [inertia, damping, stiffness, rest_angle, input_gain] =
+            self.nominal.coefficients.each_ref().map(|number| number.draw(seed));
+        let coefficients = Coefficients { inertia, damping, stiffness, rest_angle, input_gain };
         let nominal = Nominal::from_coefficients(coefficients)?.with_coordinate(self.nominal.coordinate);
         Ok(match self.nominal.sensor_resolution {
             Some(resolution) => nominal.with_sensor_resolution(resolution)?,

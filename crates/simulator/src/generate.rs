@@ -36,6 +36,7 @@ pub fn generate(truth: &Truth) -> Result<Record, GenerationError> {
         return refused("number of decimals", f64::from(most), "0 to 12");
     }
     let times: Vec<f64> = (0..sampling.samples).map(|index| index as f64 / sampling.rate_hz).collect();
+    // Fewer than two samples are refused below.
     let duration = times.last().copied().unwrap_or_default();
     let input = truth
         .excitation
@@ -115,6 +116,7 @@ pub fn csv_text(record: &Record, stamp_decimals: u8, value_decimals: u8) -> Stri
     text.push_str("# origin: simulated\n# Made by a program: no sensor was involved.\n");
     text.push_str(&format!("time_s,{column}"));
     text.push_str(if record.input().is_some() { ",torque_nm\n" } else { "\n" });
+    // Without an input there is no column for it.
     let mut inputs = record.input().unwrap_or_default().iter();
     for (stamp, value) in record.stamps_s().iter().zip(record.values()) {
         // Writing to a text cannot fail.

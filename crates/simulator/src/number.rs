@@ -83,6 +83,19 @@ pub(crate) fn declare(
     (fields, sections)
 }
 
+/// As [`read`], for a table whose numbers are known by their places.
+pub(crate) fn read_all<const N: usize>(
+    document: &Document,
+    resolved: &Resolved,
+    table: &str,
+    keys: &[NumberKey; N],
+) -> Result<[Number; N], SettingsError> {
+    read(document, resolved, table, keys)?.try_into().map_err(|read: Vec<Number>| {
+        let problem = format!("{} numbers in place of {N}", read.len());
+        SettingsError::Declaration { section: table.to_owned(), problem }
+    })
+}
+
 /// Reads a table's numbers, in the order of their declarations.
 pub(crate) fn read(
     document: &Document,
@@ -109,9 +122,7 @@ fn read_value(
     key: &NumberKey,
 ) -> Result<f64, SettingsError> {
     let name = dotted(table, key.key);
-    let setting = resolved.settings().iter().find(|setting| setting.key() == name);
-    let value = setting.and_then(|setting| setting.value.as_ref()?.as_float()).unwrap_or_default();
-    within(document, &name, key, value)
+    within(document, &name, key, resolved.float(&name)?)
 }
 
 /// Refuses an end that an open range leaves out, which the declaration of a key cannot say.

@@ -1,6 +1,6 @@
 //! What a configuration says of the systems and records to be drawn.
 
-use crate::number::{Number, NumberKey, bad_value, declare, dotted, read};
+use crate::number::{Number, NumberKey, bad_value, declare, dotted, read, read_all};
 use crate::schema::{PLAIN, SECTIONS};
 use dynamics::chain::Observed;
 use dynamics::{Coordinate, Description, Effect, REGISTRY, Range, Units};
@@ -24,9 +24,9 @@ pub struct Plan {
     pub(crate) effects_per_system: Option<usize>,
     pub(crate) nominal: PlannedNominal,
     pub(crate) effects: Vec<PlannedEffect>,
-    pub(crate) start: Vec<Number>,
+    pub(crate) start: [Number; 2],
     pub(crate) observed: Observed,
-    pub(crate) noise: Vec<Number>,
+    pub(crate) noise: Number,
     pub(crate) sampling: Sampling,
     pub(crate) excitation: Option<Excitation>,
     pub(crate) calibration: Calibration,
@@ -35,7 +35,7 @@ pub struct Plan {
 /// The nominal oscillator: inertia, damping, stiffness, rest angle, input gain.
 #[derive(Debug, Clone)]
 pub(crate) struct PlannedNominal {
-    pub(crate) coefficients: Vec<Number>,
+    pub(crate) coefficients: [Number; 5],
     pub(crate) coordinate: Coordinate,
     pub(crate) sensor_resolution: Option<f64>,
 }
@@ -216,24 +216,7 @@ impl Plan {
         let parameters: Vec<Vec<NumberKey>> =
             effects.iter().map(|(_, effect)| parameter_keys(effect.description(), units)).collect();
 
-        let mut sections: Vec<(String, Vec<Field>)> =
-            SECTIONS.iter().map(|section| (section.name.to_owned(), section.fields.to_vec())).collect();
-        let mut add = |table: &str, choices: &[Field], keys: &[NumberKey]| {
-            let (fields, priors) = declare(document, table, keys);
-            let all = choices.iter().copied().chain(fields);
-            match sections.iter_mut().find(|(name, _)| name == table) {
-                Some((_, known)) => known.extend(all),
-                None => sections.push((table.to_owned(), all.collect())),
-            }
-            sections.extend(priors);
-        };
-        add(nominal_table, &NOMINAL_CHOICES, &nominal_keys(units));
-        add("start", &[], &start_keys(units));
-        add("sensor", &[], &[noise_key(units)]);
-        for ((table, _), keys) in effects.iter().zip(&parameters) {
-            add(table, &[EFFECT_ID, PROBABILITY], &[]);
-            add(&dotted(table, "parameters"), &[], keys);
-        }
+        let sections = declared(document, nominal_table, units, &effects, &parameters);
         let sections: Vec<Section<'_>> =
             sections.iter().map(|(name, fields)| Section { name, fields }).collect();
         let resolved = Resolved::new(document, &sections)?;
@@ -242,22 +225,14 @@ impl Plan {
         let simulate: Simulate = resolved.section("simulate")?;
         let choices: NominalKeys = resolved.section(nominal_table)?;
         let sensor: SensorKeys = resolved.section("sensor")?;
-        let effects = effects
-            .into_iter()
-            .zip(&parameters)
-            .map(|((table, effect), keys)| {
-                let EffectKeys { probability } = resolved.section(&table)?;
-                let parameters = read(document, &resolved, &dotted(&table, "parameters"), keys)?;
-                Ok(PlannedEffect { effect, probability, parameters })
-            })
-            .collect::<Result<Vec<_>, SettingsError>>()?;
-        let possible = effects.iter().filter(|planned| planned.probability > 0.0).count();
-        if let Some(wanted) = simulate.effects_per_system.filter(|&wanted| wanted > possible) {
-            let key = "simulate.effects_per_system";
-            let origin = document.get(key).map_or(settings::Origin::Default, |leaf| leaf.origin.clone());
-            let expected = format!("at most {possible}, the effects listed with a probability above 0");
-            return Err(bad_value(origin, key, wanted.to_string(), expected, ""));
-        }
+        let planned = effects.into_iter().zip(&parameters).map(|((table, effect), keys)| {
+            let EffectKeys { probability } = resolved.section(&table)?;
+            let parameters = read(document, &resolved, &dotted(&table, "parameters"), keys)?;
+            Ok(PlannedEffect { effect, probability, parameters })
+        });
+        let effects = planned.collect::<Result<Vec<_>, SettingsError>>()?;
+        let [noise] = read_all(document, &resolved, "sensor", &[noise_key(units)])?;
+        enough_effects(document, &effects, simulate.effects_per_system)?;
         Ok(Self {
             name: top.name,
             seed: top.seed,
@@ -265,14 +240,14 @@ impl Plan {
             records: simulate.records,
             effects_per_system: simulate.effects_per_system,
             nominal: PlannedNominal {
-                coefficients: read(document, &resolved, nominal_table, &nominal_keys(units))?,
+                coefficients: read_all(document, &resolved, nominal_table, &nominal_keys(units))?,
                 coordinate: choices.coordinate,
                 sensor_resolution: choices.sensor_resolution,
             },
             effects,
-            start: read(document, &resolved, "start", &start_keys(units))?,
+            start: read_all(document, &resolved, "start", &start_keys(units))?,
             observed: sensor.observes,
-            noise: read(document, &resolved, "sensor", &[noise_key(units)])?,
+            noise,
             sampling: sampling(&resolved)?,
             excitation: excitation(&resolved)?,
             calibration: resolved.section("calibration")?,
@@ -324,6 +299,49 @@ impl ConfiguredUnits {
     }
 }
 
+/// Every section with its keys, where numbers may be drawn and effects have parameters of their own.
+fn declared(
+    document: &Document,
+    nominal_table: &str,
+    units: ConfiguredUnits,
+    effects: &[(String, Effect)],
+    parameters: &[Vec<NumberKey>],
+) -> Vec<(String, Vec<Field>)> {
+    let mut sections: Vec<(String, Vec<Field>)> =
+        SECTIONS.iter().map(|section| (section.name.to_owned(), section.fields.to_vec())).collect();
+    let mut add = |table: &str, choices: &[Field], keys: &[NumberKey]| {
+        let (fields, priors) = declare(document, table, keys);
+        let all = choices.iter().copied().chain(fields);
+        match sections.iter_mut().find(|(name, _)| name == table) {
+            Some((_, known)) => known.extend(all),
+            None => sections.push((table.to_owned(), all.collect())),
+        }
+        sections.extend(priors);
+    };
+    add(nominal_table, &NOMINAL_CHOICES, &nominal_keys(units));
+    add("start", &[], &start_keys(units));
+    add("sensor", &[], &[noise_key(units)]);
+    for ((table, _), keys) in effects.iter().zip(parameters) {
+        add(table, &[EFFECT_ID, PROBABILITY], &[]);
+        add(&dotted(table, "parameters"), &[], keys);
+    }
+    sections
+}
+
+/// Refuses a number of effects a system that the list of them cannot give.
+fn enough_effects(
+    document: &Document,
+    effects: &[PlannedEffect],
+    wanted: Option<usize>,
+) -> Result<(), SettingsError> {
+    let possible = effects.iter().filter(|planned| planned.probability > 0.0).count();
+    let Some(wanted) = wanted.filter(|&wanted| wanted > possible) else { return Ok(()) };
+    let key = "simulate.effects_per_system";
+    let origin = document.get(key).map_or(settings::Origin::Default, |leaf| leaf.origin.clone());
+    let expected = format!("at most {possible}, the effects listed with a probability above 0");
+    Err(bad_value(origin, key, wanted.to_string(), expected, ""))
+}
+
 /// The tables `[[effects]]`, each with the effect that it names.
 fn named_effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsError> {
     let mut found: Vec<(String, Effect)> = Vec::new();
@@ -339,9 +357,9 @@ fn named_effects(document: &Document) -> Result<Vec<(String, Effect)>, SettingsE
                 expected: format!("one of {}", ids().join(", ")),
             });
         };
-        let id = leaf.value.as_str().unwrap_or_default();
-        let Ok(effect) = Effect::find(id) else {
-            return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", id, ids()));
+        let id = leaf.value.as_str().map_or_else(|| leaf.value.to_string(), str::to_owned);
+        let Ok(effect) = Effect::find(&id) else {
+            return Err(SettingsError::unknown_name(leaf.origin.clone(), "effect", &id, ids()));
         };
         if found.iter().any(|(_, other)| *other == effect) {
             let expected = "each effect once".to_owned();

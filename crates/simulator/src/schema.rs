@@ -46,7 +46,7 @@ const SIMULATE: &[Field] = &[
         key: "systems",
         kind: Kind::Integer { min: 1, max: 1_000_000 },
         default: Default::Integer(1),
-        meaning: "How many systems to draw; each with a measuring chain of its own.",
+        meaning: "How many systems to draw; each with a measurement chain of its own.",
         ..PLAIN
     },
     Field {

@@ -44,7 +44,8 @@ pub const MAX_STEPS: Field = Field {
     source: "some thirty times what the shipped record takes",
 };
 
-/// The terms that a library names, each once, in the order of [`Term::ALL`].
+/// The terms that a library names, each once, in the order of [`Term::ALL`]; names of no term are passed over, which
+/// [`check_library`] refuses.
 pub fn terms(library: &[String]) -> impl Iterator<Item = Term> + '_ {
     Term::ALL.into_iter().filter(|term| library.iter().any(|name| name == term.name()))
 }

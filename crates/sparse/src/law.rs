@@ -14,7 +14,9 @@ pub struct Column {
 }
 
 impl Column {
-    /// The term over an envelope; `None` where it overflows or does not vary.
+    /// Standardizes a term over the peaks of an envelope: its mean there becomes 0, its standard deviation (over n) 1.
+    ///
+    /// `None` where it overflows, or where it varies by less than 1e-13 of its mean, which is rounding.
     pub fn over(term: Term, scaled: &Scaled) -> Option<Self> {
         let values = || scaled.logs.iter().zip(&scaled.times).map(|(&log, &time)| term.value(log, time));
         let count = scaled.peaks() as f64;
@@ -24,50 +26,56 @@ impl Column {
         usable.then_some(Self { term, mean, deviation })
     }
 
-    /// The standardized value at x and s.
+    /// Standardized value, without unit, at x = `log` (ln A − mean) and s = `time` (0 at the first peak, 1 at the last).
     pub fn value(&self, log: f64, time: f64) -> f64 {
         (self.term.value(log, time) - self.mean) / self.deviation
     }
 
-    /// The standardized derivative with respect to x.
+    /// Derivative of the standardized value with respect to x, at x = `log`.
     pub fn derivative_by_log(&self, log: f64) -> f64 {
         self.term.gradient(log).0 / self.deviation
     }
 
-    /// The standardized derivative along a function of slope dx/ds.
+    /// Total derivative of the standardized value with respect to s, at x = `log` along a function of slope dx/ds.
     pub fn derivative(&self, log: f64, slope: f64) -> f64 {
         let (by_log, by_time) = self.term.gradient(log);
         (by_log * slope + by_time) / self.deviation
     }
 }
 
-/// dx/ds = constant + Σ coefficient · column, with the trajectory fitted to the peaks.
+/// A fitted law of the envelope, dx/ds = constant + Σ coefficient · column, with its trajectory.
+///
+/// In the scaled coordinates of [`Scaled`]: s without unit, x in natural logarithms of the amplitude.
+/// [`Self::coefficients`] gives the same law in seconds and in the record's unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Law {
-    /// The constant rate.
+    /// Constant part of dx/ds.
     pub constant: f64,
     /// Columns with their coefficients.
     pub terms: Vec<(Column, f64)>,
-    /// x at the peaks.
+    /// x at the peaks: one entry a peak, empty for a law whose rates alone are wanted.
     pub trajectory: Vec<f64>,
-    /// Sum of the squared differences between the peaks and the trajectory.
+    /// Sum of the squared differences between the peaks and the trajectory, in squared natural logarithms.
     pub squares: f64,
 }
 
 impl Law {
-    /// Nothing decays.
+    /// The law of no decay, dx/ds = 0, with a trajectory of zeros.
     pub fn null(scaled: &Scaled) -> Self {
         Self::new(0.0, Vec::new(), vec![0.0; scaled.peaks()], scaled)
     }
 
-    /// A law with its trajectory.
+    /// A law with its trajectory, x at each peak; the sum of squares follows from it.
     pub fn new(constant: f64, terms: Vec<(Column, f64)>, trajectory: Vec<f64>, scaled: &Scaled) -> Self {
         let squares = scaled.residuals(&trajectory).iter().map(|residual| residual * residual).sum();
         Self { constant, terms, trajectory, squares }
     }
 
-    /// This law moved a share of the way toward another with the same terms.
+    /// This law moved a share (0 to 1) of the way toward another with the same terms in the same order: coefficients and
+    /// trajectory are interpolated linearly.
     pub fn toward(&self, other: &Self, share: f64, scaled: &Scaled) -> Self {
+        debug_assert_eq!(self.terms.len(), other.terms.len(), "laws of the same terms");
+        debug_assert_eq!(self.trajectory.len(), other.trajectory.len(), "laws at the same peaks");
         let mix = |own: f64, theirs: f64| own + share * (theirs - own);
         let terms = self
             .terms
@@ -79,29 +87,37 @@ impl Law {
         Self::new(mix(self.constant, other.constant), terms.collect(), trajectory.collect(), scaled)
     }
 
-    /// Largest distance of the trajectory from another at the same peaks.
+    /// x at the first peak.
+    pub fn start(&self) -> f64 {
+        debug_assert!(!self.trajectory.is_empty(), "an envelope has at least three peaks");
+        // Never absent: asserted above.
+        self.trajectory.first().copied().unwrap_or(0.0)
+    }
+
+    /// Largest absolute difference in x between the trajectory and another one at the same peaks.
     pub fn distance(&self, trajectory: &[f64]) -> f64 {
+        debug_assert_eq!(self.trajectory.len(), trajectory.len(), "trajectories at the same peaks");
         let pairs = self.trajectory.iter().zip(trajectory);
         pairs.map(|(own, other)| (own - other).abs()).fold(0.0, f64::max)
     }
 
-    /// Coefficients and the initial value.
+    /// Number of fitted parameters: the coefficient of each term, the constant, and the initial value.
     pub fn parameters(&self) -> usize {
         2 + self.terms.len()
     }
 
-    /// dx/ds at x and s.
+    /// Rate dx/ds at x = `log` and s = `time`.
     pub fn rate(&self, log: f64, time: f64) -> f64 {
         self.constant
             + self.terms.iter().map(|(column, factor)| factor * column.value(log, time)).sum::<f64>()
     }
 
-    /// The derivative of dx/ds with respect to x.
+    /// Derivative of the rate dx/ds with respect to x, at x = `log`.
     pub fn gradient(&self, log: f64) -> f64 {
         self.terms.iter().map(|(column, factor)| factor * column.derivative_by_log(log)).sum()
     }
 
-    /// The derivative of dx/ds along a function of slope dx/ds.
+    /// Total derivative of the rate dx/ds with respect to s, at x = `log` along a function of slope dx/ds.
     pub fn derivative(&self, log: f64, slope: f64) -> f64 {
         self.terms.iter().map(|(column, factor)| factor * column.derivative(log, slope)).sum()
     }
@@ -126,7 +142,7 @@ impl Law {
         std::iter::once((Term::Constant, constant / scaled.span_s)).chain(others).collect()
     }
 
-    /// The law as an equation, `d ln A/dt = …`.
+    /// The law as an equation, `d ln A/dt = …`, A in the record's unit and t in seconds after the first peak.
     pub fn equation(&self, scaled: &Scaled) -> String {
         self.written(scaled, "d ln A/dt", |term| match term {
             Term::Constant => String::new(),
@@ -139,7 +155,7 @@ impl Law {
         })
     }
 
-    /// The same law for the amplitude, `dA/dt = …`.
+    /// The same law for the amplitude, `dA/dt = …`, in the same units.
     pub fn amplitude_equation(&self, scaled: &Scaled) -> String {
         self.written(scaled, "dA/dt", |term| match term {
             Term::Constant => " A".to_owned(),

@@ -33,7 +33,7 @@ pub fn predictions(
     }
     let times: Vec<f64> = times_s.iter().map(|time| time / scaled.span_s).collect();
     let scatter = instruments.and_then(|instruments| Scatter::about(law, scaled, instruments));
-    let start = State::start(law.trajectory.first().copied().unwrap_or_default(), law);
+    let start = State::start(law.start(), law);
     let derivatives = scatter.as_ref().map(|_| followed(law, &start, &times));
     let logs = logs(law, scaled, &times);
     let predict = |(at, log): (usize, f64)| {
@@ -47,7 +47,7 @@ pub fn predictions(
 /// x of the law's own function at scaled times.
 fn logs(law: &Law, scaled: &Scaled, times: &[f64]) -> Vec<f64> {
     let end = scaled.times.last().zip(law.trajectory.last()).map_or((1.0, 0.0), |(time, log)| (*time, *log));
-    let start = law.trajectory.first().copied().unwrap_or_default();
+    let start = law.start();
     let beyond = order(times, |time| time > end.0, false);
     let before = order(times, |time| time < 0.0, true);
     let mut logs: Vec<f64> = times.iter().map(|&time| within(law, scaled, time)).collect();
@@ -109,7 +109,7 @@ struct Scatter {
 impl Scatter {
     fn about(law: &Law, scaled: &Scaled, instruments: DMatrix<f64>) -> Option<Self> {
         let degrees = scaled.peaks().checked_sub(law.parameters()).filter(|degrees| *degrees > 0)?;
-        let start = State::start(law.trajectory.first().copied()?, law);
+        let start = State::start(law.start(), law);
         let states = law.follow(&start, 0.0, &scaled.times);
         let entries = states.iter().flat_map(|state| state.derivatives.iter().copied());
         let transposed = DMatrix::from_iterator(law.parameters(), scaled.peaks(), entries);

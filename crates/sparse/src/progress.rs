@@ -14,7 +14,7 @@ pub enum Halt {
 }
 
 impl Halt {
-    /// The stop, with what to do.
+    /// Reason for the stop after a number of regressions, with the equation so far and what to do about it.
     pub fn stop(self, steps: u64, equation: &str) -> Stop {
         match self {
             Self::Spent => Stop {
@@ -40,14 +40,14 @@ pub struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// Starts at step 0, the law of no decay.
+    /// Starts at step 0 with the law of no decay; the limit is the smaller of the method's own and the context's.
     pub fn new(context: &'a FitContext<'a>, own_limit: u64, scaled: &Scaled) -> Self {
         let progress = Self { context, limit: context.step_limit(own_limit), steps: 0 };
         progress.tell(&Law::null(scaled), "start", scaled);
         progress
     }
 
-    /// Regressions so far.
+    /// Number of regressions so far.
     pub fn steps(&self) -> u64 {
         self.steps
     }

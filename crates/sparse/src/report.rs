@@ -4,8 +4,10 @@ use crate::law::{Law, number};
 use crate::path::Path;
 use crate::scaled::Scaled;
 
-/// Why the fit stopped: the law, and what it was chosen by.
+/// One sentence on why the fit stopped: the law, the number of laws compared, and by how much its information criterion lies
+/// below that of an exponential. `criteria` holds one value for each law of the path, in its order.
 pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> String {
+    debug_assert_eq!(path.laws.len(), criteria.len(), "a criterion for each law");
     let criterion_of = |parameters: usize| {
         path.laws
             .iter()
@@ -30,7 +32,7 @@ pub fn because(equation: &str, law: &Law, path: &Path, criteria: &[f64]) -> Stri
 ///
 /// `method` is what a method adds of its own before the path, whole paragraphs or nothing.
 pub fn model_text(scaled: &Scaled, law: &Law, path: &Path, criteria: &[f64], method: &str) -> String {
-    let start = law.trajectory.first().copied().unwrap_or(0.0) + scaled.mean;
+    let start = law.start() + scaled.mean;
     let mut text = format!(
         "{}\n{}\nA(0) = {}\n\nA in the record's unit, t in seconds after the first peak.\n",
         law.equation(scaled),

@@ -46,20 +46,21 @@ impl Scaled {
         self.times.iter().map(move |time| time - mean)
     }
 
-    /// Σ(s − mean)², what a slope's error is measured against.
+    /// Σ(s − mean)² over the peaks, without unit: the variance of a slope is that of the residuals divided by it.
     pub fn squared_times(&self) -> f64 {
         self.centered_times().map(|time| time * time).sum()
     }
 
-    /// λ in 1/s of a function given at the peaks: minus the slope of its least-squares projection on a
-    /// line.
+    /// λ in 1/s of a function given at the peaks (one value of x each): minus the slope of its least-squares projection
+    /// on a line.
     pub fn decay_rate(&self, function: &[f64]) -> f64 {
+        debug_assert_eq!(function.len(), self.peaks(), "one value a peak");
         let mean = function.iter().sum::<f64>() / self.peaks() as f64;
         let product: f64 = self.centered_times().zip(function).map(|(time, x)| time * (x - mean)).sum();
         -product / (self.squared_times() * self.span_s)
     }
 
-    /// The differences between the measured x and a function.
+    /// Differences in x between the measured peaks and a function given at them, in the order of the peaks.
     pub fn residuals(&self, function: &[f64]) -> Vec<f64> {
         self.logs.iter().zip(function).map(|(log, x)| log - x).collect()
     }

@@ -50,12 +50,12 @@ impl Term {
         }
     }
 
-    /// The term of a name.
+    /// The term with a name as [`Self::name`] writes it; `None` where no term has it.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|term| term.name() == name)
     }
 
-    /// The term's value.
+    /// Value at x = `log` and s = `time`, without unit; exponentials minus one, as [`Self::offset`] says.
     pub fn value(self, log: f64, time: f64) -> f64 {
         match self {
             Self::Constant => 1.0,
@@ -68,7 +68,7 @@ impl Term {
         }
     }
 
-    /// The derivative with respect to x, that with respect to s.
+    /// Partial derivatives of [`Self::value`] at x = `log`: with respect to x, then with respect to s.
     pub fn gradient(self, log: f64) -> (f64, f64) {
         match self {
             Self::Constant => (0.0, 0.0),
@@ -81,7 +81,7 @@ impl Term {
         }
     }
 
-    /// What the exponentials were taken minus of.
+    /// Number that [`Self::value`] leaves out of the term: 1 for exponentials, 0 for the others.
     pub fn offset(self) -> f64 {
         match self {
             Self::InverseAmplitude | Self::Amplitude | Self::SquaredAmplitude => 1.0,

@@ -24,10 +24,12 @@ pub fn events(run: &Finished) -> Vec<u8> {
             frame(&mut file, &event(time, *step, &scalar(&format!("trace/{}", curve.name), *value)));
         }
     }
-    let last = run.curves.iter().filter_map(|curve| curve.points.last()).map(|(step, _)| *step).max();
+    let ends = run.curves.iter().filter_map(|curve| curve.points.last());
+    // A run without curves has its results at its begin.
+    let last = ends.map(|(step, _)| *step).max().unwrap_or(0);
     for (name, value) in &run.metrics {
         let tag = format!("result/{}", name.replace('.', "/"));
-        frame(&mut file, &event(time, last.unwrap_or(0), &scalar(&tag, *value)));
+        frame(&mut file, &event(time, last, &scalar(&tag, *value)));
     }
     file
 }

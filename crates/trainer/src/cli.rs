@@ -90,7 +90,7 @@ pub(crate) enum Command {
     Diagnose(Box<DiagnoseArguments>),
     /// Explains a configuration's values: what they mean and where they were set
     Explain(ExplainArguments),
-    /// Looks at a log and writes a nominal simulator and a configuration to go on from
+    /// Looks at a log and writes a nominal simulator and a configuration to start from
     Init(Box<InitArguments>),
     /// Lists estimators, learners of dynamics, effects or runs
     List {

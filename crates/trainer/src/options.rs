@@ -28,7 +28,7 @@ pub(crate) struct ExperimentArguments {
 /// What every command that runs a configuration takes.
 #[derive(Debug, Clone, Default, Args)]
 pub(crate) struct RunOptions {
-    /// Folder for what comes out: new or empty [default: a new one below reports/runs]
+    /// Folder for the output: new or empty [default: a new one below reports/runs]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Resumes the run in the folder of --out, with the same result to the bit; starts it if the folder is new

@@ -12,6 +12,15 @@ pub(crate) enum Outcome {
 }
 
 impl Outcome {
+    /// That of a run whose stated checks hold or do not, unless it was stopped.
+    pub(crate) fn of(interrupted: bool, holds: bool) -> Self {
+        match (interrupted, holds) {
+            (true, _) => Self::Interrupted,
+            (false, true) => Self::Done,
+            (false, false) => Self::CheckFailed,
+        }
+    }
+
     /// The exit code that says so.
     pub(crate) fn exit_code(self) -> u8 {
         match self {

@@ -62,7 +62,7 @@ impl Chain {
         self.observed
     }
 
-    /// Standard deviation of the white noise, in the observed quantity's unit.
+    /// Standard deviation of the sensor's white noise, in the observed quantity's SI unit, 0 or more.
     #[must_use]
     pub fn noise(&self) -> f64 {
         self.noise
@@ -192,8 +192,9 @@ impl Extent {
         if let Some((index, (_, &value))) = pairs.enumerate().find(|(_, (before, after))| before >= after) {
             return Err(DynamicsError::BadTimes { index: index + 1, value });
         }
-        let duration_s =
-            times.last().copied().unwrap_or_default() - times.first().copied().unwrap_or_default();
+        // There are two at least: checked above.
+        let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
+        let duration_s = last - first;
         let values = motion.observed(observed);
         Ok(Self {
             duration_s,

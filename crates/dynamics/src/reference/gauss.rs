@@ -1,5 +1,8 @@
 //! Collocation at Gauss–Legendre nodes.
 
+/// Most stages that a step has.
+pub(crate) const MOST_STAGES: usize = 16;
+
 /// The tables of Gauss–Legendre collocation with a number of stages, on the unit interval.
 ///
 /// The right-hand side along a step is represented by its Legendre series, sampled at the zeros of the
@@ -32,6 +35,16 @@ fn legendre(x: f64, values: &mut [f64]) {
     }
 }
 
+/// The integrals of as many Legendre polynomials as there are stages, up to a part τ of the step; the rest is 0.
+pub(crate) fn basis(tau: f64, stages: usize) -> [f64; MOST_STAGES] {
+    debug_assert!(stages <= MOST_STAGES, "{stages} of {MOST_STAGES} stages");
+    let mut basis = [0.0; MOST_STAGES];
+    if let Some(used) = basis.get_mut(..stages) {
+        integrals(tau, used);
+    }
+    basis
+}
+
 /// ∫₀^τ P_k(2t − 1) dt for k = 0 … integrals.len() − 1.
 pub(crate) fn integrals(tau: f64, integrals: &mut [f64]) {
     let x = 2.0 * tau - 1.0;
@@ -56,7 +69,7 @@ pub(crate) fn integrals(tau: f64, integrals: &mut [f64]) {
 impl Gauss {
     /// The tables for 1 to 16 stages; other numbers are brought into that range.
     pub(crate) fn new(stages: usize) -> Self {
-        let stages = stages.clamp(1, 16);
+        let stages = stages.clamp(1, MOST_STAGES);
         let count = stages as f64;
         let mut values = vec![0.0; stages + 1];
         let mut nodes = Vec::with_capacity(stages);

@@ -1,8 +1,8 @@
 //! Samples and energy accounts along the steps.
 
-use super::gauss::{Gauss, integrals};
+use super::gauss::{Gauss, MOST_STAGES, basis};
 use super::motion::{Account, Motion, Worker};
-use super::step::{MOST_STAGES, Step, state};
+use super::step::{Step, state};
 use crate::field::{Field, MOST_EFFECTS, Mode};
 use crate::system::Drive;
 
@@ -56,10 +56,9 @@ impl Recorder {
     ) {
         self.powers(gauss, field, mode, drive, step);
         let end = step.from + step.size;
-        let mut basis = [0.0; MOST_STAGES];
         while let Some(&time) = times.get(self.next).filter(|&&time| time <= end) {
             let tau = if step.size > 0.0 { ((time - step.from) / step.size).clamp(0.0, 1.0) } else { 0.0 };
-            integrals(tau, basis.get_mut(..gauss.stages()).unwrap_or_default());
+            let basis = basis(tau, gauss.stages());
             let vector = step.with_basis(&basis);
             let state = state(time, &vector, drive.torque(time));
             let (acceleration, _) = field.rates(&state, mode);
@@ -68,11 +67,13 @@ impl Recorder {
             self.motion.acceleration.push(acceleration);
             for (number, account) in self.motion.accounts.iter_mut().enumerate() {
                 let work = work(&self.series, &basis, number) * step.size;
+                debug_assert!(number < self.work.len(), "account {number} of {}", self.work.len());
+                // Never absent: asserted above.
                 account.work.push(self.work.get(number).unwrap_or(&0.0) + work);
             }
             self.next += 1;
         }
-        integrals(1.0, basis.get_mut(..gauss.stages()).unwrap_or_default());
+        let basis = basis(1.0, gauss.stages());
         for (number, total) in self.work.iter_mut().enumerate() {
             *total += work(&self.series, &basis, number) * step.size;
         }
@@ -96,6 +97,8 @@ impl Recorder {
                 *power = torque * state.velocity;
             }
             for (row, coefficients) in gauss.analysis.iter().zip(&mut self.series) {
+                debug_assert!(stage < row.len(), "stage {stage} of {}", row.len());
+                // Never absent: asserted above.
                 let weight = row.get(stage).copied().unwrap_or(0.0);
                 for (coefficient, power) in
                     coefficients.iter_mut().zip(powers).take(self.motion.accounts.len())

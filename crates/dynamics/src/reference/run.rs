@@ -68,8 +68,9 @@ impl<'a> Run<'a> {
         start.check()?;
         crate::times::check(times)?;
         let field = system.field();
-        let time = times.first().copied().unwrap_or(0.0);
-        let duration = times.last().copied().unwrap_or(0.0) - time;
+        // No time is asked for: the run is over before it begins.
+        let (time, end) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
+        let duration = end - time;
         let drive = Drive::new(input, field.nominal.input_gain, system.input_delay(), time);
         let mut vector = [0.0; LENGTH];
         let hidden = field.relaxed(start.position, start.velocity);
@@ -286,11 +287,13 @@ impl<'a> Run<'a> {
             Edge::Reversal if next.sticks() => Happening::Stick,
             Edge::Reversal => Happening::Reversal,
             Edge::BreakAway { .. } => Happening::BreakAway,
-            Edge::Region { term, .. } => Happening::Region {
-                effect: self.field.terms.get(term).map_or("", |term| term.effect.description().id),
-                from: self.mode.regions.get(term).copied().unwrap_or(0),
-                to: next.regions.get(term).copied().unwrap_or(0),
-            },
+            Edge::Region { term, .. } => {
+                debug_assert!(term < self.field.terms.len(), "an edge of effect {term}");
+                // Never absent: asserted above.
+                let region = |mode: &Mode| mode.regions.get(term).copied().unwrap_or(0);
+                let effect = self.field.terms.get(term).map_or("", |term| term.effect.description().id);
+                Happening::Region { effect, from: region(&self.mode), to: region(&next) }
+            }
         };
         self.mode = next;
         let [_, _, hidden @ ..] = &mut self.vector;

@@ -1,6 +1,6 @@
 //! One step of collocation on a smooth piece.
 
-use super::gauss::{Gauss, integrals};
+use super::gauss::{Gauss, MOST_STAGES, basis};
 use crate::field::{Field, Mode, SYSTEM_HIDDEN, State};
 use crate::system::Drive;
 
@@ -9,9 +9,6 @@ pub(crate) const LENGTH: usize = 2 + SYSTEM_HIDDEN;
 
 /// Position, velocity and hidden state; unused entries are zero.
 pub(crate) type Vector = [f64; LENGTH];
-
-/// Most stages that a step has.
-pub(crate) const MOST_STAGES: usize = 16;
 
 pub(crate) fn state(time: f64, vector: &Vector, input: f64) -> State<f64> {
     let [position, velocity, hidden @ ..] = *vector;
@@ -128,9 +125,7 @@ impl Step {
 
     /// The state at a part τ of the step, 0 to 1.
     pub(crate) fn at(&self, tau: f64) -> Vector {
-        let mut basis = [0.0; MOST_STAGES];
-        integrals(tau, basis.get_mut(..self.series.len()).unwrap_or_default());
-        self.with_basis(&basis)
+        self.with_basis(&basis(tau, self.series.len()))
     }
 
     /// The state where the integrals of the Legendre polynomials are known.

@@ -3,7 +3,7 @@
 use super::expression::Operation;
 use super::graph::Graph;
 use super::node::Node;
-use super::series::{Adjoint, Series, convolve, dot_reversed, first};
+use super::series::{Adjoint, Series, convolve, dot_reversed, first, head};
 
 impl Graph {
     /// Derivative series of a node with respect to every other, up to and with `degree`.
@@ -55,7 +55,8 @@ impl Graph {
     /// The derivative series with respect to a leaf, as far as it is not zero.
     pub(crate) fn derivative(&self, leaf: usize) -> &[f64] {
         let adjoint = self.leaf_node(leaf).and_then(|node| self.adjoints.get(node));
-        adjoint.and_then(|adjoint| adjoint.series.get(..adjoint.length)).unwrap_or_default()
+        // What a result does not depend on has no node.
+        adjoint.map_or(&[], |adjoint| head(&adjoint.series, adjoint.length))
     }
 }
 
@@ -117,8 +118,8 @@ impl Sweep<'_> {
         }
         quotient.length = self.count;
         for degree in 0..self.count {
-            let divisor = series.get(1..=degree).unwrap_or_default();
-            let known = dot_reversed(quotient.series.get(..degree).unwrap_or_default(), divisor);
+            let [_, divisor @ ..] = series;
+            let known = dot_reversed(head(&quotient.series, degree), head(divisor, degree));
             if let Some(slot) = quotient.series.get_mut(degree) {
                 *slot = (*slot - known) / first(series);
             }

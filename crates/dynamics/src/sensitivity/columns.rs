@@ -1,7 +1,7 @@
 //! Taylor series of the derivatives of the state.
 
 use super::graph::MOST_STATES;
-use super::series::{LENGTH, Series};
+use super::series::{LENGTH, Series, head};
 
 /// Columns that are computed side by side.
 pub(crate) const LANES: usize = 4;
@@ -65,6 +65,7 @@ impl Columns {
 
     /// Adds `factor` times a series to the direct influence of a free quantity on a rate.
     pub(crate) fn add_source(&mut self, column: usize, rate: usize, series: &[f64], factor: f64) {
+        debug_assert!(column < self.columns && rate < self.states, "column {column}, rate {rate}");
         let block = self.blocks.get_mut(column / LANES);
         let Some(source) = block.and_then(|block| block.sources.get_mut(rate)) else { return };
         for (lanes, value) in source.iter_mut().zip(series) {
@@ -78,6 +79,8 @@ impl Columns {
     pub(crate) fn first(&self, column: usize, state: usize) -> f64 {
         let wide = self.blocks.get(column / LANES).and_then(|block| block.states.get(state));
         let [first, ..] = wide.unwrap_or(&[[0.0; LANES]; LENGTH]);
+        debug_assert!(column < self.columns && state < MOST_STATES, "column {column}, state {state}");
+        // Never absent: a remainder is below the number of lanes.
         first.get(column % LANES).copied().unwrap_or(0.0)
     }
 
@@ -165,13 +168,14 @@ impl Columns {
 
 #[inline]
 fn coefficient(wide: &[Wide; MOST_STATES], state: usize, degree: usize) -> Lanes {
+    debug_assert!(state < MOST_STATES && degree < LENGTH, "coefficient {degree} of state {state}");
     wide.get(state).and_then(|wide| wide.get(degree)).copied().unwrap_or([0.0; LANES])
 }
 
 /// Adds coefficient `degree` of the product of a coupling and a state's series.
 #[inline]
 fn product(coupling: &Coupling, state: &Wide, degree: usize, sum: &mut Lanes) {
-    let reversed = state.get(..=degree).unwrap_or_default().iter().rev();
+    let reversed = head(state, degree + 1).iter().rev();
     for (factor, lanes) in coupling.series.iter().take(coupling.length).zip(reversed) {
         for (sum, lane) in sum.iter_mut().zip(lanes) {
             *sum += factor * lane;
@@ -183,7 +187,7 @@ fn product(coupling: &Coupling, state: &Wide, degree: usize, sum: &mut Lanes) {
 #[inline]
 fn value(series: &Wide, time: f64, degree: usize) -> Lanes {
     let mut sum = [0.0; LANES];
-    for lanes in series.get(..=degree).unwrap_or_default().iter().rev() {
+    for lanes in head(series, degree + 1).iter().rev() {
         for (sum, lane) in sum.iter_mut().zip(lanes) {
             *sum = *sum * time + lane;
         }

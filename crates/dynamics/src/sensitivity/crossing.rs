@@ -1,7 +1,7 @@
 //! The edge that a step by Taylor series meets first.
 
 use super::march::March;
-use super::series::{LENGTH, Series, slope, value};
+use super::series::{LENGTH, Series, head, slope, value};
 use crate::edges::Edge;
 use std::ops::RangeInclusive;
 
@@ -23,7 +23,7 @@ impl March<'_> {
         let balance = if rests { field.balance(&point) } else { 0.0 };
         let resolution = 4.0 * f64::EPSILON * self.time.abs();
         for &(edge, node) in &piece.graph.edges {
-            let margin = piece.graph.series(node).get(..=degree).unwrap_or_default();
+            let margin = head(piece.graph.series(node), degree + 1);
             let until = first.map_or(size, |(_, time)| time);
             let time = match edge {
                 Edge::BreakAway { .. } if rests => {
@@ -31,6 +31,7 @@ impl March<'_> {
                     from_rest(margin, 0, -known..=known, until, resolution)
                 }
                 Edge::Reversal if rests => {
+                    // A margin of degree 1 has no curvature.
                     let next = margin.get(2).map_or(0.0, |next| 2.0 * next.abs());
                     let balance = balance / field.nominal.inertia;
                     from_rest(
@@ -71,7 +72,7 @@ fn from_rest(
     for (slot, coefficient) in balanced.iter_mut().zip(margin).skip(order + 1) {
         *slot = *coefficient;
     }
-    crossing(balanced.get(..margin.len()).unwrap_or_default(), until, Some(resolution))
+    crossing(head(&balanced, margin.len()), until, Some(resolution))
 }
 
 /// When a margin, positive now, first becomes negative within a time; 0 where it is about to. `resolution` is
@@ -91,7 +92,9 @@ fn crossing(margin: &[f64], until: f64, resolution: Option<f64>) -> Option<f64> 
     // On the edge itself the lowest coefficients are rounding; what counts is how the margin goes on.
     let (mut lowest, mut rest, mut margin, mut power) = (*first, rest, margin, 1.0);
     let rounding = |rest: &[f64], power: f64| {
+        // Behind the last coefficient there is none, and without a resolution nothing is rounding.
         let next = rest.first().map_or(0.0, |next| next.abs() * power);
+        // As above.
         resolution.map_or(0.0, |resolution| ON_THE_EDGE * total + next * resolution)
     };
     while lowest.abs() * power <= rounding(rest, power) {

@@ -22,8 +22,9 @@ pub(super) fn expand(
         power *= room;
         let mut negligible = true;
         for (variable, (series, scale)) in series.iter_mut().zip(scale).enumerate().take(states) {
-            let rate = graph.rates.get(variable).copied();
-            let coefficient = rate.map_or(0.0, |node| graph.coefficient(node, degree)) * divisor;
+            debug_assert!(variable < graph.rates.len(), "a rate for each of {states} state variables");
+            let Some(&node) = graph.rates.get(variable) else { continue };
+            let coefficient = graph.coefficient(node, degree) * divisor;
             graph.set_state(variable, degree + 1, coefficient);
             if let Some(slot) = series.get_mut(degree + 1) {
                 *slot = coefficient;

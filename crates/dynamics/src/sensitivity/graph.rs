@@ -91,41 +91,10 @@ impl Graph {
         states: usize,
         free: &dyn Fn(usize) -> bool,
     ) -> Self {
-        let mut nodes: Vec<Node> = Vec::with_capacity(operations.len());
-        for operation in operations {
-            let (constant, wanted) = match operation {
-                Operation::Leaf(leaf) => {
-                    (leaf >= NOMINAL, (STATE..STATE + states).contains(&leaf) || free(leaf))
-                }
-                other => {
-                    let of =
-                        |number: usize| nodes.get(number).map_or((true, false), |n| (n.constant, n.wanted));
-                    let (first, second) = operands(other);
-                    let (first, second) = (of(first), second.map_or((true, false), of));
-                    (first.0 && second.0, first.1 || second.1)
-                }
-            };
-            nodes.push(Node { operation, constant, wanted, used: false, kept: false });
-        }
-        let mut pending: Vec<usize> = rates.iter().copied().chain(edges.iter().map(|edge| edge.1)).collect();
-        while let Some(number) = pending.pop() {
-            let Some(node) = nodes.get_mut(number).filter(|node| !node.used) else { continue };
-            node.used = true;
-            match node.operation {
-                Operation::Leaf(_) => {}
-                operation => {
-                    let (first, second) = operands(operation);
-                    pending.extend([first].into_iter().chain(second));
-                    // Sine and cosine need each other's series.
-                    match operation {
-                        Operation::Sine(_) => pending.push(number + 1),
-                        Operation::Cosine(_) => pending.extend(number.checked_sub(1)),
-                        _ => {}
-                    }
-                }
-            }
-        }
-        keep(&mut nodes, rates.iter().copied().chain(edges.iter().map(|edge| edge.1)));
+        let mut nodes = nodes(operations, |leaf| (STATE..STATE + states).contains(&leaf) || free(leaf));
+        let results = || rates.iter().copied().chain(edges.iter().map(|edge| edge.1));
+        mark_used(&mut nodes, results());
+        keep(&mut nodes, results());
         let mut leaves = Vec::new();
         for (number, node) in nodes.iter().enumerate() {
             if let Operation::Leaf(leaf) = node.operation {
@@ -174,7 +143,7 @@ impl Graph {
     /// parameters have to be set.
     pub(crate) fn prepare(&mut self) {
         for (number, node) in self.nodes.iter().enumerate().filter(|(_, node)| node.constant) {
-            let of = |operand: usize| self.series.get(operand).map_or(0.0, first);
+            let of = |operand: usize| first(self.series(operand));
             let value = match node.operation {
                 Operation::Leaf(_) => continue,
                 Operation::Add(a, b) => of(a) + of(b),
@@ -204,12 +173,15 @@ impl Graph {
     #[inline]
     pub(crate) fn series(&self, number: usize) -> &Series {
         const ZERO: &Series = &[0.0; LENGTH];
+        debug_assert!(number < self.series.len(), "node {number} of {}", self.series.len());
         self.series.get(number).unwrap_or(ZERO)
     }
 
     /// One coefficient of a node's series.
     #[inline]
     pub(crate) fn coefficient(&self, number: usize, degree: usize) -> f64 {
+        debug_assert!(degree < LENGTH, "coefficient {degree} of {LENGTH}");
+        // Never absent: asserted above.
         self.series(number).get(degree).copied().unwrap_or(0.0)
     }
 
@@ -218,6 +190,46 @@ impl Graph {
         match self.nodes.get(number)?.operation {
             Operation::Leaf(leaf) if (STATE..INPUT).contains(&leaf) => Some(leaf - STATE),
             _ => None,
+        }
+    }
+}
+
+/// The nodes of operations, each told whether it depends on parameters only, and on a leaf that derivatives are wanted for.
+fn nodes(operations: Vec<Operation>, wanted: impl Fn(usize) -> bool) -> Vec<Node> {
+    let mut nodes: Vec<Node> = Vec::with_capacity(operations.len());
+    for operation in operations {
+        let (constant, wanted) = match operation {
+            Operation::Leaf(leaf) => (leaf >= NOMINAL, wanted(leaf)),
+            other => {
+                let of = |number: usize| nodes.get(number).map_or((true, false), |n| (n.constant, n.wanted));
+                let (first, second) = operands(other);
+                debug_assert!(first < nodes.len() && second.is_none_or(|second| second < nodes.len()));
+                let (first, second) = (of(first), second.map_or((true, false), of));
+                (first.0 && second.0, first.1 || second.1)
+            }
+        };
+        nodes.push(Node { operation, constant, wanted, used: false, kept: false });
+    }
+    nodes
+}
+
+/// Marks the nodes that results depend on.
+fn mark_used(nodes: &mut [Node], results: impl Iterator<Item = usize>) {
+    let mut pending: Vec<usize> = results.collect();
+    while let Some(number) = pending.pop() {
+        let Some(node) = nodes.get_mut(number).filter(|node| !node.used) else { continue };
+        node.used = true;
+        let operation = node.operation;
+        if matches!(operation, Operation::Leaf(_)) {
+            continue;
+        }
+        let (first, second) = operands(operation);
+        pending.extend([first].into_iter().chain(second));
+        // Sine and cosine need each other's series.
+        match operation {
+            Operation::Sine(_) => pending.push(number + 1),
+            Operation::Cosine(_) => pending.extend(number.checked_sub(1)),
+            _ => {}
         }
     }
 }

@@ -6,11 +6,12 @@ use super::free::Place;
 use super::graph::{INPUT, MOST_STATES, STATE, TIME};
 use super::model::Model;
 use super::response::{FullState, Response};
-use super::series::{LENGTH, Series, slope, value};
+use super::series::{LENGTH, Series, head, slope, value};
 use crate::error::DynamicsError;
 use crate::field::{Mode, SYSTEM_HIDDEN, State};
 use crate::input::Input;
 use crate::system::{Drive, Start};
+use std::ops::Range;
 
 /// Steps in a row without any time passing, beyond which the march is stuck.
 const MOST_EVENTS_AT_ONCE: usize = 64;
@@ -44,8 +45,8 @@ impl<'a> March<'a> {
         times: &'a [f64],
         response: &'a mut Response,
     ) -> Self {
-        let time = times.first().copied().unwrap_or(0.0);
-        let end = times.last().copied().unwrap_or(0.0);
+        // No time is asked for: the march is over before it begins.
+        let (time, end) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         let drive = Drive::new(input, model.field.nominal.input_gain, model.delay, time);
         let hidden = start.hidden.unwrap_or_else(|| model.field.relaxed(start.position, start.velocity));
         let mut state = [0.0; MOST_STATES];
@@ -210,6 +211,7 @@ impl<'a> March<'a> {
     /// One step, to its full size or to the first edge.
     fn step(&mut self) -> Result<(), DynamicsError> {
         let number = self.model.piece(&self.mode);
+        debug_assert!(number < self.model.graphs.len(), "the piece was just found or written down");
         let room = (self.drive.until().min(self.end) - self.time).max(0.0);
         let raw = if self.drive.is_present() { self.drive.raw(self.time) } else { (0.0, 0.0) };
         let Model { graphs, states, settings, .. } = &mut *self.model;
@@ -251,7 +253,7 @@ impl<'a> March<'a> {
             self.model.columns.advance(size, degree);
         }
         for ((slot, series), scale) in self.state.iter_mut().zip(&series).zip(&mut self.scale).take(states) {
-            *slot = value(series.get(..=degree).unwrap_or_default(), size);
+            *slot = value(head(series, degree + 1), size);
             *scale = scale.max(slot.abs());
         }
         self.time = if size >= room { self.drive.until().min(self.end) } else { self.time + size };
@@ -303,7 +305,7 @@ impl<'a> March<'a> {
                 }
             }
         }
-        columns.propagate(couplings, links.get(..*states).unwrap_or_default(), degree);
+        columns.propagate(couplings, head(&links, *states), degree);
     }
 
     /// Writes the samples that fall into the step.
@@ -311,8 +313,7 @@ impl<'a> March<'a> {
         let settings = self.model.settings;
         let columns = self.model.columns.count();
         let [position, velocity, ..] = series;
-        let position = position.get(..=degree).unwrap_or_default();
-        let velocity = velocity.get(..=degree).unwrap_or_default();
+        let (position, velocity) = (head(position, degree + 1), head(velocity, degree + 1));
         // The last step of a run has to take the last sample along, whatever the rounding.
         let last = !to_edge && size >= self.end - self.time;
         while let Some(&time) = self.times.get(self.next) {
@@ -324,20 +325,18 @@ impl<'a> March<'a> {
             let row = sample * columns..(sample + 1) * columns;
             let response = &mut *self.response;
             put(&mut response.position, sample, value(position, after));
-            let slots = response.position_sensitivity.get_mut(row.clone()).unwrap_or_default();
-            self.model.columns.write(0, after, degree, slots);
+            self.model.columns.write(0, after, degree, part(&mut response.position_sensitivity, &row));
             if settings.velocity {
                 put(&mut response.velocity, sample, value(velocity, after));
             }
             if settings.velocity && settings.rate_sensitivities {
-                let slots = response.velocity_sensitivity.get_mut(row.clone()).unwrap_or_default();
-                self.model.columns.write(1, after, degree, slots);
+                self.model.columns.write(1, after, degree, part(&mut response.velocity_sensitivity, &row));
             }
             if settings.acceleration {
                 put(&mut response.acceleration, sample, slope(velocity, after));
             }
             if settings.acceleration && settings.rate_sensitivities {
-                let slots = response.acceleration_sensitivity.get_mut(row).unwrap_or_default();
+                let slots = part(&mut response.acceleration_sensitivity, &row);
                 self.model.columns.write_slope(1, after, degree, slots);
             }
             self.next += 1;
@@ -345,7 +344,15 @@ impl<'a> March<'a> {
     }
 }
 
+/// A sample's row of a table that `prepare_response` gave its size.
+fn part<'a>(table: &'a mut [f64], row: &Range<usize>) -> &'a mut [f64] {
+    debug_assert!(row.end <= table.len(), "{row:?} of {}", table.len());
+    // Never absent: asserted above.
+    table.get_mut(row.clone()).unwrap_or_default()
+}
+
 fn put(list: &mut [f64], index: usize, value: f64) {
+    debug_assert!(index < list.len(), "{index} of {}", list.len());
     if let Some(slot) = list.get_mut(index) {
         *slot = value;
     }

@@ -103,7 +103,7 @@ impl Model {
         })
     }
 
-    /// Number of columns.
+    /// Number of columns of every sensitivity: one for each free quantity, in the order given to the model.
     #[must_use]
     pub fn columns(&self) -> usize {
         self.free.len()
@@ -142,6 +142,7 @@ impl Model {
             }
         }
         let delay = self.field.terms.iter().find_map(|term| term.effect.input_delay(&term.values));
+        // Without the effect the input arrives at once.
         self.delay = delay.unwrap_or(0.0);
         self.rounded = self.field.over();
         for piece in &mut self.graphs {

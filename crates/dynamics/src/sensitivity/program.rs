@@ -2,7 +2,7 @@
 
 use super::expression::Operation;
 use super::node::Node;
-use super::series::{Series, convolve, dot_reversed, first};
+use super::series::{LENGTH, Series, convolve, dot_reversed, head};
 
 /// What has to be computed for each coefficient. Chains of sums and of products with constants are one linear
 /// combination each.
@@ -83,7 +83,7 @@ impl Program {
         let mut forms: Vec<Form> = Vec::with_capacity(nodes.len());
         for (number, node) in nodes.iter().enumerate() {
             let form = if node.constant {
-                Form { offset: series.get(number).map_or(0.0, first), terms: Vec::new() }
+                Form { offset: coefficient(series, number, 0), terms: Vec::new() }
             } else if node.varies() {
                 program.condense(number, node, nodes, &forms)
             } else {
@@ -95,6 +95,8 @@ impl Program {
     }
 
     fn condense(&mut self, number: usize, node: &Node, nodes: &[Node], forms: &[Form]) -> Form {
+        debug_assert!(forms.len() == number, "operands come before what they are needed for");
+        // The form of an operand that is not there is 0, and the assertion says that there is none.
         let of = |operand: usize| forms.get(operand).cloned().unwrap_or_default();
         let constant = |operand: usize| nodes.get(operand).is_some_and(|node| node.constant);
         let form = match node.operation {
@@ -146,6 +148,8 @@ impl Program {
         for instruction in &self.instructions {
             match *instruction {
                 Instruction::Linear { target, from, until, offset } => {
+                    debug_assert!(from <= until && until <= self.terms.len());
+                    // Within the terms, as `condense` numbered them.
                     let terms = self.terms.get(from..until).unwrap_or_default();
                     let start = if degree == 0 { offset } else { 0.0 };
                     let sum = terms.iter().fold(start, |sum, &(number, factor)| {
@@ -154,14 +158,17 @@ impl Program {
                     put(series, target, degree, sum);
                 }
                 Instruction::Product { target, a, b } => {
+                    debug_assert!(a.max(b) < series.len(), "nodes {a} and {b} of {}", series.len());
+                    // Never absent: asserted above.
                     let value = pair(series, a, b).map_or(0.0, |(a, b)| convolve(a, b, degree));
                     put(series, target, degree, value);
                 }
                 Instruction::Quotient { target, a, b } => {
+                    debug_assert!(target.max(b) < series.len(), "nodes {target} and {b} of {}", series.len());
                     // a = q·b: everything but q_degree·b₀ is known.
                     let known = pair(series, target, b).map_or(0.0, |(quotient, b)| {
-                        let quotient = quotient.get(..degree).unwrap_or_default();
-                        dot_reversed(quotient, b.get(1..=degree).unwrap_or_default())
+                        let [_, b @ ..] = b;
+                        dot_reversed(head(quotient, degree), head(b, degree))
                     });
                     let value = (coefficient(series, a, degree) - known) / coefficient(series, b, 0);
                     put(series, target, degree, value);
@@ -190,6 +197,8 @@ impl Program {
 
 #[inline]
 fn coefficient(series: &[Series], number: usize, degree: usize) -> f64 {
+    debug_assert!(number < series.len() && degree < LENGTH, "coefficient {degree} of node {number}");
+    // Never absent: asserted above, and a branch that the processor foretells costs less than a panic's code.
     series.get(number).and_then(|series| series.get(degree)).copied().unwrap_or(0.0)
 }
 
@@ -209,7 +218,7 @@ fn put(series: &mut [Series], number: usize, degree: usize, value: f64) {
 #[inline]
 fn weighted(series: &[Series], a: usize, f: usize, degree: usize) -> f64 {
     let Some((a, f)) = pair(series, a, f) else { return 0.0 };
-    let reversed = f.get(..degree).unwrap_or_default().iter().rev();
+    let reversed = head(f, degree).iter().rev();
     let terms = a.iter().zip(1_u32..).skip(1).zip(reversed);
     terms.map(|((a, j), f)| f64::from(j - 1) * a * f).sum::<f64>() / degree as f64
 }

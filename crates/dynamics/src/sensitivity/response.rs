@@ -50,10 +50,11 @@ pub struct Response {
 }
 
 impl Response {
-    /// The row of position sensitivities of a sample.
+    /// The row of position sensitivities of a sample: one entry a free quantity; empty beyond the last sample.
     #[must_use]
     pub fn position_row(&self, sample: usize) -> &[f64] {
         let from = sample * self.columns;
+        // Beyond the last sample there is none.
         self.position_sensitivity.get(from..from + self.columns).unwrap_or_default()
     }
 }

@@ -35,8 +35,8 @@ impl March<'_> {
             .any(|(before, after)| (before - after).abs() > 1e-12 * before.abs().max(after.abs()));
         if jumps && !self.model.free.is_empty() {
             self.shift(edge, number);
-            for column in 0..self.model.free.len() {
-                let shift = self.model.shifts.get(column).copied().unwrap_or(0.0);
+            debug_assert_eq!(self.model.shifts.len(), self.model.free.len(), "one shift for each column");
+            for (column, &shift) in self.model.shifts.iter().enumerate() {
                 for (variable, (before, after)) in before.iter().zip(after).enumerate().skip(1) {
                     if let Some(slot) = self.model.columns.first_mut(column, variable) {
                         *slot += (before - after) * shift;
@@ -67,22 +67,22 @@ impl March<'_> {
             graph.set_leaf(STATE + variable, value, 0.0);
         }
         graph.extend(0);
+        debug_assert_eq!(graph.rates.len(), *states, "a rate for each state variable");
         for variable in 0..*states {
-            let rate = graph.rates.get(variable).map_or(0.0, |&node| graph.coefficient(node, 0));
-            graph.set_state(variable, 1, rate);
+            let Some(&node) = graph.rates.get(variable) else { continue };
+            graph.set_state(variable, 1, graph.coefficient(node, 0));
         }
         graph.extend(1);
         let speed = graph.coefficient(node, 1);
         graph.differentiate(node, 0);
+        // The derivative with respect to what a margin does not depend on is an empty series, and zero.
+        let partial = |leaf: usize| graph.derivative(leaf).first().copied().unwrap_or(0.0);
         for (column, (shift, place)) in shifts.iter_mut().zip(free.iter()).enumerate() {
-            let mut moved: f64 = (0..*states)
-                .map(|state| {
-                    graph.derivative(STATE + state).first().unwrap_or(&0.0) * columns.first(column, state)
-                })
-                .sum();
+            let mut moved: f64 =
+                (0..*states).map(|state| partial(STATE + state) * columns.first(column, state)).sum();
             moved += match *place {
-                Place::Leaf(leaf) => graph.derivative(leaf).first().copied().unwrap_or(0.0),
-                Place::Delay(_) => -raw.1 * graph.derivative(INPUT).first().unwrap_or(&0.0),
+                Place::Leaf(leaf) => partial(leaf),
+                Place::Delay(_) => -raw.1 * partial(INPUT),
                 Place::Start(_) => 0.0,
             };
             // An edge that is only touched has no side to be shifted to.

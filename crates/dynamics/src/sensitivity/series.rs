@@ -6,6 +6,13 @@ pub(crate) const LENGTH: usize = 20;
 /// A Taylor series in the time since the step began.
 pub(crate) type Series = [f64; LENGTH];
 
+/// The first `length` entries of a list that has as many.
+#[inline]
+pub(crate) fn head<T>(list: &[T], length: usize) -> &[T] {
+    debug_assert!(length <= list.len(), "{length} of {} entries", list.len());
+    list.get(..length).unwrap_or(list)
+}
+
 /// The coefficient of degree 0.
 #[inline]
 pub(crate) fn first(series: &Series) -> f64 {
@@ -16,13 +23,14 @@ pub(crate) fn first(series: &Series) -> f64 {
 /// Coefficient `degree` of a product.
 #[inline]
 pub(crate) fn convolve(a: &Series, b: &Series, degree: usize) -> f64 {
-    dot_reversed(a.get(..=degree).unwrap_or_default(), b.get(..=degree).unwrap_or_default())
+    dot_reversed(head(a, degree + 1), head(b, degree + 1))
 }
 
 /// Σ aᵢ·b₋ᵢ of two lists of one length, the second read backward. Two sums side by side: one alone would wait for
 /// itself.
 #[inline]
 pub(crate) fn dot_reversed(a: &[f64], b: &[f64]) -> f64 {
+    debug_assert_eq!(a.len(), b.len(), "lists of one length");
     let (mut even, mut odd) = (0.0, 0.0);
     for (a, b) in a.chunks_exact(2).zip(b.rchunks_exact(2)) {
         if let ([a, next], [before, b]) = (a, b) {

@@ -2,7 +2,7 @@
 
 use super::graph::MOST_STATES;
 use super::march::March;
-use super::series::{Series, slope, value};
+use super::series::{Series, head, slope, value};
 use crate::field::State;
 use crate::system::ROUNDING;
 
@@ -48,7 +48,7 @@ impl March<'_> {
     fn reached(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> State<f64> {
         let mut end = [0.0; MOST_STATES];
         for (slot, series) in end.iter_mut().zip(series).take(self.model.states) {
-            *slot = value(series.get(..=degree).unwrap_or_default(), size);
+            *slot = value(head(series, degree + 1), size);
         }
         let [position, velocity, hidden @ ..] = end;
         let time = self.time + size;
@@ -73,7 +73,7 @@ impl March<'_> {
         defects
             .map(|(((series, rate), &scale), known)| {
                 let scale = self.reach(series, scale).max(f64::MIN_POSITIVE);
-                let defect = slope(series.get(..=degree).unwrap_or_default(), size) - rate;
+                let defect = slope(head(series, degree + 1), size) - rate;
                 (defect.abs() - known) * size / (scale * self.model.settings.tolerance)
             })
             .fold(0.0, |largest: f64, part| if part.is_finite() { largest.max(part) } else { f64::INFINITY })
@@ -117,6 +117,7 @@ impl March<'_> {
 fn first_term(series: &Series, time: f64) -> f64 {
     let mut terms =
         series.iter().zip(0_i32..).map(|(coefficient, degree)| coefficient.abs() * time.powi(degree));
+    // Where every term is zero the variable stays where it is.
     terms.find(|term| *term > 0.0).unwrap_or(0.0)
 }
 
@@ -126,7 +127,7 @@ struct Tails([f64; 4]);
 
 impl Tails {
     fn take(&mut self, series: &Series, degree: usize, scale: f64) {
-        let last = series.get(..=degree).unwrap_or_default().iter().rev();
+        let last = head(series, degree + 1).iter().rev();
         for (largest, coefficient) in self.0.iter_mut().zip(last) {
             let part = coefficient.abs() / scale.max(f64::MIN_POSITIVE);
             // `max` passes over what is not a number.

@@ -21,6 +21,7 @@ impl Diagnostics {
     /// infinite, no effective draws.
     pub(crate) fn of(chains: &[Vec<f64>]) -> Self {
         let split = split(chains);
+        // Without chains there is no draw.
         let shortest = split.iter().map(Vec::len).min().unwrap_or_default();
         if shortest < 2 {
             return Self { r_hat: f64::INFINITY, bulk: 0.0, tail: 0.0 };
@@ -103,6 +104,7 @@ fn variance(values: &[f64]) -> f64 {
 
 /// Within-chain variance and the pooled estimate: equations 1 to 3.
 fn variances(chains: &[Vec<f64>]) -> (f64, f64) {
+    // Without chains there is no draw.
     let length = chains.first().map_or(0, Vec::len) as f64;
     let within = mean(chains.iter().map(|chain| variance(chain)));
     let means: Vec<f64> = chains.iter().map(|chain| mean(chain.iter().copied())).collect();
@@ -118,6 +120,7 @@ fn r_hat(chains: &[Vec<f64>]) -> f64 {
 /// Number of draws over the integrated autocorrelation time, the autocorrelations summed while their
 /// pairs stay positive and made to fall (Geyer): equations 10 to 13.
 pub(crate) fn effective_draws(chains: &[Vec<f64>]) -> f64 {
+    // Without chains there is no draw.
     let length = chains.first().map_or(0, Vec::len);
     let total = (length * chains.len()) as f64;
     let (within, pooled) = variances(chains);

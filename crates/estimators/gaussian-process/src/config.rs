@@ -90,7 +90,7 @@ pub(crate) const FIELDS: &[Field] = &[
         kind: Kind::Integer { min: 6, max: 20_000 },
         default: Default::Integer(500),
         unit: "",
-        meaning: "Most peaks: time goes with their cube, memory with their square.",
+        meaning: "Most peaks: time grows with their cube, memory with their square.",
         source: "measured on one core: 69 peaks take 20 ms, 500 ten seconds, 1000 two minutes",
     },
     Field {

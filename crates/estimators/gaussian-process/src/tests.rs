@@ -209,7 +209,7 @@ fn envelopes_it_cannot_take_are_refused() {
     let error = try_fit(&config(Kernel::Rbf), &many, 0, None).unwrap_err();
     assert_eq!(
         error.to_string(),
-        "gaussian-process takes at most 500 peaks, its time going with their cube; the envelope has 501: thin \
+        "gaussian-process takes at most 500 peaks, since its time grows with their cube; the envelope has 501: thin \
          the envelope or raise estimator.most_peaks"
     );
 }

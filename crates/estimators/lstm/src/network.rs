@@ -84,6 +84,7 @@ impl Network {
 impl Encoder for Network {
     /// (Δs, z): the time since the entry before in units of the mean interval, 0 for the first, and z.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = |sequence: &Sequence| -> Vec<f64> {
             let interval = sequence.mean_interval();

@@ -52,6 +52,7 @@ impl VectorField {
     /// Positions of the parameters that may be drawn to zero: all but those that change where a line is
     /// added to the trajectory, which are the first layer's weights of time, its biases, and c.
     pub(crate) fn decayed(hidden: &[usize]) -> Vec<usize> {
+        // Without a hidden layer no parameter is drawn to zero.
         let width = hidden.first().copied().unwrap_or_default();
         let count = Self::parameter_count(hidden);
         (0..width).chain(3 * width..count.saturating_sub(1)).collect()

@@ -200,6 +200,8 @@ impl Workspace {
             let (done, rest) = self.values.split_at_mut(index);
             let Some(column) = rest.first_mut() else { break };
             column.clear();
+            debug_assert!(self.stack.len() >= node.arity(), "operands come before their operation");
+            // Never absent in a well-formed expression, which is the only kind that is made.
             let mut pop = || self.stack.pop().unwrap_or_default();
             let empty: &[f64] = &[];
             let operands = match node {

@@ -69,6 +69,7 @@ impl Grammar {
 
     fn unary<G: Rng>(&self, generator: &mut G) -> Unary {
         let known = Unary::ALL.len() - usize::from(!self.sine);
+        // Within the list, whose last entry is the sine.
         one_of(Unary::ALL.get(..known).unwrap_or_default(), Unary::Exp, generator)
     }
 

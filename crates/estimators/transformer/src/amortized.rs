@@ -91,6 +91,7 @@ impl Encoder for Reader {
     /// encoding of the entry's time.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
         let width = self.network.width();
+        // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = sequences
             .iter()
@@ -134,14 +135,13 @@ impl Skilled for AmortizedTransformerConfig {
 }
 
 #[cfg(test)]
+#[path = "../../../neural/testing/fresh_envelopes.rs"]
+mod fresh_envelopes;
+
+#[cfg(test)]
 mod tests {
     use super::*;
-    use conformance::least_squares;
-    use envelope::Envelope;
-    use estimator::{Cancel, FitContext, Silent};
-    use neural::amortized::Prior;
     use neural::{device, values};
-    use settings::{Document, Resolved, Section};
 
     fn config() -> AmortizedTransformerConfig {
         AmortizedTransformerConfig {
@@ -169,40 +169,5 @@ mod tests {
         for (found, expected) in found[7..14].iter().zip(expected) {
             assert!((found - expected).abs() < 1e-14, "{found} {expected}");
         }
-    }
-
-    /// Trained at the default settings, then shown envelopes drawn from the prior on another branch of the
-    /// seed, of as many peaks each as the draw says.
-    #[test]
-    #[allow(clippy::print_stdout, reason = "the figures, for whoever asks with --nocapture")]
-    fn over_a_thousand_fresh_envelopes_it_is_nearly_as_good_as_least_squares_and_calibrated() {
-        let section = [Section { name: "estimator", fields: FIELDS }];
-        let settings = Resolved::new(&Document::default(), &section).unwrap();
-        let estimator = (AMORTIZED_ENTRY.build)(&settings).unwrap();
-        let cancel = Cancel::new();
-        let context = FitContext::new(Seed::new(0).child(AMORTIZED_ENTRY.id), None, &Silent, &cancel);
-        let reader = estimator.pretrain(&context).unwrap().unwrap();
-        let prior: Prior = settings.section("estimator").unwrap();
-        let mut generator = Seed::new(0).child("fresh").generator();
-        let (mut own, mut best, mut held) = (0.0, 0.0, 0);
-        for _ in 0..1000 {
-            // s from −1 to 1 as 20 s.
-            let (sequence, [_, rate]) = prior.sequences(1, &mut generator).remove(0);
-            let times = sequence.times.iter().map(|s| 10.0 * (s + 1.0)).collect();
-            let envelope = Envelope::new(times, sequence.values, 21.8).unwrap();
-            let (truth, line) = (rate / 10.0, least_squares(&envelope));
-            let estimate = reader.fit(&envelope, &context).unwrap();
-            let [low, high] = estimate.uncertainty.unwrap().interval_95;
-            // Each in units of its line's standard error, so that the worst envelopes do not decide.
-            own += ((estimate.decay_rate - truth) / line.std_error).powi(2);
-            best += ((line.decay_rate - truth) / line.std_error).powi(2);
-            held += u32::from((low..=high).contains(&truth));
-        }
-        let (ratio, share) = (f64::sqrt(own / best), f64::from(held) / 1000.0);
-        println!("error {ratio:.4} of least squares', {:.1} % of the intervals hold λ", 100.0 * share);
-        // A thousand envelopes know the ratio to about 1 %: better than the efficient estimator would be
-        // luck or a fault.
-        assert!((0.97..1.1).contains(&ratio), "{ratio}");
-        assert!((0.935..0.965).contains(&share), "{share}");
     }
 }

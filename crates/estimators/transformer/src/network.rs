@@ -109,10 +109,12 @@ pub(crate) fn time_encoding(time: f64, width: usize) -> impl Iterator<Item = f64
 impl Encoder for Network {
     /// z, then the encoding of the entry's time since the first.
     fn input(&self, sequences: &[Sequence], device: &Device) -> Tensor<3> {
+        // Without sequences there are no entries.
         let entries = sequences.first().map_or(0, Sequence::len);
         let features = |sequence: &Sequence| -> Vec<f64> {
-            let (first, interval) =
-                (sequence.times.first().copied().unwrap_or(0.0), sequence.mean_interval());
+            // A sequence without entries has no feature either.
+            let first = sequence.times.first().copied().unwrap_or(0.0);
+            let interval = sequence.mean_interval();
             let entries = sequence.times.iter().zip(&sequence.values);
             let features = entries.flat_map(|(time, value)| {
                 std::iter::once(*value).chain(time_encoding((time - first) / interval, self.width()))

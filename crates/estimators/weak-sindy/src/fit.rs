@@ -177,6 +177,8 @@ impl Problem<'_> {
     ) -> Sloped {
         let scaled = self.scaled;
         let mut found = coefficients.iter().copied();
+        debug_assert_eq!(coefficients.len(), columns.len() + 1, "the constant, then one for each column");
+        // Never absent: asserted above.
         let constant = found.next().unwrap_or(0.0);
         let terms: Vec<(Column, f64)> = columns.iter().copied().zip(found).collect();
         let law = Law::new(constant, terms, Vec::new(), scaled);

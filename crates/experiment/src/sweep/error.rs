@@ -44,7 +44,7 @@ pub enum SweepError {
         key: String,
     },
     /// More combinations than a sweep may have.
-    #[error("the axes make {runs} runs, and a sweep has {MOST_RUNS} at most; make several sweeps of it")]
+    #[error("the axes make {runs} runs, and a sweep has {MOST_RUNS} at most; split it into several sweeps")]
     TooManyRuns {
         /// How many there would be.
         runs: u128,

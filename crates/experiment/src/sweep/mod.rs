@@ -56,6 +56,7 @@ pub fn plan(
         })?;
         let digest = digest(&experiment);
         if let Some(&first) = seen.get(&digest) {
+            // The first of two equal runs is in the list, whose numbers begin at 1.
             let overrides = runs.get(first - 1).map(|run| run.overrides.join(" ")).unwrap_or_default();
             return Err(SweepError::Repeated { first, overrides, second: number });
         }

@@ -113,8 +113,8 @@ impl Prior {
                 place += 1.0;
             }
         }
-        let (first, last) =
-            (times.first().copied().unwrap_or_default(), times.last().copied().unwrap_or_default());
+        // At least FEWEST are drawn; of none nothing is scaled.
+        let (first, last) = times.first().copied().zip(times.last().copied()).unwrap_or_default();
         times.iter().map(|time| 2.0 * (time - first) / (last - first) - 1.0).collect()
     }
 }

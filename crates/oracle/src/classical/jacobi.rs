@@ -16,7 +16,9 @@ pub(super) struct Decomposition {
 
 /// Decomposes a matrix given by columns.
 pub(super) fn decompose(mut columns: Vec<Vec<f64>>) -> Decomposition {
+    debug_assert!(columns.iter().all(|column| Some(column.len()) == columns.first().map(Vec::len)));
     let mut right: Vec<Vec<f64>> = diagonal(&vec![1.0; columns.len()]).collect();
+    // Without columns there are no rows.
     let rows = columns.first().map_or(0, Vec::len);
     let tolerance = (rows as f64).sqrt() * UNIT_ROUNDOFF;
     for _ in 0..MOST_SWEEPS {
@@ -73,6 +75,8 @@ fn rotate(a: &mut [f64], b: &mut [f64], cosine: f64, sine: f64) {
 
 /// Rows of a square matrix given by columns.
 pub(super) fn transpose(columns: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    debug_assert!(columns.iter().all(|column| column.len() == columns.len()), "a square matrix");
+    // Without columns there are no rows.
     let rows = columns.first().map_or(0, Vec::len);
     (0..rows).map(|row| columns.iter().filter_map(|column| column.get(row).copied()).collect()).collect()
 }

@@ -25,7 +25,7 @@ pub(super) struct Line {
 
 impl Line {
     pub(super) fn new(envelope: &Envelope) -> Self {
-        let duration = envelope.times_s().last().copied().unwrap_or(1.0);
+        let duration = envelope.duration_s();
         let logs = envelope.log_amplitudes();
         let count = logs.len() as f64;
         let mean = sum(logs) / count;

@@ -47,6 +47,7 @@ pub fn least_squares(columns: &[&[f64]], y: &[f64]) -> Result<LinearSolution, Or
 /// R with RᵀR = AᵀA for unit columns. A pivot that is nothing but rounding is refused.
 fn cholesky(columns: &[Vec<f64>]) -> Result<Triangle, OracleError> {
     let mut triangle = Triangle(Vec::new());
+    // Without columns there is no noise, and nothing to refuse.
     let noise = columns.len() as f64 * columns.first().map_or(0.0, |c| c.len() as f64).sqrt() * UNIT_ROUNDOFF;
     for (count, column) in columns.iter().enumerate() {
         let products: Vec<f64> = columns.iter().take(count).map(|earlier| dot(earlier, column)).collect();

@@ -90,7 +90,8 @@ fn rotate_rows(columns: &[Vec<f64>], y: &[f64]) -> (Triangle, Vec<f64>) {
                 }
                 (*right, value) = (cosine * *right + sine * value, cosine * value - sine * *right);
             }
-            rest = shrunk.get(1..).unwrap_or_default();
+            let [_, shorter @ ..] = shrunk.as_slice() else { break };
+            rest = shorter;
         }
     }
     let column = |at: usize| rows.iter().take(at + 1).enumerate().filter_map(move |(i, row)| row.get(at - i));

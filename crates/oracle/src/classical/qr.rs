@@ -56,10 +56,11 @@ pub(super) fn factorize(mut columns: Vec<Vec<f64>>, mut y: Vec<f64>) -> Factor {
     for step in 0..columns.len() {
         let (done, active) = columns.split_at_mut(step + 1);
         let Some(pivot) = done.last_mut() else { break };
-        let mut normal = pivot.get(step..).unwrap_or_default().to_vec();
+        let mut normal: Vec<f64> = pivot.iter().skip(step).copied().collect();
+        let size = length(&normal);
         let Some(head) = normal.first_mut() else { break };
         // The sign that adds to the head instead of canceling.
-        let image = -length(pivot.get(step..).unwrap_or_default()).copysign(*head);
+        let image = -size.copysign(*head);
         *head -= image;
         let square = dot(&normal, &normal);
         if square > 0.0 {

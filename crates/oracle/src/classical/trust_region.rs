@@ -54,7 +54,7 @@ impl Bounds {
         Ok(Self { low, high })
     }
 
-    /// No bounds on a number of parameters.
+    /// Bounds at −∞ and ∞ for a number of parameters.
     #[must_use]
     pub fn none(parameters: usize) -> Self {
         Self { low: vec![f64::NEG_INFINITY; parameters], high: vec![f64::INFINITY; parameters] }
@@ -183,7 +183,7 @@ impl Frame {
         for ((distance, unit), g) in distances.iter().zip(scales).zip(&gradient) {
             let reach = distance.map_or(1.0, |distance| distance * unit);
             scale.push(reach.sqrt() / unit);
-            // Curvature that the changing distance adds: |g| in scaled units.
+            // Curvature that the changing distance adds: |g| in scaled units; none without a bound.
             extra.push(distance.map_or(0.0, |_| (g / unit).abs().sqrt()));
             pressure = pressure.max((g / unit * reach).abs());
         }

@@ -66,6 +66,8 @@ pub(super) fn finite(a: &[f64]) -> bool {
 
 /// Product of a matrix by columns with a vector.
 pub(super) fn combine(columns: &[Vec<f64>], weights: &[f64]) -> Vec<f64> {
+    debug_assert_eq!(columns.len(), weights.len(), "a weight for each column");
+    // Without columns there are no rows.
     let rows = columns.first().map_or(0, Vec::len);
     let mut sum = vec![0.0; rows];
     for (column, weight) in columns.iter().zip(weights) {

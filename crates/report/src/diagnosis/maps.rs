@@ -57,8 +57,27 @@ enum Scale {
 /// The part of a spectrum with something to see: beyond the last significant cell it is noise up to half the sampling
 /// rate.
 fn spectrum(cells: &[MapCell]) -> &[MapCell] {
+    // Where no cell is significant the first ones stand for the rest.
     let last = cells.iter().rposition(|cell| cell.significant).unwrap_or(0);
     cells.get(..(last + 1 + BEYOND).min(cells.len())).unwrap_or(cells)
+}
+
+/// Cells along one axis as steps, interrupted where cells are apart or empty.
+fn stairs(cells: &[MapCell], value: impl Fn(&MapCell) -> f64) -> Vec<(f64, f64)> {
+    let mut points = Vec::with_capacity(2 * cells.len());
+    let mut last = f64::NEG_INFINITY;
+    for cell in cells {
+        let [from, to] = cell.bounds.first().copied().unwrap_or([f64::NAN; 2]);
+        let room = 1e-6 * (to - from);
+        if from > last + room || cell.samples == 0 {
+            points.push(BREAK);
+        }
+        if cell.samples > 0 {
+            points.extend([from, to].map(|end| (end, value(cell))));
+        }
+        last = to;
+    }
+    points
 }
 
 fn along(
@@ -71,23 +90,6 @@ fn along(
     reading: &str,
 ) -> Option<Figure> {
     let label = format!("RMS of what is left over ({})", result.gap.unit);
-    let steps = |value: fn(&MapCell) -> f64| -> Vec<(f64, f64)> {
-        let ends = |cell: &MapCell| cell.bounds.first().copied().unwrap_or([f64::NAN; 2]);
-        let mut points = Vec::with_capacity(2 * cells.len());
-        let mut last = f64::NEG_INFINITY;
-        for cell in cells {
-            let [from, to] = ends(cell);
-            let room = 1e-6 * (to - from);
-            if from > last + room || cell.samples == 0 {
-                points.push(BREAK);
-            }
-            if cell.samples > 0 {
-                points.extend([from, to].map(|end| (end, value(cell))));
-            }
-            last = to;
-        }
-        points
-    };
     let significant = cells.iter().filter(|cell| cell.significant);
     let marked = significant.filter_map(|cell| {
         let [from, to] = cell.bounds.first().copied()?;
@@ -104,10 +106,10 @@ fn along(
                 label: "significance band (5 % of chance in any cell)".to_owned(),
                 hue: Hue::Data,
                 mark: Mark::DottedLine,
-                points: steps(|cell| cell.band),
+                points: stairs(cells, |cell| cell.band),
             },
-            Simulator::Recalibrated.series(Mark::Line, steps(|cell| cell.value)),
-            Simulator::Repaired.series(Mark::Line, steps(|cell| cell.repaired)),
+            Simulator::Recalibrated.series(Mark::Line, stairs(cells, |cell| cell.value)),
+            Simulator::Repaired.series(Mark::Line, stairs(cells, |cell| cell.repaired)),
             Series {
                 label: "significant".to_owned(),
                 hue: Hue::Oracle,

@@ -17,7 +17,6 @@ use crate::classes::{effect_title, is_calibrated_already, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
-use crate::plot::Hue;
 use crate::remarks::is_of_the_chain_only;
 use crate::tables::Fact;
 use crate::verdict::{self, Origin, Tone, Verdict};
@@ -59,21 +58,19 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
     let gap = tables::gap(result);
     let page = DiagnosisPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "where a simulator and records part, and what closes the gap",
-            verdict: headline(result),
-            origin: origin(result),
             warnings: warnings(result),
             next: next(result),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
             files: [
                 ("Repaired simulator (repaired.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
                 ("Every number, unrounded (diagnosis.json)", texts.result),
             ],
+            ..Frame::bare(
+                texts,
+                "where a simulator and records part, and what closes the gap",
+                headline(result),
+                origin(result),
+            )
         },
         groups: classes::groups(result),
         nameless: classes::nameless(result),

@@ -9,7 +9,6 @@ use results::{FailedCase, FleetCase, FleetGroup, FleetNumber, FleetOutlier, Flee
 use crate::classes::{capitalized, class_title, listed};
 use crate::format::{probability, quantity, share, significant, unit};
 use crate::frame::{Frame, finish};
-use crate::plot::Hue;
 use crate::tables::whole;
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
@@ -88,21 +87,18 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &FleetResult) -> Result<Strin
         result.classes.iter().filter(|class| class.likely > 0).map(|class| class.id.as_str()).collect();
     finish(&FleetPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "a fleet: the answers of a batch side by side",
-            verdict: headline(result),
-            origin: origin(result),
             warnings: warnings(result),
-            next: Vec::new(),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
             files: [
                 ("Configuration", ""),
                 ("Environment", ""),
                 ("Every number, unrounded (fleet.json)", FILE_NOTE),
             ],
+            ..Frame::bare(
+                texts,
+                "a fleet: the answers of a batch side by side",
+                headline(result),
+                origin(result),
+            )
         },
         classes: classes(result),
         titles: ids.iter().map(|id| capitalized(&class_title(id))).collect(),

@@ -11,7 +11,6 @@ use crate::figures::Figure;
 use crate::format::{fixed, quantity, significant};
 use crate::frame::{Frame, finish};
 use crate::parse::Learning;
-use crate::plot::Hue;
 use crate::tables::{Fact, fact, whole};
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
@@ -67,21 +66,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, learning: &Learning) -> Result<String
     let result = &learning.result;
     let page = LearningPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "dynamics learned from records",
-            verdict: headline(result),
-            origin: origin(result),
             warnings: result.problems.iter().filter_map(|problem| problem.absent.clone()).collect(),
-            next: Vec::new(),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
-            files: [
-                ("Resolved configuration (config.toml)", texts.config),
-                ("Environment (environment.json)", texts.environment),
-                ("Every number, unrounded (result.json)", texts.result),
-            ],
+            ..Frame::bare(texts, "dynamics learned from records", headline(result), origin(result))
         },
         reading: READING,
         columns: COLUMNS,
@@ -195,15 +181,6 @@ fn headline(result: &LearnResult) -> Verdict {
 }
 
 fn origin(result: &LearnResult) -> Origin {
-    let mut origins: Vec<&str> = result.problems.iter().map(|problem| problem.origin.as_str()).collect();
-    origins.sort_unstable();
-    origins.dedup();
-    match origins[..] {
-        [one] => verdict::origin(one),
-        _ => Origin {
-            class: "simulated",
-            label: "Simulated and measured",
-            note: "Each section says which of the two its data set is.",
-        },
-    }
+    let origins = result.problems.iter().map(|problem| problem.origin.as_str());
+    verdict::origin_of_all(origins, "Each section says that of its data set.")
 }

@@ -126,6 +126,7 @@ impl Ticks {
     /// Letters of the longest label.
     pub(crate) fn longest_label(&self) -> usize {
         let places = self.ends.0.ceil() as i64..=self.ends.1.floor() as i64;
+        // An axis without ticks has no labels.
         places.map(|place| self.label(place as f64).chars().count()).max().unwrap_or(0)
     }
 

@@ -134,6 +134,7 @@ impl Table {
 fn encoded(column: &[f64], rising: bool) -> Value {
     let finite = || column.iter().copied().filter(|value| value.is_finite());
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
+    // A column without a number holds steps from nowhere: all of them are `null`.
     let from = finite().next().unwrap_or(0.0);
     // A power of ten, so that a round number stays one.
     let step = if high > low { 10f64.powf(((high - low) / STEPS).log10().floor()) } else { 1.0 };
@@ -146,6 +147,7 @@ fn encoded(column: &[f64], rising: bool) -> Value {
                 if let (true, Some(last)) = (rising, last) {
                     at = at.max(last + 1);
                 }
+                // The first is counted from the column's own beginning.
                 let delta = at - last.unwrap_or(0);
                 last = Some(at);
                 delta

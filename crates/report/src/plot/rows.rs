@@ -169,6 +169,7 @@ impl Form {
 
     /// Right of the axis, and left of it on a narrow page, half of a tick's label.
     fn margins(&self, rows: &[DotRow]) -> Margins {
+        // Without rows no name needs room.
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
         let names = letters as f64 * LETTER * self.canvas.tick_size;
         let left = if self.above { 24.0 } else { names + GAP + 4.0 };

@@ -16,7 +16,6 @@ use results::{PredictionResult, ProblemOutcome, ProblemRow};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Prediction;
-use crate::plot::Hue;
 use crate::tables::Fact;
 use crate::verdict::{self, Origin};
 use crate::{ReportError, RunTexts};
@@ -53,21 +52,8 @@ pub(crate) fn render(texts: &RunTexts<'_>, prediction: &Prediction) -> Result<St
     let result = &prediction.result;
     let page = PredictionPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "many methods on peaks they did not see",
-            verdict: headline(result),
-            origin: origin(result),
             warnings: absences(result),
-            next: Vec::new(),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
-            files: [
-                ("Resolved configuration (config.toml)", texts.config),
-                ("Environment (environment.json)", texts.environment),
-                ("Every number, unrounded (result.json)", texts.result),
-            ],
+            ..Frame::bare(texts, "many methods on peaks they did not see", headline(result), origin(result))
         },
         held_out: held_out(&result.splits),
         reading: scores::READING,

@@ -114,15 +114,6 @@ pub(super) fn headline(result: &PredictionResult) -> Verdict {
 }
 
 pub(super) fn origin(result: &PredictionResult) -> Origin {
-    let mut origins: Vec<&str> = studied(result).map(|row| row.origin.as_str()).collect();
-    origins.sort_unstable();
-    origins.dedup();
-    match origins[..] {
-        [one] => verdict::origin(one),
-        _ => Origin {
-            class: "simulated",
-            label: "Simulated and measured",
-            note: "Each section says which of the two its problem is.",
-        },
-    }
+    let origins = studied(result).map(|row| row.origin.as_str());
+    verdict::origin_of_all(origins, "Each section says that of its problem.")
 }

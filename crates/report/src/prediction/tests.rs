@@ -19,7 +19,7 @@ fn study(folder: &mut Folder, index: usize) -> &mut ProblemStudy {
 fn every_part_is_there() {
     let html = Folder::new().render().unwrap();
     for part in [
-        "Simulated and measured",
+        "Records of different origins",
         "Simulated record",
         "Measured record",
         "Some records are absent",

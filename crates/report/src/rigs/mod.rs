@@ -9,7 +9,6 @@ use results::{FailedCase, RigRow, RigsResult, SharedCoefficientRow};
 use crate::classes::{Standing, capitalized, class_title};
 use crate::format::{self, estimate, significant, unit};
 use crate::frame::{Frame, finish};
-use crate::plot::Hue;
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
 
@@ -63,21 +62,19 @@ struct CoefficientView<'a> {
 pub(crate) fn render(texts: &RunTexts<'_>, result: &RigsResult) -> Result<String, ReportError> {
     finish(&RigsPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "several rigs of one build: what they share, and where they differ",
-            verdict: headline(result),
-            origin: origin(result),
             warnings: warnings(result),
             next: next(result),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
             files: [
                 ("Configuration", ""),
                 ("Environment (environment.json)", texts.environment),
                 ("Every number, unrounded (rigs.json)", texts.result),
             ],
+            ..Frame::bare(
+                texts,
+                "several rigs of one build: what they share, and where they differ",
+                headline(result),
+                origin(result),
+            )
         },
         sentences: &result.sentences,
         rigs: result.rigs.iter().map(rig).collect(),

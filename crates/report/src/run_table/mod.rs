@@ -12,7 +12,6 @@ use results::{RunState, RunTable, SweepAxis};
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
-use crate::plot::Hue;
 use crate::verdict::{self, Origin};
 use crate::{ReportError, RunTexts};
 use cells::{Column, RowView};
@@ -48,21 +47,18 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
     };
     let page = RunTablePage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: if table.task == "sweep" { "a sweep" } else { "runs side by side" },
-            verdict: headline(table),
-            origin: origin(table),
             warnings: warnings(table),
-            next: Vec::new(),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
             files: [
                 ("Configuration that every run starts from (config.toml)", texts.config),
                 ("Environment (environment.json)", texts.environment),
                 ("Every number, unrounded (result.json)", result),
             ],
+            ..Frame::bare(
+                texts,
+                if table.task == "sweep" { "a sweep" } else { "runs side by side" },
+                headline(table),
+                origin(table),
+            )
         },
         axes: &table.axes,
         figures: figures::figures(table),

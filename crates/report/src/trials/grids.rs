@@ -63,8 +63,9 @@ fn by_size(
     }
 }
 
-pub(super) fn accuracy(result: &TrialsResult) -> Section {
-    let banks = Grid {
+/// Every bank's shares of right answers, by what counts as right.
+fn by_bank(result: &TrialsResult) -> Grid {
+    Grid {
         title: "By kind of case".to_owned(),
         corner: "Bank",
         columns: [
@@ -88,38 +89,35 @@ pub(super) fn accuracy(result: &TrialsResult) -> Section {
                     .collect(),
             })
             .collect(),
-    };
+    }
+}
+
+pub(super) fn accuracy(result: &TrialsResult) -> Section {
+    let grid =
+        |title: &str, rows: &[&SizeRow], name: fn(&SizeRow) -> String, of: fn(&SizeRow) -> Proportion| Grid {
+            title: title.to_owned(),
+            ..by_size(rows, name, of)
+        };
+    let bank = |row: &SizeRow| row.bank.clone();
+    let effect = |row: &SizeRow| row.effect.clone();
     let all: Vec<&SizeRow> = result.sizes.iter().collect();
     let mut grids = vec![
-        banks,
-        Grid {
-            title: "First name right, by kind of case and size".to_owned(),
-            ..by_size(&all, |row| row.bank.clone(), |row| row.top_1)
-        },
-        Grid {
-            title: "Its class right, by kind of case and size".to_owned(),
-            ..by_size(&all, |row| row.bank.clone(), |row| row.class)
-        },
+        by_bank(result),
+        grid("First name right, by kind of case and size", &all, bank, |row| row.top_1),
+        grid("Its class right, by kind of case and size", &all, bank, |row| row.class),
     ];
     let pairs: Vec<&SizeRow> = all.iter().copied().filter(|row| row.both.of > 0).collect();
     if !pairs.is_empty() {
-        grids.push(Grid {
-            title: "Both of two named, by size of the smaller".to_owned(),
-            ..by_size(&pairs, |row| row.bank.clone(), |row| row.both)
-        });
+        grids.push(grid("Both of two named, by size of the smaller", &pairs, bank, |row| row.both));
     }
     let mut banks: Vec<&str> = result.effects.iter().map(|row| row.bank.as_str()).collect();
     banks.dedup();
     for bank in banks.into_iter().filter(|bank| *bank != "pair") {
         let own: Vec<&SizeRow> = result.effects.iter().filter(|row| row.bank == bank).collect();
-        grids.push(Grid {
-            title: format!("First name right, by effect and size: {bank}"),
-            ..by_size(&own, |row| row.effect.clone(), |row| row.top_1)
-        });
-        grids.push(Grid {
-            title: format!("Its class right, by effect and size: {bank}"),
-            ..by_size(&own, |row| row.effect.clone(), |row| row.class)
-        });
+        let title = format!("First name right, by effect and size: {bank}");
+        grids.push(grid(&title, &own, effect, |row| row.top_1));
+        let title = format!("Its class right, by effect and size: {bank}");
+        grids.push(grid(&title, &own, effect, |row| row.class));
     }
     Section {
         id: "accuracy",
@@ -186,14 +184,40 @@ pub(super) fn confusion(result: &TrialsResult) -> Section {
     }
 }
 
-pub(super) fn closure(result: &TrialsResult) -> Section {
-    let study = &result.closure;
-    let row = |name: &str, cells: Vec<GridCell>| GridRow { name: name.to_owned(), cells };
-    let ratio = &result.ratio_to_floor;
-    let seconds = &result.seconds_per_case;
+/// How the right answers' errors and all answers' times are distributed.
+fn distributions(result: &TrialsResult) -> Grid {
     let number = |value: f64, unit: &str| {
         plain(if value.is_finite() { quantity(&significant(value, 3), unit) } else { "–".to_owned() })
     };
+    Grid {
+        title: String::new(),
+        corner: "",
+        columns: ["Cases", "Median", "95 % interval", "95 % quantile", "Largest"].map(str::to_owned).to_vec(),
+        rows: [
+            ("Held-out error, × noise, of right answers with a name", &result.ratio_to_floor, ""),
+            ("Wall time of an answer", &result.seconds_per_case, "s"),
+        ]
+        .map(|(name, of, unit)| {
+            let cells = vec![
+                plain(count(of.count)),
+                number(of.median.value, unit),
+                plain(if of.median.interval_95[0].is_finite() {
+                    interval(of.median.interval_95)
+                } else {
+                    "–".to_owned()
+                }),
+                number(of.quantile_95, unit),
+                number(of.worst, unit),
+            ];
+            GridRow { name: name.to_owned(), cells }
+        })
+        .into_iter()
+        .collect(),
+    }
+}
+
+pub(super) fn closure(result: &TrialsResult) -> Section {
+    let study = &result.closure;
     let left_out: Vec<String> =
         study.left_out.iter().map(|(reason, cases)| format!("{reason} ({cases})")).collect();
     let mut sentences = vec![format!("True closure: {}.", study.means)];
@@ -211,38 +235,12 @@ pub(super) fn closure(result: &TrialsResult) -> Section {
                 columns: ["Hold the true closure", "Lie above it", "Lie below it"]
                     .map(str::to_owned)
                     .to_vec(),
-                rows: vec![row(
-                    "95 % intervals",
-                    vec![share(&study.coverage), plain(count(study.below)), plain(count(study.above))],
-                )],
+                rows: vec![GridRow {
+                    name: "95 % intervals".to_owned(),
+                    cells: vec![share(&study.coverage), plain(count(study.below)), plain(count(study.above))],
+                }],
             },
-            Grid {
-                title: String::new(),
-                corner: "",
-                columns: ["Cases", "Median", "95 % interval", "95 % quantile", "Largest"]
-                    .map(str::to_owned)
-                    .to_vec(),
-                rows: [
-                    ("Held-out error, × noise, of right answers with a name", ratio, ""),
-                    ("Wall time of an answer", seconds, "s"),
-                ]
-                .map(|(name, of, unit)| {
-                    let cells = vec![
-                        plain(count(of.count)),
-                        number(of.median.value, unit),
-                        plain(if of.median.interval_95[0].is_finite() {
-                            interval(of.median.interval_95)
-                        } else {
-                            "–".to_owned()
-                        }),
-                        number(of.quantile_95, unit),
-                        number(of.worst, unit),
-                    ];
-                    row(name, cells)
-                })
-                .into_iter()
-                .collect(),
-            },
+            distributions(result),
         ],
         figures: Vec::new(),
     }

@@ -16,7 +16,6 @@ use results::{BarRow, FailureRow, TrialsResult};
 
 use crate::format::{count, fixed, interval, quantity, significant};
 use crate::frame::{Frame, finish};
-use crate::plot::Hue;
 use crate::verdict::{Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts, remarks};
 
@@ -58,25 +57,18 @@ pub(crate) fn render(texts: &RunTexts<'_>, result: &TrialsResult) -> Result<Stri
     let shown = result.failures.len().min(MOST_FAILURES);
     let page = TrialsPage {
         frame: Frame {
-            hues: &Hue::ALL,
-            name: texts.name,
-            kicker: "a diagnosis on effects that were withheld from it",
-            verdict: headline(result),
-            origin: Origin {
-                class: "simulated",
-                label: "Cases with a known truth",
-                note: "Made by the program; where measured records or a physics engine take part, the bank says so.",
-            },
             warnings: warnings(result),
             next: next(result),
-            pipelines: Vec::new(),
-            data: Vec::new(),
-            findings: Vec::new(),
-            files: [
-                ("Resolved configuration (config.toml)", texts.config),
-                ("Environment (environment.json)", texts.environment),
-                ("Every number, unrounded (result.json)", texts.result),
-            ],
+            ..Frame::bare(
+                texts,
+                "a diagnosis on effects that were withheld from it",
+                headline(result),
+                Origin {
+                    class: "simulated",
+                    label: "Cases with a known truth",
+                    note: "Made by the program; where measured records or a physics engine take part, the bank says so.",
+                },
+            )
         },
         cases: count(result.cases),
         right_means: &result.right_means,

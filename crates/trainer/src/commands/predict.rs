@@ -176,7 +176,7 @@ fn read(path: &Path, reading: &Reading, about: &About) -> Result<Trajectory, Tra
 }
 
 fn trajectory(record: &Record, clock: &Clock, name: String) -> Result<Trajectory, TrainerError> {
-    let first = clock.times_s.first().copied().unwrap_or_default();
+    let first = clock.start_s();
     let times = clock.times_s.iter().map(|time| time - first).collect();
     let input = record.input().map(<[f64]>::to_vec);
     let made = Trajectory::new(name.clone(), times, record.values().to_vec(), input);

@@ -69,7 +69,7 @@ pub(crate) fn simulate(
         Begun::Finished(outcome) => return Ok(outcome),
     };
     let count = plan.systems.saturating_mul(plan.records);
-    let progress = Progress::over_records(count as u64, arguments.output.quiet || arguments.output.json);
+    let progress = Progress::over(count as u64, "records", arguments.output.quiet || arguments.output.json);
     let written: Vec<Option<Written>> = pool.install(|| {
         (0..count)
             .into_par_iter()
@@ -97,7 +97,7 @@ pub(crate) fn simulate(
     let details = json!({ "records": result.records, "complete": result.complete });
     end(&folder, !result.complete, arguments.output.quiet, &details)?;
     arguments.output.print(&result, || summary(plan, &result, &folder))?;
-    Ok(if result.complete { Outcome::Done } else { Outcome::Interrupted })
+    Ok(Outcome::of(!result.complete, true))
 }
 
 /// Simulates one record and writes it, its truth and, with the first of a system, what is believed of it.

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum KeptError {
     #[error(
-        "{folder}: was begun with another {what}: {kept}, now {asked}; ask as it was asked then, or name another folder with \
+        "{folder}: was started with another {what}: {kept}, now {asked}; use the same one, or name another folder with \
          --out"
     )]
     AnotherQuestion { folder: String, what: String, kept: String, asked: String },

@@ -6,7 +6,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum ResumeError {
     #[error(
-        "{folder}: there is no run in it to go on with or to run again: its events.jsonl does not tell how one began; name \
+        "{folder}: there is no run in it to resume or to run again: its events.jsonl does not tell how one started; name \
          the folder of a run"
     )]
     NoRun { folder: String },
@@ -16,23 +16,23 @@ pub(crate) enum ResumeError {
     )]
     OfAnotherCommand { folder: String, command: &'static str },
     #[error(
-        "{file}: has been changed since the run began: its digest is not that in events.jsonl; bring it back as it was, \
-         or begin anew in another folder"
+        "{file}: has been changed since the run began: its digest is not that in events.jsonl; restore it, \
+         or start again in another folder"
     )]
     ConfigTouched { file: String },
     #[error(
-        "{folder}: this run was begun with other settings: {differences}; resume with those it was begun with \
+        "{folder}: this run was started with other settings: {differences}; resume with those it was started with \
          (`trainer {folder}/config.toml --out {folder} --resume`), or name another folder with --out"
     )]
     OtherConfig { folder: String, differences: String },
     #[error(
-        "{folder}: this run was begun by version {begun} of the program, this is {version}, whose digits may be others; \
-         resume with the version that began it, or begin anew in another folder"
+        "{folder}: this run was started by version {begun} of the program; this is {version}, whose digits may differ. \
+         Resume with the version that started it, or start again in another folder"
     )]
     OtherVersion { folder: String, begun: String, version: &'static str },
     #[error(
         "{file}: the record is not the one that the run was made with: expected the digest {expected}, found {found}; put the \
-         old record back, or begin anew in another folder"
+         old record back, or start again in another folder"
     )]
     OtherData { file: String, expected: String, found: String },
     #[error("{file}: the checkpoint belongs to another run; take it away and resume again")]

@@ -15,14 +15,14 @@ pub(crate) enum SweepCommandError {
     #[error(transparent)]
     Folder(#[from] SweepFolderError),
     #[error(
-        "{folder}: a sweep was begun there already; --resume goes on with it, another --out begins a new one"
+        "{folder}: a sweep was started there already; --resume continues it, another --out starts a new one"
     )]
     Begun { folder: String },
-    #[error("{folder}: there is no sweep to go on with; name a configuration to begin one")]
+    #[error("{folder}: there is no sweep to resume; name a configuration to start one")]
     NoSweep { folder: String },
     #[error(
         "{folder}: the sweep was frozen with other runs: {difference}; give the command that began it, leave the \
-         configuration out to go on with what is frozen, or begin another sweep in another folder"
+         configuration out to resume what is frozen, or start another sweep in another folder"
     )]
     Edited { folder: String, difference: String },
     #[error(

@@ -7,15 +7,17 @@ use truth::SealError;
 /// Why trials gave no score.
 #[derive(Debug, Error)]
 pub(crate) enum TrialsError {
-    #[error("{folder}: trials were begun here; go on with --resume, or name another folder with --out")]
+    #[error(
+        "{folder}: trials were started here; continue them with --resume, or name another folder with --out"
+    )]
     Begun { folder: String },
     #[error(
         "{folder}: there are no trials in it: manifest.json is missing; name the folder that `trainer trials` made"
     )]
     NoTrials { folder: String },
     #[error(
-        "{file}: these trials were begun with another configuration: {difference}; resume with the configuration that they \
-         were begun with, or begin new ones with another --out"
+        "{file}: these trials were started with another configuration: {difference}; resume with the configuration that they \
+         were started with, or start new ones with another --out"
     )]
     Edited { file: String, difference: String },
     #[error(
@@ -34,11 +36,11 @@ pub(crate) enum TrialsError {
     )]
     Changed { file: String, stated: String, found: String },
     #[error(
-        "{file}: this answer is to other records (digests {found}, not {stated}); delete it and resume the trials"
+        "{file}: this answer is for other records (digests {found}, not {stated}); delete it and resume the trials"
     )]
     OtherRecords { file: String, stated: String, found: String },
     #[error("{file}: case {number}: {source}")]
     Case { file: String, number: usize, source: TrialError },
-    #[error("the diagnosis of {group} could not be started or did not end well: {problem}")]
+    #[error("the diagnosis of {group} could not be started or failed: {problem}")]
     Process { group: String, problem: String },
 }

@@ -14,7 +14,7 @@ pub(crate) struct Input {
     pub(crate) record: Record,
     pub(crate) source: Source,
     pub(crate) clock: Clock,
-    /// The clock that the stamps and the values speak for.
+    /// The clock that the stamps and the values support.
     pub(crate) believed: Clock,
     pub(crate) extraction: Extraction,
     pub(crate) oracle: DecayFit,

@@ -23,34 +23,9 @@ impl Progress {
         Self::new(seeds, unit, seeds == 1, quiet)
     }
 
-    /// Over the fits of several methods.
-    pub(crate) fn over_fits(fits: u64, quiet: bool) -> Self {
-        Self::new(fits, "fits", false, quiet)
-    }
-
-    /// Over the runs of a sweep.
-    pub(crate) fn over_runs(runs: u64, quiet: bool) -> Self {
-        Self::new(runs, "runs", false, quiet)
-    }
-
-    /// Over the records of a simulation.
-    pub(crate) fn over_records(records: u64, quiet: bool) -> Self {
-        Self::new(records, "records", false, quiet)
-    }
-
-    /// Over the cases of a batch.
-    pub(crate) fn over_cases(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases", false, quiet)
-    }
-
-    /// Over the cases of trials, as they are made.
-    pub(crate) fn over_cases_made(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases made", false, quiet)
-    }
-
-    /// Over the cases of trials, as their truths are opened and simpler diagnosers asked.
-    pub(crate) fn over_cases_opened(cases: u64, quiet: bool) -> Self {
-        Self::new(cases, "cases opened", false, quiet)
+    /// Over so many of something, such as `"fits"`.
+    pub(crate) fn over(count: u64, unit: &'static str, quiet: bool) -> Self {
+        Self::new(count, unit, false, quiet)
     }
 
     fn new(length: u64, unit: &'static str, counts_steps: bool, quiet: bool) -> Self {
@@ -100,16 +75,22 @@ impl Progress {
     pub(crate) fn run_done(&self, said: &str) {
         self.bar.inc(1);
         if self.lines {
-            let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+            let (done, all) = self.place();
             console::remark(&format!("{done} of {all}: {said}"));
         }
         self.bar.set_message(said.to_owned());
     }
 
+    /// How many are done, and of how many.
+    fn place(&self) -> (u64, u64) {
+        // A bar without a length has nothing to count to.
+        (self.bar.position(), self.bar.length().unwrap_or(0))
+    }
+
     /// One more of very many is done: a line for every tenth part of them.
     pub(crate) fn one_of_many_done(&self) {
         self.bar.inc(1);
-        let (done, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let (done, all) = self.place();
         if self.lines && all > 0 && done * 10 / all > (done - 1) * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));
         }
@@ -117,7 +98,7 @@ impl Progress {
 
     /// So many of very many are done: a line wherever another tenth part of them is.
     pub(crate) fn so_many_done(&self, done: u64) {
-        let (before, all) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let (before, all) = self.place();
         self.bar.set_position(done);
         if self.lines && all > 0 && done * 10 / all > before * 10 / all {
             console::remark(&format!("{done} of {all} {}", self.unit));

@@ -15,9 +15,9 @@ Examples:
   trainer compare SWEEP --format csv > table.csv
   trainer compare SWEEP --out DIR                          report.html, table.csv, table.md, result.json
 
-Columns are the configuration keys in which the runs differ, the estimate, its standard error, the
-oracle gap (the distance from closed-form least squares on the same envelope), and how it came
-about. A folder that cannot be read is a row with the reason; the others are shown.")]
+The columns are the configuration keys in which the runs differ, the estimate, its standard error,
+the gap (distance from closed-form least squares on the same envelope), steps, seconds and the state
+in which the fit ended. A folder that cannot be read is a row with the reason; the others are shown.")]
 pub(crate) struct CompareArguments {
     /// Run folders, sweep folders, folders of runs, or quoted patterns with * ? [ ]
     #[arg(value_name = "RUN", required = true)]

@@ -95,20 +95,20 @@ pub(crate) struct Reading {
     /// Format of the files
     #[arg(long, value_enum, default_value_t = FormatChoice::Auto)]
     pub(crate) format: FormatChoice,
-    /// Clock to believe: the stamps as written, even in the sample index, or what stamps and values speak for
+    /// Clock to use: the stamps as written (host), evenly spaced samples (uniform-index), or what stamps and values support
     #[arg(long, value_name = "CLOCK", default_value = "auto",
           value_parser = PossibleValuesParser::new(record::ClockChoice::NAMES))]
     pub(crate) clock: String,
     /// The time column
     #[arg(long, value_name = "COLUMN")]
     pub(crate) time: Option<String>,
-    /// The observed column, whatever it holds
+    /// The observed column
     #[arg(long, value_name = "COLUMN", alias = "angle")]
     pub(crate) value: Option<String>,
     /// The column of the measured input
     #[arg(long, value_name = "COLUMN")]
     pub(crate) input: Option<String>,
-    /// Unit of the observed column [default: by its name, else of the nominal's coordinate]
+    /// Unit of the observed column [default: from its name, else that of the simulator's coordinate]
     #[arg(long, value_name = "UNIT", value_parser = PossibleValuesParser::new(Unit::NAMES))]
     pub(crate) unit: Option<String>,
     /// Unit of the input [default: by its header]
@@ -120,7 +120,7 @@ pub(crate) struct Reading {
     /// Lines to read, where a file holds several series: --where joint=elbow
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filter: Option<String>,
-    /// Cells without a number: leave a gap (segment), close up a file without a time column (drop), or refuse
+    /// Cells without a number: leave a gap (segment), close the gap in a file without a time column (drop), or refuse the file
     #[arg(long, value_name = "CHOICE", default_value = "segment",
           value_parser = PossibleValuesParser::new(Missing::NAMES))]
     pub(crate) missing: String,
@@ -133,7 +133,7 @@ pub(crate) struct Reading {
     /// Where the numbers came from, where the files do not say: for the report's headline, not for the diagnosis
     #[arg(long, value_name = "ORIGIN", value_parser = PossibleValuesParser::new(record::Origin::NAMES))]
     pub(crate) origin: Option<String>,
-    /// Takes the mean of the observed column and of the input away: for channels with an arbitrary zero
+    /// Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero
     #[arg(long)]
     pub(crate) remove_mean: bool,
 }

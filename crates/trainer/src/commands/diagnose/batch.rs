@@ -123,7 +123,7 @@ fn fates(
     cancel: &Cancel,
 ) -> BTreeMap<usize, Fate> {
     let silent = arguments.output.quiet || arguments.output.json;
-    let progress = Progress::over_cases(cases.len() as u64, silent);
+    let progress = Progress::over(cases.len() as u64, "cases", silent);
     let mut fates = BTreeMap::new();
     let mut open: Vec<(usize, &Case)> = cases.iter().enumerate().collect();
     for round in 0.. {

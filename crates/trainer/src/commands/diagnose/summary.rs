@@ -208,7 +208,7 @@ fn chain(result: &DiagnosisResult) -> String {
         format!(", resolution {}", quantity(&significant(step, 3), &result.gap.unit))
     });
     let mut lines = vec![format!(
-        "measuring chain: clock {}, {}{resolution}",
+        "measurement chain: clock {}, {}{resolution}",
         chain.clock,
         quantity(&significant(chain.sample_rate_hz, 5), "Hz")
     )];

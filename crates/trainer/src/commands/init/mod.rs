@@ -1,4 +1,4 @@
-//! `trainer init`: a first look at a log, and the files to go on from.
+//! `trainer init`: a first look at a log, and the files to start from.
 
 use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
@@ -16,7 +16,7 @@ use workflow::guess as files;
 use workflow::read::{centered, coordinate_of};
 use workflow::{WorkflowError, in_options};
 
-/// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to go on from.
+/// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
@@ -25,7 +25,7 @@ Examples:
   trainer init arm.csv --where joint=elbow     one of several series in a file
   trainer init log.csv --value phi --unit deg  where the file does not say it
 
-It prints the call of `trainer diagnose` that goes on from there. Nothing that exists is overwritten.")]
+It prints the `trainer diagnose` command to continue with. Nothing that exists is overwritten.")]
 pub(crate) struct InitArguments {
     /// The log: any text file with columns
     #[arg(value_name = "LOG")]

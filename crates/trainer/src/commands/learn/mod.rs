@@ -60,7 +60,7 @@ pub(crate) fn learn(
     keep::write(&folder, &result, &tried)?;
     end(&folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
     output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(if interrupted { Outcome::Interrupted } else { Outcome::Done })
+    Ok(Outcome::of(interrupted, true))
 }
 
 /// What the run is made of.
@@ -88,7 +88,7 @@ fn try_all<'a>(
         .flat_map(|(problem, ready)| methods.iter().map(move |method| (problem, ready, method)))
         .filter(|(_, ready, method)| method.kind != LearnKind::Reference || ready.truth.is_some())
         .collect();
-    let progress = Progress::over_fits(jobs.len() as u64, silent);
+    let progress = Progress::over(jobs.len() as u64, "fits", silent);
     let tried = pool.install(|| {
         jobs.into_par_iter()
             .map(|(problem, ready, method)| {

@@ -148,7 +148,7 @@ const SI: Units = Units::Si(Coordinate::Angle);
 fn kind(kind: Kind) -> &'static str {
     match kind {
         Kind::System => "the system",
-        Kind::MeasuringChain => "the measuring chain",
+        Kind::MeasuringChain => "the measurement chain",
     }
 }
 

@@ -38,13 +38,7 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
     result.truth = known_truth::compare(&run.input, &answer)?;
     keep(run, &result, interrupted)?;
     run.print(&result, || summary::comparison(&result, run.folder.path()))?;
-    Ok(if interrupted {
-        Outcome::Interrupted
-    } else if result.pass {
-        Outcome::Done
-    } else {
-        Outcome::CheckFailed
-    })
+    Ok(Outcome::of(interrupted, result.pass))
 }
 
 /// Whether a fit was stopped before its end, or was not begun.
@@ -73,7 +67,7 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
             seeds.clone().take(count).map(move |seed| (at, seed))
         })
         .collect();
-    let progress = Progress::over_fits(jobs.len() as u64, run.is_silent());
+    let progress = Progress::over(jobs.len() as u64, "fits", run.is_silent());
     let setting = FitSetting {
         envelope: &run.input.extraction.envelope,
         request: Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel },

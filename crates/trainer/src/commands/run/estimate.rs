@@ -35,13 +35,7 @@ pub(crate) fn estimate(run: &Run<'_>, method: &Method) -> Result<Outcome, Traine
         (fits.len() as u64) < run.experiment.fit.seeds || fits.iter().any(SeedFit::is_interrupted);
     keep(run, first, &result, interrupted)?;
     run.print(&result, || summary::summary(&result, run.folder.path()))?;
-    Ok(if interrupted {
-        Outcome::Interrupted
-    } else if result.pass {
-        Outcome::Done
-    } else {
-        Outcome::CheckFailed
-    })
+    Ok(Outcome::of(interrupted, result.pass))
 }
 
 /// Fits every seed, in parallel; the order of the result is that of the seeds. A request to stop leaves

@@ -9,14 +9,14 @@ use std::path::PathBuf;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  trainer sweep configs/pinn.toml seed=0..9                 ten runs: a range holds both its ends
+  trainer sweep configs/pinn.toml seed=0..9                 ten runs: a range includes both its ends
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9 --out SWEEP
                                    twenty: each estimator with each seed
   trainer sweep configs/pinn.toml 'estimator.hidden=[16],[32,32]' fit.max_steps=50,500
-                                   a comma inside brackets separates nothing
+                                   a comma inside brackets belongs to the value
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9 --out SWEEP --resume
                                    what is missing, if the configuration is the same
-  trainer sweep --out SWEEP --resume --failed               and what failed; the frozen list alone
+  trainer sweep --out SWEEP --resume --failed               what is missing and what failed, from the folder alone
   trainer sweep configs/pinn.toml seed=0..999 --out SWEEP --shard 2/8
                                    the second of eight shares; all may run at once on one folder
   trainer sweep configs/pinn.toml seed=0..999 --launcher slurm --shards 20

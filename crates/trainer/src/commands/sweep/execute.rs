@@ -49,7 +49,7 @@ pub(super) fn execute(
     output: Output,
     cancel: &'static Cancel,
 ) -> Result<(), RunError> {
-    let progress = Progress::over_runs(jobs.len() as u64, output.quiet || output.json);
+    let progress = Progress::over(jobs.len() as u64, "runs", output.quiet || output.json);
     let queue = Queue::new(jobs);
     let fault: Mutex<Option<RunError>> = Mutex::new(None);
     let clerk = Mutex::new(Clerk::new(sweep));
@@ -277,14 +277,14 @@ fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Prog
 fn said(rows: &[RunTableRow]) -> String {
     let bad = rows.iter().filter(|row| row.pass == Some(false)).count();
     match rows {
-        [RunTableRow { zeta: Some(zeta), error_percent, reached, steps, seconds, .. }] => format!(
-            "{} after {} steps, {:.2} s, ζ {zeta:.8}, gap {} %{}",
-            reached.replace('_', " "),
-            steps.unwrap_or_default(),
-            seconds.unwrap_or_default(),
-            two_digits(error_percent.unwrap_or(f64::NAN)),
-            if bad > 0 { ", FAILS its tolerance" } else { "" },
-        ),
+        [RunTableRow { zeta: Some(zeta), error_percent, reached, steps, seconds, .. }] => {
+            let steps = steps.map(|steps| format!(" after {steps} steps"));
+            let seconds = seconds.map(|seconds| format!(", {seconds:.2} s"));
+            let gap = error_percent.map(|error| format!(", gap {} %", two_digits(error)));
+            let [steps, seconds, gap] = [steps, seconds, gap].map(Option::unwrap_or_default);
+            let fails = if bad > 0 { ", FAILS its tolerance" } else { "" };
+            format!("{}{steps}{seconds}, ζ {zeta:.8}{gap}{fails}", reached.replace('_', " "))
+        }
         rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
     }
 }
@@ -310,5 +310,29 @@ impl Clerk {
         let begun = Instant::now();
         let _ = sweep.folder.refresh(&mut self.manifest);
         (self.last, self.rest) = (Instant::now(), begun.elapsed() * REST);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{RunTableRow, said};
+    use results::RunState;
+
+    #[test]
+    fn what_is_not_known_of_a_run_is_not_said_to_be_zero() {
+        let bare = RunTableRow::without_numbers("0001", RunState::Done, "");
+        let known = RunTableRow { zeta: Some(0.01), reached: "budget_spent".to_owned(), ..bare };
+        assert_eq!(said(std::slice::from_ref(&known)), "budget spent, ζ 0.01000000");
+        let all = RunTableRow {
+            steps: Some(7),
+            seconds: Some(0.25),
+            error_percent: Some(3e-6),
+            pass: Some(false),
+            ..known
+        };
+        assert_eq!(
+            said(&[all]),
+            "budget spent after 7 steps, 0.25 s, ζ 0.01000000, gap 3.0e-6 %, FAILS its tolerance"
+        );
     }
 }

@@ -164,7 +164,7 @@ fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep,
     };
     if manifest.version != env!("CARGO_PKG_VERSION") {
         console::remark(&format!(
-            "note: version {} froze this sweep and {} goes on with it; their numbers may differ",
+            "note: version {} froze this sweep and {} continues it; their numbers may differ",
             manifest.version,
             env!("CARGO_PKG_VERSION")
         ));

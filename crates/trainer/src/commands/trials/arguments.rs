@@ -23,15 +23,17 @@ Examples:
                                    a job array with one task for each share
   trainer report DIR               the report again
 
-DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and truths,
-written before the first diagnosis), answers/GROUP/ID/diagnosis.json, truth/ID.json (written after the
-last), failed.json (why cases have no answer), result.json, cases.csv and report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis
-is told not to consider one. Each group is diagnosed by a process of its own, which gets that
-group's folder of cases and nothing else.
+DIR holds cases/GROUP/ID/ (what the diagnosis is given), manifest.json (digests of records and
+truths, written before the first diagnosis), answers/GROUP/ID/diagnosis.json, truth/ID.json (written
+after the last diagnosis), failed.json (why cases have no answer), result.json, cases.csv and
+report.html. GROUP is `full`, or `without-EFFECT` where the diagnosis is told not to consider an
+effect. Each group is diagnosed by a process of its own, which gets that group's folder of cases and
+nothing else.
 
-Exit codes: 0 scored, whatever the scores; 1 where a score misses a value that the configuration's [gate]
-asks for, and with --check where the whole 95 % interval of some bar's measure lies on the wrong side; 2 wrong input or usage, a broken seal among it; 130 interrupted:
-everything so far is kept. With --as-task 0 instead of 1.")]
+Exit codes: 0 scored, whatever the scores; 1 where a score misses a value that the configuration's
+[gate] asks for, and with --check where the whole 95 % interval of a score lies on the wrong side of
+its bar; 2 wrong input or usage, or a broken seal; 130 interrupted: everything so far is kept. With
+--as-task 0 instead of 1.")]
 pub(crate) struct TrialsArguments {
     /// The trials: a TOML file
     #[arg(required_unless_present = "score", conflicts_with = "score")]
@@ -44,7 +46,7 @@ pub(crate) struct TrialsArguments {
     /// Opens the seals of these trials and scores their answers again
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "resume", "seed", "launcher"])]
     pub(crate) score: Option<PathBuf>,
-    /// Exit code 1 where the whole 95 % interval of a bar's measure lies on the wrong side
+    /// Ends with exit code 1 where the whole 95 % interval of a score lies on the wrong side of its bar
     #[arg(long)]
     pub(crate) check: bool,
     #[command(flatten)]

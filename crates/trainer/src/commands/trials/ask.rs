@@ -51,7 +51,7 @@ pub(crate) fn ask(
         return Err(TrialsError::Open { folder: truths.display().to_string(), missing: count }.into());
     }
     let silent = arguments.output.quiet || arguments.output.json;
-    let progress = Progress::over_cases(own.len() as u64, silent);
+    let progress = Progress::over(own.len() as u64, "cases", silent);
     let mut done = own.len() - count;
     progress.so_many_done(done as u64);
     let mut failed = BTreeMap::new();

@@ -30,7 +30,7 @@ pub(crate) fn make(
     cancel: &Cancel,
 ) -> Result<Option<Made>, TrainerError> {
     let silent = arguments.output.quiet || arguments.output.json;
-    let progress = Progress::over_cases_made(plan.len() as u64, silent);
+    let progress = Progress::over(plan.len() as u64, "cases made", silent);
     let file = arguments.config.as_ref().map(|path| path.display().to_string()).unwrap_or_default();
     let numbers: Vec<usize> = (0..plan.len()).collect();
     let made = each(&numbers, pool, cancel, &progress, |&number| {

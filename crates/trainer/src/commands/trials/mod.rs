@@ -227,7 +227,7 @@ fn same(folder: &RunFolder, config: &str) -> Result<(), TrainerError> {
 
 /// How interrupted trials go on.
 fn go_on(folder: &RunFolder) -> String {
-    format!("go on with the same command, --out {} and --resume", folder.path().display())
+    format!("continue with the same command, --out {} and --resume", folder.path().display())
 }
 
 fn interrupted(folder: &RunFolder, during: &str, remedy: &str) -> Result<Outcome, TrainerError> {

@@ -45,7 +45,7 @@ pub(crate) fn open(
     failed: &BTreeMap<String, String>,
     (cancel, silent): (&Cancel, bool),
 ) -> Result<Option<Opened>, TrainerError> {
-    let progress = Progress::over_cases_opened(manifest.cases.len() as u64, silent);
+    let progress = Progress::over(manifest.cases.len() as u64, "cases opened", silent);
     let lines = &manifest.cases;
     let opened = each(lines, pool, cancel, &progress, |line| one(folder, line, failed))?;
     let Some(opened) = opened else { return Ok(None) };

@@ -239,7 +239,9 @@ pub(crate) fn end(
         folder.record_event(INTERRUPTED, details)?;
         if !quiet {
             let shown = folder.path().display();
-            console::remark(&format!("interrupted; go on with the same command, --out {shown} and --resume"));
+            console::remark(&format!(
+                "interrupted; continue with the same command, --out {shown} and --resume"
+            ));
         }
         return Ok(());
     }

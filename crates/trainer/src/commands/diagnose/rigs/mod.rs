@@ -46,7 +46,8 @@ pub(super) fn rigs(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerErro
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
     let threads = pool.current_num_threads();
-    let progress = Progress::over_cases(rigs.len() as u64, arguments.output.quiet || arguments.output.json);
+    let progress =
+        Progress::over(rigs.len() as u64, "cases", arguments.output.quiet || arguments.output.json);
     let fates: Vec<Option<Fate>> = pool.install(|| {
         rigs.par_iter()
             .map(|rig| {
@@ -67,11 +68,7 @@ pub(super) fn rigs(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerErro
     let _saving = Saving::begin();
     let result = kept_result(&folder, fates, threads, start)?;
     arguments.output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(match (result.complete, result.failed.is_empty()) {
-        (false, _) => Outcome::Interrupted,
-        (true, false) => Outcome::CheckFailed,
-        (true, true) => Outcome::Done,
-    })
+    Ok(Outcome::of(!result.complete, result.failed.is_empty()))
 }
 
 /// Writes what the rigs share, the report last.

@@ -71,7 +71,7 @@ pub(crate) fn predict(
     keep(&folder, &result, &rows)?;
     end(&folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
     output.print(&result, || summary::summary(&result, folder.path()))?;
-    Ok(if interrupted { Outcome::Interrupted } else { Outcome::Done })
+    Ok(Outcome::of(interrupted, true))
 }
 
 /// What the run is made of.
@@ -100,7 +100,7 @@ fn pretrain(
     ledger: &Ledger,
 ) -> Result<Vec<Method>, TrainerError> {
     let (seed, cap) = (study.seed, study.settings.max_steps);
-    let progress = Progress::over_fits(methods.len() as u64, true);
+    let progress = Progress::over(methods.len() as u64, "fits", true);
     let train = |method: Method| {
         let name = format!("training of {}", method.id());
         let watcher = Watcher::new(&progress, Some(Place { ledger, name: &name }))?;
@@ -141,7 +141,7 @@ fn run_all(
         })
         .collect();
     let silent = output.quiet || output.json;
-    let progress = Progress::over_fits(jobs.len() as u64, silent);
+    let progress = Progress::over(jobs.len() as u64, "fits", silent);
     let trials = Trials { max_steps: study.settings.max_steps, cancel, ledger };
     let done: Result<Vec<(usize, usize, Placed)>, TrainerError> = pool.install(|| {
         jobs.into_par_iter()
