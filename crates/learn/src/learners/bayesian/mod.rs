@@ -5,6 +5,8 @@
 //! fit, widened for correlated residuals, and the prior of the coefficients is flat. Gradients come from exact
 //! sensitivities; the sampler works in the coordinates that make Laplace's approximation a standard normal.
 
+#[cfg(test)]
+mod coverage;
 mod nuts;
 
 use super::library::{LAW, Library, Regression, law, restore, thresholded};
