@@ -1,14 +1,13 @@
 //! Where a search tries next: random points, or points of a tree-structured Parzen estimator.
 //!
 //! Bergstra, Bardenet, Bengio, Kégl, Algorithms for Hyper-Parameter Optimization, NeurIPS 24 (2011) 2546, each key by
-//! itself; the estimator is the crate `tpe`. Numbers are drawn in the unit interval of their scale.
+//! itself. Numbers are drawn in the unit interval of their scale.
 
-use super::{Dimension, SweepError};
+use super::{Dimension, Domain, SweepError};
 use rand::{Rng, RngExt};
+use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use serde::{Deserialize, Serialize};
-use tpe::density_estimation::DefaultEstimatorBuilder;
-use tpe::{TpeOptimizer, histogram_estimator, parzen_estimator};
 
 /// How a search chooses its points.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,8 +52,8 @@ pub fn propose(
     for number in tried.len()..tried.len() + count {
         let mut generator = seed.child("search").child(&number.to_string()).generator();
         let is_guided = sampler == Sampler::Tpe && number >= STARTING_POINTS && !tried.is_empty();
-        let mut estimators = match is_guided {
-            true => estimators(dimensions, &known)?,
+        let estimators = match is_guided {
+            true => estimators(dimensions, &known),
             false => Vec::new(),
         };
         let is_new = |point: &Vec<String>| known.iter().all(|other| other.overrides != *point);
@@ -63,7 +62,7 @@ pub fn propose(
             let guided = is_guided && attempt < MOST_DRAWS / 2;
             let places = dimensions.iter().enumerate();
             places
-                .map(|(at, dimension)| match estimators.get_mut(at).filter(|_| guided) {
+                .map(|(at, dimension)| match estimators.get(at).filter(|_| guided) {
                     Some(estimator) => dimension.at(estimator.place(&mut generator)),
                     None => dimension.at(generator.random()),
                 })
@@ -76,42 +75,110 @@ pub fn propose(
     Ok(known.into_iter().skip(tried.len()).map(|point| point.overrides).collect())
 }
 
-/// The estimator of one dimension.
+/// Share of the points that count as good.
+const GOOD: f64 = 0.1;
+
+/// Places drawn where the good points lie, of which the one is taken where they are densest against the others.
+const CANDIDATES: usize = 24;
+
+/// Where the good and the other points of one dimension lie.
 struct Estimator {
-    optimizer: TpeOptimizer<DefaultEstimatorBuilder>,
-    /// Number of choices; `None` for numbers.
-    choices: Option<usize>,
+    good: Density,
+    others: Density,
 }
 
 impl Estimator {
     /// A place in the unit interval.
-    fn place<R: Rng>(&mut self, generator: &mut R) -> f64 {
-        let Ok(asked) = self.optimizer.ask(generator);
-        self.choices.map_or(asked, |choices| (asked + 0.5) / choices as f64)
+    fn place<R: Rng>(&self, generator: &mut R) -> f64 {
+        let candidates = (0..CANDIDATES).map(|_| self.good.draw(generator));
+        let rated = candidates.map(|place| (self.good.log(place) - self.others.log(place), place));
+        rated.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.5, |(_, place)| place)
     }
 }
 
-fn estimators(dimensions: &[Dimension], tried: &[TriedPoint]) -> Result<Vec<Estimator>, SweepError> {
+/// One estimator for each dimension.
+fn estimators(dimensions: &[Dimension], tried: &[TriedPoint]) -> Vec<Estimator> {
+    let cost = |point: &&TriedPoint| point.cost.filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
+    let mut order: Vec<&TriedPoint> = tried.iter().collect();
+    order.sort_by(|one, other| cost(one).total_cmp(&cost(other)));
+    let (good, others) = order.split_at((GOOD * order.len() as f64).ceil() as usize);
     let make = |(at, dimension): (usize, &Dimension)| {
-        let choices = match &dimension.domain {
-            super::Domain::Choice(values) => Some(values.len()),
-            super::Domain::Range(_) => None,
+        let density = |points: &[&TriedPoint]| {
+            let place = |point: &&TriedPoint| dimension.place(point.overrides.get(at)?);
+            Density::of(&dimension.domain, points.iter().filter_map(place).collect())
         };
-        let wide = choices.map_or(1.0, |choices| choices as f64);
-        let unusable = |_| SweepError::NoAxis { argument: dimension.key.clone() };
-        let range = tpe::range(0.0, wide).map_err(unusable)?;
-        let builder = if choices.is_some() { histogram_estimator() } else { parzen_estimator() };
-        let mut optimizer = TpeOptimizer::new(builder, range);
-        for point in tried {
-            let Some(place) = point.overrides.get(at).and_then(|own| dimension.place(own)) else { continue };
-            // The range holds its beginning, not its end.
-            let place = (place * wide).min(wide * (1.0 - f64::EPSILON));
-            let cost = point.cost.filter(|cost| !cost.is_nan()).unwrap_or(f64::INFINITY);
-            let _ = optimizer.tell(place, cost);
-        }
-        Ok(Estimator { optimizer, choices })
+        Estimator { good: density(good), others: density(others) }
     };
     dimensions.iter().enumerate().map(make).collect()
+}
+
+/// A density over the unit interval, up to a factor.
+enum Density {
+    /// Normal kernels of a number: centers and widths.
+    Kernels(Vec<(f64, f64)>),
+    /// Weights of choices.
+    Weights(Vec<f64>),
+}
+
+impl Density {
+    /// Of places; with a wide kernel in the middle, and a count of one for each choice, as what is known before.
+    fn of(domain: &Domain, mut places: Vec<f64>) -> Self {
+        if let Domain::Choice(values) = domain {
+            let mut weights = vec![1.0; values.len()];
+            for place in places {
+                if let Some(weight) = weights.get_mut((place * values.len() as f64) as usize) {
+                    *weight += 1.0;
+                }
+            }
+            return Self::Weights(weights);
+        }
+        places.push(0.5);
+        places.sort_by(f64::total_cmp);
+        let least = 1.0 / (1.0 + places.len() as f64).min(100.0);
+        let (before, after) = (places.iter().copied(), places.iter().copied().skip(1));
+        let (before, after) = (std::iter::once(0.0).chain(before), after.chain([1.0]));
+        let widths = before.zip(after).zip(&places);
+        // As wide as the way to the farther neighbor.
+        let width = |((before, after), place): ((f64, f64), &f64)| (place - before).max(after - place);
+        Self::Kernels(widths.map(|own| (*own.1, width(own).clamp(least, 1.0))).collect())
+    }
+
+    fn draw<R: Rng>(&self, generator: &mut R) -> f64 {
+        match self {
+            Self::Kernels(kernels) => {
+                let mut draw = || {
+                    let number = generator.random_range(0..kernels.len());
+                    let standard: f64 = StandardNormal.sample(generator);
+                    kernels.get(number).map_or(0.5, |(center, width)| center + width * standard)
+                };
+                let drawn = std::iter::repeat_with(&mut draw).take(MOST_DRAWS);
+                drawn.into_iter().find(|place| (0.0..1.0).contains(place)).unwrap_or(0.5)
+            }
+            Self::Weights(weights) => {
+                let mut left = generator.random::<f64>() * weights.iter().sum::<f64>();
+                let passed = weights.iter().take_while(|weight| {
+                    left -= **weight;
+                    left >= 0.0
+                });
+                let number = passed.count().min(weights.len().saturating_sub(1));
+                (number as f64 + 0.5) / weights.len() as f64
+            }
+        }
+    }
+
+    fn log(&self, place: f64) -> f64 {
+        match self {
+            Self::Kernels(kernels) => {
+                let kernel =
+                    |(center, width): &(f64, f64)| (-0.5 * ((place - center) / width).powi(2)).exp() / width;
+                (kernels.iter().map(kernel).sum::<f64>() / kernels.len() as f64).ln()
+            }
+            Self::Weights(weights) => {
+                let weight = weights.get((place * weights.len() as f64) as usize).copied().unwrap_or(0.0);
+                (weight / weights.iter().sum::<f64>()).ln()
+            }
+        }
+    }
 }
 
 #[cfg(test)]
