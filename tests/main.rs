@@ -42,6 +42,7 @@ mod rigs;
 mod run_folders;
 mod rust_interface;
 mod schema;
+mod searching;
 mod shares;
 mod simulation;
 mod slurm;

@@ -37,24 +37,33 @@ impl Observer for Silent {
 
 /// A request to stop, shared between threads. Set once, never cleared.
 #[derive(Debug, Default)]
-pub struct Cancel(AtomicBool);
+pub struct Cancel {
+    asked: AtomicBool,
+    above: Option<&'static Cancel>,
+}
 
 impl Cancel {
     /// Nobody asked yet.
     #[must_use]
     pub const fn new() -> Self {
-        Self(AtomicBool::new(false))
+        Self { asked: AtomicBool::new(false), above: None }
+    }
+
+    /// One that is requested by itself, or with the one above it.
+    #[must_use]
+    pub const fn below(above: &'static Self) -> Self {
+        Self { asked: AtomicBool::new(false), above: Some(above) }
     }
 
     /// Asks every fit that watches this to stop after its current step.
     pub fn request(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.asked.store(true, Ordering::Relaxed);
     }
 
     /// Whether somebody asked.
     #[must_use]
     pub fn is_requested(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.asked.load(Ordering::Relaxed) || self.above.is_some_and(Self::is_requested)
     }
 }
 

@@ -77,6 +77,9 @@ pub struct LearnRow {
     pub kind: LearnKind,
     /// Scores on the test part; `None` where nothing was learned.
     pub test: Option<LearnTest>,
+    /// Error on the validation part, by which settings may be chosen; of a training that was stopped, the least so far.
+    #[serde(default)]
+    pub validation: Option<LearnValidation>,
     /// Coefficients of the law by name, where the model is one.
     pub coefficients: Option<BTreeMap<String, LearnCoefficient>>,
     /// The law as text.
@@ -93,6 +96,15 @@ pub struct LearnRow {
     pub failure: Option<String>,
     /// The model's file in the run's folder.
     pub model: Option<String>,
+}
+
+/// Error of free runs over the validation part.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct LearnValidation {
+    /// Root mean square error, in the position's unit.
+    pub free_run_rmse: f64,
+    /// The same over the sensor's noise.
+    pub over_noise: f64,
 }
 
 /// Part that a method plays in the table.

@@ -17,6 +17,7 @@ mod launch;
 mod learning;
 mod prediction;
 mod rigs;
+mod search;
 mod simulation;
 mod sweep;
 mod trials;
@@ -39,7 +40,7 @@ pub use interval::WithInterval;
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
 pub use learning::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
-    LearnTest, LearnTorqueRow, LearnTraceRow,
+    LearnTest, LearnTorqueRow, LearnTraceRow, LearnValidation,
 };
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
@@ -50,6 +51,7 @@ pub use rigs::{
     FarthestPair, RIGS_SCHEMA, RigClassRow, RigRow, RigValueRow, RigsResult, SharedClassRow,
     SharedCoefficientRow,
 };
+pub use search::{SearchBest, SearchOutcome, SweepHalving, SweepRung, SweepRungValue, SweepSearch};
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 pub use sweep::{
     RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,

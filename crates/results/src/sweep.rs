@@ -1,6 +1,6 @@
 //! A sweep and the table of its runs.
 
-use super::RESULT_SCHEMA;
+use super::{RESULT_SCHEMA, SearchOutcome, SweepSearch};
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -8,7 +8,7 @@ use serde_json::{Map, Value};
 pub const SWEEP_SCHEMA: &str = "ringdown.sweep/1";
 
 /// The content of `sweep.json`: what was frozen before the first run, and what became of each.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepManifest {
     /// Always [`SWEEP_SCHEMA`].
     pub schema: String,
@@ -22,7 +22,10 @@ pub struct SweepManifest {
     pub axes: Vec<SweepAxis>,
     /// The records that the runs read, with their digests when the sweep was frozen.
     pub records: Vec<SweepRecord>,
-    /// One line for each run, in the order of the combinations.
+    /// How points are chosen and what they are judged by, where the sweep searches.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<SweepSearch>,
+    /// One line for each run, in the order of the combinations; of a search with `"tpe"`, those proposed so far.
     pub runs: Vec<SweepLine>,
 }
 
@@ -31,8 +34,11 @@ pub struct SweepManifest {
 pub struct SweepAxis {
     /// The dotted key.
     pub key: String,
-    /// The values, as overrides write them.
+    /// The values, as overrides write them; with a scale, the ends of a range.
     pub values: Vec<String>,
+    /// `"linear"` or `"log"`: numbers are drawn from a range; absent where the values are all there are.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub scale: Option<String>,
 }
 
 /// A record file that a sweep reads.
@@ -75,6 +81,8 @@ pub enum SweepState {
     Failed,
     /// Stopped on request; what it had is kept, and the run is made again.
     Interrupted,
+    /// Stopped early by a search, since others were better; it is not gone on with.
+    Stopped,
 }
 
 impl SweepState {
@@ -86,6 +94,7 @@ impl SweepState {
             Self::Done => "done",
             Self::Failed => "failed",
             Self::Interrupted => "interrupted",
+            Self::Stopped => "stopped",
         }
     }
 }
@@ -114,8 +123,11 @@ pub struct RunTable {
     pub name: String,
     /// What a sweep varies.
     pub axes: Vec<SweepAxis>,
-    /// The configuration keys in which the runs differ, in the order of their columns.
+    /// The configuration keys in which the runs differ, in the order of their columns; of a search, its measure last.
     pub columns: Vec<String>,
+    /// What a search found.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub search: Option<SearchOutcome>,
     /// One row for each run; of a comparison of methods one for each method.
     pub rows: Vec<RunTableRow>,
     /// Runs with a result.
@@ -136,6 +148,8 @@ pub enum RunState {
     Done,
     /// Stopped on request; what it had is kept.
     Interrupted,
+    /// Stopped early by a search, since others were better.
+    Stopped,
     /// It ended without a result and said why.
     Failed,
     /// No result yet: it runs, or ended before it had one.
@@ -153,6 +167,7 @@ impl RunState {
         match self {
             Self::Done => "done",
             Self::Interrupted => "interrupted",
+            Self::Stopped => "stopped",
             Self::Failed => "failed",
             Self::Unfinished => "unfinished",
             Self::Pending => "pending",
@@ -258,7 +273,8 @@ impl RunTable {
             runs.len()
         };
         let (done, failed) = (count(&|state| state == RunState::Done), count(&RunState::is_bad));
-        let open = count(&|state| state != RunState::Done && !state.is_bad());
+        let is_closed = |state: RunState| matches!(state, RunState::Done | RunState::Stopped);
+        let open = count(&|state| !is_closed(state) && !state.is_bad());
         let pass = rows.iter().all(|row| !row.state.is_bad() && row.pass != Some(false));
         Self {
             schema: RESULT_SCHEMA.to_owned(),
@@ -266,6 +282,7 @@ impl RunTable {
             name: name.to_owned(),
             axes,
             columns,
+            search: None,
             rows,
             done,
             failed,
@@ -280,9 +297,10 @@ mod tests {
     use super::{RunState, RunTable, RunTableRow, SweepState};
     use serde_json::to_value;
 
-    const STATES: [RunState; 6] = [
+    const STATES: [RunState; 7] = [
         RunState::Done,
         RunState::Interrupted,
+        RunState::Stopped,
         RunState::Failed,
         RunState::Unfinished,
         RunState::Pending,
@@ -294,7 +312,14 @@ mod tests {
         for state in STATES {
             assert_eq!(to_value(state).unwrap(), state.name());
         }
-        for state in [SweepState::Pending, SweepState::Done, SweepState::Failed, SweepState::Interrupted] {
+        let sweeps = [
+            SweepState::Pending,
+            SweepState::Done,
+            SweepState::Failed,
+            SweepState::Interrupted,
+            SweepState::Stopped,
+        ];
+        for state in sweeps {
             assert_eq!(to_value(state).unwrap(), state.name());
         }
     }

@@ -6,8 +6,9 @@ use crate::lock::LOCK;
 use crate::sweep::SweepFolder;
 use jiff::Timestamp;
 use results::{
-    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, MethodOutcome, MethodRow, RESULT_SCHEMA,
-    RIGS_SCHEMA, RigsResult, RunState, RunTableRow, SweepManifest, SweepState, TRIALS_SCHEMA,
+    ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, LearnEnd, LearnKind, LearnResult, LearnRow,
+    MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunState, RunTableRow, SweepManifest,
+    SweepState, TRIALS_SCHEMA,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -213,6 +214,7 @@ fn content(text: &str) -> Result<Content, String> {
         (TRIALS_SCHEMA, _) => Ok(Content::in_words("trials", String::new())),
         (RESULT_SCHEMA, "estimate") => Ok(estimation(&parse(text)?)),
         (RESULT_SCHEMA, "compare") => Ok(comparison(&parse(text)?)),
+        (RESULT_SCHEMA, "learn") => Ok(learning(&parse(text)?)),
         (RESULT_SCHEMA, "") => Err("field `task` is missing".to_owned()),
         (RESULT_SCHEMA, other) => Ok(Content::in_words(other, String::new())),
         (other, _) => Err(format!("its schema is \"{other}\", which this program does not read")),
@@ -259,6 +261,41 @@ fn estimation(result: &EstimationResult) -> Content {
         estimator: result.estimator.clone(),
         summary: String::new(),
         is_interrupted,
+        rows: vec![row],
+    }
+}
+
+/// One row for a run, whatever the number of its learners: they have no damping ratio to stand side by side with.
+fn learning(result: &LearnResult) -> Content {
+    let learners: Vec<&LearnRow> =
+        result.results.iter().filter(|row| row.kind == LearnKind::Learner).collect();
+    let said = |row: &&LearnRow| match (&row.failure, row.test.as_ref().and_then(|test| test.over_noise)) {
+        (Some(failure), _) => format!("{} on {}: {failure}", row.id, row.problem),
+        (None, Some(error)) => format!("{} on {}: {error:.2} times the noise", row.id, row.problem),
+        (None, None) => format!("{} on {}: {}", row.id, row.problem, row.reached.name().replace('_', " ")),
+    };
+    let summary = learners.iter().map(said).collect::<Vec<_>>().join("; ");
+    let mut names: Vec<&str> = learners.iter().map(|row| row.id.as_str()).collect();
+    names.sort_unstable();
+    names.dedup();
+    let only = match names.as_slice() {
+        [] => String::new(),
+        [name] => (*name).to_owned(),
+        names => format!("{} learners", names.len()),
+    };
+    let row = RunTableRow {
+        task: result.task.clone(),
+        estimator: only.clone(),
+        reason: summary.clone(),
+        parameters: learners.first().filter(|_| learners.len() == 1).map(|row| row.parameters),
+        seconds: Some(result.seconds),
+        ..RunTableRow::without_numbers("", RunState::Done, "")
+    };
+    Content {
+        task: result.task.clone(),
+        estimator: only,
+        summary,
+        is_interrupted: result.results.iter().any(|row| row.reached == LearnEnd::Interrupted),
         rows: vec![row],
     }
 }
@@ -312,7 +349,8 @@ fn sweep(run: &mut KeptRun) {
     match SweepFolder::open(&run.path).manifest() {
         Ok(Some(SweepManifest { runs, axes, .. })) => {
             let count = |state| runs.iter().filter(|line| line.state == state).count();
-            let (done, failed) = (count(SweepState::Done), count(SweepState::Failed));
+            let (done, failed) =
+                (count(SweepState::Done) + count(SweepState::Stopped), count(SweepState::Failed));
             let keys: Vec<&str> = axes.iter().map(|axis| axis.key.as_str()).collect();
             run.estimator = format!("over {}", keys.join(", "));
             run.summary = format!("{done} of {} done, {failed} failed", runs.len());

@@ -19,7 +19,7 @@ use crate::disk::Disk;
 use crate::error::RunError;
 use crate::folder::RunFolder;
 use crate::lock::Lock;
-use results::{SWEEP_SCHEMA, SweepEnd, SweepManifest, SweepState};
+use results::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -139,6 +139,25 @@ impl SweepFolder {
         }
         let path = self.path().join(MANIFEST);
         atomic::write_new(&Disk::default(), &path, &text_of(manifest)?)
+    }
+
+    /// Adds runs to a frozen list, whose configurations come first: where the manifest names a run, its file is there.
+    ///
+    /// Who extends a list holds it ([`claim`](Self::claim) under a name of its own), so that no other process does too.
+    ///
+    /// # Errors
+    /// [`RunError`] where something cannot be written.
+    pub fn extend(
+        &self,
+        manifest: &mut SweepManifest,
+        lines: Vec<SweepLine>,
+        configs: &[String],
+    ) -> Result<(), RunError> {
+        for (line, config) in lines.iter().zip(configs) {
+            self.folder.write_reproducible(&line.config, config.as_bytes())?;
+        }
+        manifest.runs.extend(lines);
+        self.refresh(manifest)
     }
 
     /// Takes a run into this process's hands; `None` where another one has it.
@@ -290,6 +309,7 @@ mod tests {
             version: "0".into(),
             axes: vec![],
             records: vec![],
+            search: None,
             runs: (1..=runs).map(line).collect(),
         }
     }

@@ -4,7 +4,7 @@ use crate::error::TrainerError;
 use crate::options::{ExperimentArguments, Output};
 use ::learn::learners::LEARNERS;
 use clap::Args;
-use experiment::sweep::apply_override;
+use experiment::sweep::{Registries, apply_override};
 use experiment::{
     Experiment, LearnStudy, PredictionStudy, is_learning, is_prediction, resolve, resolve_learning,
     resolve_prediction,
@@ -106,6 +106,12 @@ pub(crate) fn check_task(
 /// Ids of the classical methods.
 pub(crate) fn classical() -> Vec<&'static str> {
     CLASSICAL.iter().map(|route| route.id).collect()
+}
+
+/// What a sweep chooses from.
+pub(crate) fn registries() -> Registries<'static> {
+    static IDS: std::sync::LazyLock<Vec<&'static str>> = std::sync::LazyLock::new(classical);
+    Registries { estimators: ESTIMATORS, classical: &IDS, learners: LEARNERS }
 }
 
 /// Whether a configuration asks for a simulation.

@@ -49,6 +49,14 @@ pub enum SweepError {
         /// How many there would be.
         runs: u128,
     },
+    /// A search that asks for more points than there are.
+    #[error(
+        "what is searched has only about {points} different points; ask for fewer with --trials, or widen a range"
+    )]
+    UsedUp {
+        /// Points that were found.
+        points: usize,
+    },
     /// A combination that no run can be made of.
     #[error("combination {number} ({overrides}): {source}")]
     BadCombination {
@@ -61,7 +69,7 @@ pub enum SweepError {
     },
     /// A combination whose task makes no single table row.
     #[error(
-        "combination {number} ({overrides}): task = \"{task}\" cannot be swept; a sweep is over \"estimate\" or \"compare\""
+        "combination {number} ({overrides}): task = \"{task}\" cannot be swept; a sweep is over \"estimate\", \"compare\" or \"learn\""
     )]
     Task {
         /// Its number, from 1.

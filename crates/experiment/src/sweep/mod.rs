@@ -3,24 +3,94 @@
 mod axis;
 mod difference;
 mod error;
+mod propose;
 mod shard;
+mod space;
 
 pub use axis::{Axis, combinations};
 pub use difference::{differing_keys, first_difference};
 pub use error::SweepError;
+pub use propose::{STARTING_POINTS, Sampler, TriedPoint, propose};
 pub use shard::Shard;
+pub use space::{Dimension, Domain};
 
 use crate::experiment::{Experiment, resolve};
-use estimator::Entry;
-use settings::{Document, SettingsError};
+use crate::learning::{LearnStudy, LearningProblem, is_learning, resolve_learning};
+use settings::{Document, Resolved, SettingsError};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 
 /// Most runs of one sweep.
 pub const MOST_RUNS: usize = 10_000;
 
+/// What there is to choose from.
+#[derive(Clone, Copy)]
+pub struct Registries<'a> {
+    /// The estimators.
+    pub estimators: &'a [estimator::Entry],
+    /// Ids of the classical methods.
+    pub classical: &'a [&'a str],
+    /// The learners of dynamics.
+    pub learners: &'a [learn::Entry],
+}
+
+/// An experiment that a sweep may make.
+pub enum Swept {
+    /// An estimate or a comparison.
+    Experiment(Box<Experiment>),
+    /// Dynamics learned from records.
+    Learning(Box<LearnStudy>),
+}
+
+impl Swept {
+    /// Resolves a document; the error holds the task where a sweep cannot be over it.
+    ///
+    /// # Errors
+    /// As [`resolve`] and [`resolve_learning`].
+    pub fn resolve(
+        document: &Document,
+        registries: &Registries<'_>,
+    ) -> Result<Result<Self, String>, SettingsError> {
+        let task = document.get("task").and_then(|leaf| leaf.value.as_str());
+        if let Some(task @ ("predict" | "simulate" | "trials")) = task {
+            return Ok(Err(task.to_owned()));
+        }
+        Ok(Ok(if is_learning(document) {
+            Self::Learning(Box::new(resolve_learning(document, registries.learners)?))
+        } else {
+            let experiment = resolve(document, registries.estimators, registries.classical)?;
+            Self::Experiment(Box::new(experiment))
+        }))
+    }
+
+    /// Every value in force.
+    #[must_use]
+    pub fn resolved(&self) -> &Resolved {
+        match self {
+            Self::Experiment(experiment) => &experiment.resolved,
+            Self::Learning(study) => &study.resolved,
+        }
+    }
+
+    /// SHA-256 of every value in force, `sha256:` and 64 hexadecimal digits.
+    #[must_use]
+    pub fn digest(&self) -> String {
+        let hash = Sha256::digest(self.resolved().values_text().as_bytes());
+        hash.iter().fold("sha256:".to_owned(), |text, byte| text + &format!("{byte:02x}"))
+    }
+}
+
+/// What a run reads.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RunData {
+    /// One record.
+    Record(String),
+    /// Data sets.
+    Problems(Vec<LearningProblem>),
+}
+
 /// One run of a sweep, frozen.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct PlannedRun {
     /// Position in the list, from 1.
     pub number: usize,
@@ -30,48 +100,40 @@ pub struct PlannedRun {
     pub overrides: Vec<String>,
     /// The resolved configuration, as a run's `config.toml` has it.
     pub config: String,
-    /// The record that it reads.
-    pub data_path: String,
+    /// What it reads.
+    pub data: RunData,
 }
 
-/// Resolves and checks every combination of the axes on top of a configuration.
+/// Resolves and checks combinations on top of a configuration; they are numbered from `first`.
 ///
 /// # Errors
-/// The first combination that cannot be run, with its number and its overrides; two that are the same experiment;
-/// and what [`combinations`] refuses.
+/// The first combination that cannot be run, with its number and its overrides; two that are the same experiment.
 pub fn plan(
     document: &Document,
-    axes: &[Axis],
-    registry: &[Entry],
-    classical: &[&str],
+    combinations: Vec<Vec<String>>,
+    first: usize,
+    registries: &Registries<'_>,
 ) -> Result<Vec<PlannedRun>, SweepError> {
     let mut runs: Vec<PlannedRun> = Vec::new();
-    let mut seen: BTreeMap<String, usize> = BTreeMap::new();
-    for (at, overrides) in combinations(axes)?.into_iter().enumerate() {
-        let number = at + 1;
+    let mut seen: BTreeMap<String, (usize, String)> = BTreeMap::new();
+    for (number, overrides) in (first..).zip(combinations) {
         let shown = || if overrides.is_empty() { "as it is".to_owned() } else { overrides.join(" ") };
-        let experiment = one(document, &overrides, registry, classical).map_err(|fault| match fault {
+        let swept = one(document, &overrides, registries).map_err(|fault| match fault {
             Fault::Settings(source) => SweepError::BadCombination { number, overrides: shown(), source },
             Fault::Task(task) => SweepError::Task { number, overrides: shown(), task },
         })?;
-        let digest = digest(&experiment);
-        if let Some(&first) = seen.get(&digest) {
-            // The first of two equal runs is in the list, whose numbers begin at 1.
-            let overrides = runs.get(first - 1).map(|run| run.overrides.join(" ")).unwrap_or_default();
+        let digest = swept.digest();
+        if let Some((first, overrides)) = seen.insert(digest.clone(), (number, overrides.join(" "))) {
             return Err(SweepError::Repeated { first, overrides, second: number });
         }
-        seen.insert(digest.clone(), number);
-        let config = experiment.resolved.to_toml();
-        runs.push(PlannedRun { number, digest, overrides, config, data_path: experiment.data.path });
+        let config = swept.resolved().to_toml();
+        let data = match swept {
+            Swept::Experiment(experiment) => RunData::Record(experiment.data.path),
+            Swept::Learning(study) => RunData::Problems(study.problems),
+        };
+        runs.push(PlannedRun { number, digest, overrides, config, data });
     }
     Ok(runs)
-}
-
-/// SHA-256 of every value in force, `sha256:` and 64 hexadecimal digits.
-#[must_use]
-pub fn digest(experiment: &Experiment) -> String {
-    let hash = Sha256::digest(experiment.resolved.values_text().as_bytes());
-    hash.iter().fold("sha256:".to_owned(), |text, byte| text + &format!("{byte:02x}"))
 }
 
 /// Applies one `key=value` argument to a configuration.
@@ -102,12 +164,7 @@ enum Fault {
     Task(String),
 }
 
-fn one(
-    document: &Document,
-    overrides: &[String],
-    registry: &[Entry],
-    classical: &[&str],
-) -> Result<Experiment, Fault> {
+fn one(document: &Document, overrides: &[String], registries: &Registries<'_>) -> Result<Swept, Fault> {
     let mut document = document.clone();
     // The estimator first: choosing it leaves the settings of another one out, whatever the order of the axes.
     let (choices, others): (Vec<&String>, Vec<&String>) =
@@ -115,11 +172,7 @@ fn one(
     for argument in choices.into_iter().chain(others) {
         apply_override(&mut document, argument).map_err(Fault::Settings)?;
     }
-    let task = document.get("task").and_then(|leaf| leaf.value.as_str());
-    if let Some(task @ ("learn" | "predict" | "simulate" | "trials")) = task {
-        return Err(Fault::Task(task.to_owned()));
-    }
-    resolve(&document, registry, classical).map_err(Fault::Settings)
+    Swept::resolve(&document, registries).map_err(Fault::Settings)?.map_err(Fault::Task)
 }
 
 #[cfg(test)]

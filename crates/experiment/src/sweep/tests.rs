@@ -1,6 +1,6 @@
 //! Tests of planning a sweep.
 
-use super::{Axis, apply_override, plan};
+use super::{Axis, Registries, RunData, apply_override, combinations, plan};
 use settings::Document;
 
 const CONFIG: &str = "seed = 3\n[data]\npath = \"a.csv\"\n[fit]\nseeds = 2\n[estimator]\nname = \"ols\"\n";
@@ -8,7 +8,8 @@ const CLASSICAL: &[&str] = &["ols", "qr"];
 
 fn planned(config: &str, axes: &[&str]) -> Result<Vec<super::PlannedRun>, super::SweepError> {
     let axes: Vec<Axis> = axes.iter().map(|axis| Axis::parse(axis).unwrap()).collect();
-    plan(&Document::parse("a.toml", config).unwrap(), &axes, &[], CLASSICAL)
+    let registries = Registries { estimators: &[], classical: CLASSICAL, learners: &[] };
+    plan(&Document::parse("a.toml", config).unwrap(), combinations(&axes)?, 1, &registries)
 }
 
 fn refused(config: &str, axes: &[&str]) -> String {
@@ -24,7 +25,7 @@ fn every_combination_is_resolved() {
     assert_eq!(overrides, expected);
     assert_eq!(runs.iter().map(|run| run.number).collect::<Vec<_>>(), [1, 2, 3, 4]);
     for run in &runs {
-        assert_eq!(run.data_path, "a.csv");
+        assert_eq!(run.data, RunData::Record("a.csv".to_owned()));
         assert_eq!(run.digest.len(), "sha256:".len() + 64);
         // The frozen text alone gives the same run again.
         let again = planned(&run.config, &[]).unwrap();

@@ -17,6 +17,14 @@ pub(super) fn headline(table: &RunTable) -> Verdict {
         (0, ..) => (Tone::Caution, "Not finished"),
         _ => (Tone::Bad, "Some runs gave no result"),
     };
+    if let Some(found) = &table.search {
+        let (tone, label) = match (&found.best, table.open) {
+            (None, _) => (Tone::Bad, "No trial gave a result"),
+            (Some(_), 0) => (Tone::Good, "Searched"),
+            (Some(_), _) => (Tone::Caution, "Not finished"),
+        };
+        return Verdict { tone, label, sentence: found.sentence() };
+    }
     let rows = if missed == 1 { "row is" } else { "rows are" };
     Verdict {
         tone,

@@ -31,7 +31,7 @@ fn row(run: &str, estimator: &str, seed: u64, error: f64) -> RunTableRow {
 }
 
 fn table() -> RunTable {
-    let axes = vec![SweepAxis { key: "seed".into(), values: vec!["0".into(), "1".into()] }];
+    let axes = vec![SweepAxis { key: "seed".into(), values: vec!["0".into(), "1".into()], scale: None }];
     let broken = RunTableRow::without_numbers("0005-<b>", RunState::Corrupt, "result.json: EOF | <script>");
     let rows = vec![
         row("runs/0001-pinn-seed-0", "pinn", 0, 1e-7),

@@ -31,6 +31,37 @@ pub(crate) enum SweepCommandError {
     )]
     Lost { file: String, digest: String },
     #[error(
+        "--search draws from ranges and choices, and there are none: give some, as 'lstm.learning_rate={{from=1e-4,to=1e-2,\
+         scale=\"log\"}}' lstm.layers=1..3 estimator=pinn,lstm, or write them into the file"
+    )]
+    NoSpace,
+    #[error(
+        "--halving stops trials by the results of others, and a search with tpe proposes by results: take --search random \
+         for halving, or tpe without it"
+    )]
+    HalvedTpe,
+    #[error(
+        "--halving pauses the training of one method, and task = \"compare\" fits many; search over one of them, \
+         estimator=NAME"
+    )]
+    HalvedCompare,
+    #[error(
+        "--halving compares trainings that are not finished, which have no score on the test part ({measure}); take \
+         --minimize validation.over_noise"
+    )]
+    HalvedTest { measure: String },
+    #[error(
+        "{what} chooses by the results of all trials, so that it cannot be cut into shares beforehand; leave out --shard \
+         and --launcher and give --threads N, or take --search random without --halving, whose points are known beforehand"
+    )]
+    Shares { what: &'static str },
+    #[error(
+        "{folder}: another process is at this search; wait for it, or begin another one in another folder"
+    )]
+    Searching { folder: String },
+    #[error("result.json has no number at {measure}{nearest}; it has {known}")]
+    NoMeasure { measure: String, nearest: String, known: String },
+    #[error(
         "{path}: the record has changed since the sweep was frozen, from {then} to {now}; restore it, or begin another \
          sweep: runs on different records do not belong in one table"
     )]

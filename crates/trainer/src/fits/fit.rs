@@ -2,11 +2,11 @@
 
 use crate::error::TrainerError;
 use crate::fits::method::{Method, Request};
-use crate::fits::watcher::{Place, Watcher};
+use crate::fits::watcher::{Pause, Place, Watcher};
 use crate::folders::resume::Ledger;
 use crate::terminal::progress::Progress;
 use envelope::Envelope;
-use estimator::{Estimate, Reached};
+use estimator::{Cancel, Estimate, Reached};
 use results::{SeedRow, TraceRow};
 use serde::{Deserialize, Serialize};
 
@@ -26,6 +26,8 @@ pub(crate) struct FitSetting<'a> {
     pub(crate) progress: &'a Progress,
     /// Where finished fits and the state of unfinished ones are kept.
     pub(crate) ledger: Option<&'a Ledger>,
+    /// Steps of its trace after which a fit is stopped, to be gone on with later, and the request above that one.
+    pub(crate) pause: Option<(u64, &'static Cancel)>,
 }
 
 impl FitSetting<'_> {
@@ -35,9 +37,12 @@ impl FitSetting<'_> {
         if let Some(done) = self.ledger.map(|ledger| ledger.finished(&name)).transpose()?.flatten() {
             return Ok(done);
         }
-        let watcher = Watcher::new(self.progress, self.ledger.map(|ledger| Place { ledger, name: &name }))?;
+        let pause = self.pause.map(|(after, above)| Pause::new(after, above));
+        let place = self.ledger.map(|ledger| Place { ledger, name: &name });
+        let watcher = Watcher::new(self.progress, place, pause.as_ref())?;
+        let cancel = pause.as_ref().map_or(self.request.cancel, Pause::cancel);
         let estimate = method
-            .fit(self.envelope, seed, &self.request, &watcher, Some(&watcher))
+            .fit(self.envelope, seed, &Request { cancel, ..self.request }, &watcher, Some(&watcher))
             .map_err(|error| watcher.failure().unwrap_or(error))?;
         let seconds = watcher.seconds();
         let fit = SeedFit { seed, estimate, trace: watcher.into_trace(), seconds };

@@ -3,7 +3,7 @@
 use crate::error::TrainerError;
 use crate::folders::resume::{Ledger, Resumed};
 use crate::terminal::progress::Progress;
-use estimator::{Checkpoints, Observer, Step};
+use estimator::{Cancel, Checkpoints, Observer, Step};
 use results::TraceRow;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
@@ -18,10 +18,33 @@ pub(crate) struct Place<'a> {
     pub(crate) name: &'a str,
 }
 
+/// A fit's own request to stop, made once its trace is so long.
+pub(crate) struct Pause {
+    after: u64,
+    cancel: Cancel,
+}
+
+impl Pause {
+    pub(crate) fn new(after: u64, above: &'static Cancel) -> Self {
+        Self { after, cancel: Cancel::below(above) }
+    }
+
+    pub(crate) fn cancel(&self) -> &Cancel {
+        &self.cancel
+    }
+
+    fn where_due(&self, steps: usize) {
+        if steps as u64 >= self.after {
+            self.cancel.request();
+        }
+    }
+}
+
 /// Watches one fit.
 pub(crate) struct Watcher<'a> {
     progress: &'a Progress,
     place: Option<Place<'a>>,
+    pause: Option<&'a Pause>,
     begun: Instant,
     /// Time spent on the fit by programs before this one.
     earlier: Duration,
@@ -42,14 +65,22 @@ struct Seen {
 
 impl<'a> Watcher<'a> {
     /// Watches a fit, with what an earlier program kept of it.
-    pub(crate) fn new(progress: &'a Progress, place: Option<Place<'a>>) -> Result<Self, TrainerError> {
+    pub(crate) fn new(
+        progress: &'a Progress,
+        place: Option<Place<'a>>,
+        pause: Option<&'a Pause>,
+    ) -> Result<Self, TrainerError> {
         let kept = place.map(|place| place.ledger.resumed(place.name)).transpose()?.flatten();
         let (trace, latest, seconds) =
             kept.map_or((Vec::new(), None, 0.0), |kept| (kept.trace, Some(kept.state), kept.seconds));
         let begun = Instant::now();
+        if let Some(pause) = pause {
+            pause.where_due(trace.len());
+        }
         Ok(Self {
             progress,
             place,
+            pause,
             begun,
             earlier: Duration::try_from_secs_f64(seconds).unwrap_or_default(),
             seen: Mutex::new(Seen {
@@ -85,12 +116,16 @@ impl<'a> Watcher<'a> {
 impl Observer for Watcher<'_> {
     fn observe(&self, step: &Step) {
         self.progress.step(step);
-        self.seen().trace.push(TraceRow {
+        let mut seen = self.seen();
+        seen.trace.push(TraceRow {
             step: step.step,
             phase: step.phase.clone(),
             loss: step.loss,
             decay_rate: step.decay_rate,
         });
+        if let Some(pause) = self.pause {
+            pause.where_due(seen.trace.len());
+        }
     }
 }
 

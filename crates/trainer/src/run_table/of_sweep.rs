@@ -1,15 +1,79 @@
 //! The table of a sweep: what became of each run of the frozen list.
 
+use crate::commands::sweep::measure::warning;
+use crate::commands::sweep::search::value_of;
+use crate::error::{SweepCommandError, TrainerError};
 use crate::run_table::build::{Entry, build};
-use results::{RunState, RunTable, RunTableRow, SweepLine, SweepManifest, SweepState};
+use results::{
+    RunState, RunTable, RunTableRow, SearchBest, SearchOutcome, SweepLine, SweepManifest, SweepState,
+};
 use runs::{SweepFolder, read_run};
 use settings::Document;
 
 /// The table, in the order of the frozen list; runs are named from the sweep's folder.
-pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> RunTable {
+///
+/// # Errors
+/// Where a result does not have what the search is for.
+pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> Result<RunTable, SweepCommandError> {
     let entry = |line| entry(folder, manifest, line, &|run| run.to_owned());
     let entries = manifest.runs.iter().map(entry).collect();
-    build("sweep", &manifest.name, manifest.axes.clone(), entries)
+    let mut table = build("sweep", &manifest.name, manifest.axes.clone(), entries);
+    let Some(search) = &manifest.search else { return Ok(table) };
+    let mut measured: Vec<(&SweepLine, f64)> = Vec::new();
+    for line in &manifest.runs {
+        let Some(value) = value_of(folder, search, line)? else { continue };
+        if line.state == SweepState::Done {
+            measured.push((line, value));
+        }
+        let name = run_name(manifest, line);
+        for row in table.rows.iter_mut().filter(|row| row.run == name) {
+            row.settings.insert(search.measure.clone(), value.into());
+        }
+    }
+    if !table.columns.contains(&search.measure) {
+        table.columns.push(search.measure.clone());
+    }
+    let count = |state| manifest.runs.iter().filter(|line| line.state == state).count();
+    let cost = |value: f64| if search.maximize { -value } else { value };
+    let best = measured.iter().min_by(|one, other| cost(one.1).total_cmp(&cost(other.1)));
+    table.search = Some(SearchOutcome {
+        sampler: search.sampler.clone(),
+        measure: search.measure.clone(),
+        maximize: search.maximize,
+        trials: search.trials,
+        measured: measured.len(),
+        stopped: count(SweepState::Stopped),
+        failed: count(SweepState::Failed) + count(SweepState::Done) - measured.len(),
+        best: best.map(|(line, value)| SearchBest {
+            number: line.number,
+            run: run_name(manifest, line),
+            value: *value,
+            overrides: line.overrides.clone(),
+            config: BEST.to_owned(),
+        }),
+        warning: warning(&search.measure),
+    });
+    Ok(table)
+}
+
+/// Name of the best trial's configuration.
+const BEST: &str = "best.toml";
+
+/// The configuration of the best trial, with a line that says what it is.
+pub(crate) fn best_config(
+    folder: &SweepFolder,
+    best: &SearchBest,
+    table: &RunTable,
+) -> Result<String, TrainerError> {
+    let file = folder.path().join(format!("configs/{:04}.toml", best.number));
+    let text = std::fs::read_to_string(&file).map_err(|error| TrainerError::Config {
+        file: file.display().to_string(),
+        problem: error.to_string(),
+    })?;
+    let measure = table.search.as_ref().map(|found| found.measure.as_str()).unwrap_or_default();
+    let of = table.search.as_ref().map_or(0, |found| found.measured);
+    let what = format!("# Trial {:04}, the best of {of}: {measure} = {}.", best.number, best.value);
+    Ok(format!("{what}\n{text}"))
 }
 
 /// The runs of a sweep as entries of another table; runs are named from the current folder.
@@ -33,6 +97,7 @@ fn entry(
     let row = |state, reason: &str| vec![RunTableRow::without_numbers(&name, state, reason)];
     let mut rows = match (line.state, &line.run) {
         (SweepState::Failed, _) => row(RunState::Failed, line.message.as_deref().unwrap_or_default()),
+        (SweepState::Stopped, _) => row(RunState::Stopped, line.message.as_deref().unwrap_or_default()),
         (SweepState::Pending, _) | (_, None) => row(RunState::Pending, "not made yet"),
         (SweepState::Done | SweepState::Interrupted, Some(run)) => read_run(&folder.path().join(run)).rows,
     };
@@ -73,6 +138,7 @@ mod tests {
             let axis = |&(text, values): &(&str, usize)| SweepAxis {
                 key: text.to_owned(),
                 values: vec![String::new(); values],
+                scale: None,
             };
             let line = SweepLine {
                 number: 7,
@@ -90,6 +156,7 @@ mod tests {
                 version: String::new(),
                 axes: overrides.iter().map(axis).collect(),
                 records: vec![],
+                search: None,
                 runs: vec![],
             };
             label(&manifest, &line)

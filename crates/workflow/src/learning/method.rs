@@ -5,7 +5,7 @@ use estimator::Reached;
 use experiment::LearnSettings;
 use learn::baselines::{BASELINES, exact};
 use learn::data::DataSet;
-use learn::judge::{Run, Score, Truth, runs, score};
+use learn::judge::{Run, Score, Truth, runs, score, validation_error};
 use learn::learners::LEARNERS;
 use learn::{Context, Fitted, LearnError, Learner, Model};
 use results::{LearnEnd, LearnKind};
@@ -32,6 +32,8 @@ pub struct Judged {
     pub reached: LearnEnd,
     /// Scores on the test part.
     pub score: Score,
+    /// Error of free runs over the validation part, in the position's unit; infinite where one fails.
+    pub validation: f64,
     /// Free runs on the test part.
     pub runs: Vec<Run>,
 }
@@ -85,7 +87,8 @@ pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Res
 pub fn judged(model: Box<dyn Model>, reached: LearnEnd, data: &DataSet) -> Judged {
     let runs = runs(model.as_ref(), data);
     let score = score(model.as_ref(), &runs, data);
-    Judged { model, reached, score, runs }
+    let validation = validation_error(model.as_ref(), data);
+    Judged { model, reached, score, validation, runs }
 }
 
 fn end_of(reached: Reached) -> LearnEnd {

@@ -5,7 +5,7 @@ use super::{Ready, Tried};
 use learn::LearnError;
 use learn::data::Trajectory;
 use learn::judge::{Score, Truth};
-use results::{LearnCoefficient, LearnData, LearnEnd, LearnProblem, LearnRow, LearnTest};
+use results::{LearnCoefficient, LearnData, LearnEnd, LearnProblem, LearnRow, LearnTest, LearnValidation};
 use std::collections::BTreeMap;
 
 /// The row of a method in the table of results; `problem` names the data set, `model` the file that keeps a model which can be
@@ -25,6 +25,7 @@ pub fn row(
         title: method.title.to_owned(),
         kind: method.kind,
         test: None,
+        validation: None,
         coefficients: None,
         equation: None,
         torque_error: None,
@@ -35,11 +36,16 @@ pub fn row(
         model: None,
     };
     match &tried.fitted {
-        Err(LearnError::Interrupted) => row.reached = LearnEnd::Interrupted,
+        Err(LearnError::Interrupted) => {
+            row.reached = LearnEnd::Interrupted;
+            let seen = tried.steps.iter().filter_map(|step| step.validation);
+            row.validation = validation(seen.fold(f64::INFINITY, f64::min), ready);
+        }
         Err(error) => row.failure = Some(error.to_string()),
         Ok(judged) => {
             let made = judged.model.as_ref();
             row.test = Some(test(&judged.score, &ready.data.unit));
+            row.validation = validation(judged.validation, ready);
             row.coefficients = coefficients(made, truth);
             row.equation = made.equation();
             row.torque_error =
@@ -69,6 +75,11 @@ fn test(score: &Score, unit: &str) -> LearnTest {
         one_step_rmse: finite(score.one_step_rmse),
         coverage_95: score.coverage_95,
     }
+}
+
+fn validation(free_run_rmse: f64, ready: &Ready) -> Option<LearnValidation> {
+    let over_noise = free_run_rmse / ready.data.noise;
+    over_noise.is_finite().then_some(LearnValidation { free_run_rmse, over_noise })
 }
 
 fn coefficients(

@@ -5,6 +5,9 @@
 //! fit, widened for correlated residuals, and the prior of the coefficients is flat. Gradients come from exact
 //! sensitivities; the sampler works in the coordinates that make Laplace's approximation a standard normal.
 
+#[cfg(test)]
+#[allow(clippy::print_stdout, reason = "what it finds is read, not only checked")]
+mod coverage;
 mod nuts;
 
 use super::library::{LAW, Library, Regression, law, restore, thresholded};

@@ -22,12 +22,14 @@ struct Finished {
     steps: Vec<Step>,
 }
 
-/// Conditions that methods are tried under: seed, cap on the steps, request to stop, and where their work is kept.
+/// Conditions that methods are tried under: seed, cap on the steps, request to stop, pause, and where their work is kept.
 #[derive(Clone, Copy)]
 pub(super) struct Trying<'a> {
     pub(super) seed: u64,
     pub(super) max_steps: Option<u64>,
     pub(super) cancel: &'static Cancel,
+    /// Steps of its trace after which a training is stopped, to be gone on with later.
+    pub(super) pause_after: Option<u64>,
     pub(super) ledger: &'a Ledger,
 }
 
@@ -51,10 +53,23 @@ impl Trying<'_> {
             }
         }
         let place = Place::new(self.ledger, &name)?;
-        let observe = |step: &Step| place.seen().steps.push(step.clone());
+        let stop = Cancel::below(self.cancel);
+        let pause_where_due = |steps: usize| {
+            if self.pause_after.is_some_and(|after| steps as u64 >= after) {
+                stop.request();
+            }
+        };
+        // One that was paused before it could be told is paused at the same step again.
+        pause_where_due(place.seen().steps.len());
+        let observe = |step: &Step| {
+            let mut seen = place.seen();
+            seen.steps.push(step.clone());
+            pause_where_due(seen.steps.len());
+        };
         let seed = Seed::new(self.seed).child("learn").child(problem).child(method.id);
-        let (max_steps, cancel) = (self.max_steps, self.cancel);
-        let context = Context { seed, max_steps, cancel, observe: &observe, checkpoints: Some(&place) };
+        let max_steps = self.max_steps;
+        let context =
+            Context { seed, max_steps, cancel: &stop, observe: &observe, checkpoints: Some(&place) };
         let fitted = attempt(ready, method, &context);
         let seconds = place.seconds();
         let seen = place.seen.into_inner().unwrap_or_else(PoisonError::into_inner);

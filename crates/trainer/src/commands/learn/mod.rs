@@ -7,7 +7,7 @@ mod summary;
 
 use crate::error::TrainerError;
 use crate::folders::resume::{Beginning, Begun, Ledger, begin, end};
-use crate::options::ExperimentArguments;
+use crate::options::{ExperimentArguments, Output};
 use crate::outcome::Outcome;
 use crate::terminal::console;
 use crate::terminal::interrupt::Saving;
@@ -21,6 +21,7 @@ use problem::{Prepared, prepare};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use results::LearnKind;
+use runs::RunFolder;
 use serde_json::json;
 use std::time::Instant;
 use workflow::learning::{Method, Ready, methods};
@@ -36,7 +37,6 @@ pub(crate) fn learn(
 ) -> Result<Outcome, TrainerError> {
     let output = arguments.output;
     let problems = study.problems.iter().map(prepare).collect::<Result<Vec<Prepared>, _>>()?;
-    let methods = methods(&study.settings, &study.resolved)?;
     for absent in problems.iter().filter_map(|problem| problem.ready.as_ref().err()) {
         if !output.quiet {
             console::remark(&format!("ABSENT: {absent}"));
@@ -47,24 +47,53 @@ pub(crate) fn learn(
         Begun::Open(folder) => folder,
         Begun::Finished(outcome) => return Ok(outcome),
     };
+    perform(&Study { study, problems, folder, pool, cancel, pause_after: None, output })
+}
+
+/// A study whose folder is open for work.
+pub(crate) struct Study<'a> {
+    pub(crate) study: &'a LearnStudy,
+    pub(crate) problems: Vec<Prepared>,
+    pub(crate) folder: RunFolder,
+    pub(crate) pool: ThreadPool,
+    pub(crate) cancel: &'static Cancel,
+    /// Steps of its trace after which each training is stopped, to be gone on with later.
+    pub(crate) pause_after: Option<u64>,
+    pub(crate) output: Output,
+}
+
+/// Fits every method on each data set, keeps going where one fails, and puts the table together.
+pub(crate) fn perform(of: &Study<'_>) -> Result<Outcome, TrainerError> {
+    let Study { study, problems, folder, pool, output, .. } = of;
+    let methods = methods(&study.settings, &study.resolved)?;
     let start = Instant::now();
-    let ledger = Ledger::open(&folder, KEPT)?;
-    let trying = Trying { seed: study.seed, max_steps: study.settings.max_steps, cancel, ledger: &ledger };
-    let tried = try_all(&trying, &problems, &methods, &pool, output.quiet || output.json)?;
+    let ledger = Ledger::open(folder, KEPT)?;
+    let trying = Trying {
+        seed: study.seed,
+        max_steps: study.settings.max_steps,
+        cancel: of.cancel,
+        pause_after: of.pause_after,
+        ledger: &ledger,
+    };
+    let tried = try_all(&trying, problems, &methods, pool, output.quiet || output.json)?;
     let _saving = Saving::begin();
     let interrupted = tried.iter().any(|row| matches!(row.tried.fitted, Err(LearnError::Interrupted)));
-    let result = keep::result(study, &problems, &tried, start.elapsed().as_secs_f64());
+    let result = keep::result(study, problems, &tried, start.elapsed().as_secs_f64());
     if interrupted {
         ledger.flush()?;
     }
-    keep::write(&folder, &result, &tried)?;
-    end(&folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
+    keep::write(folder, &result, &tried)?;
+    end(folder, interrupted, output.quiet, &json!({ "problems": result.problems.len() }))?;
     output.print(&result, || summary::summary(&result, folder.path()))?;
     Ok(Outcome::of(interrupted, true))
 }
 
 /// What the run is made of.
-fn beginning<'a>(study: &'a LearnStudy, pool: &ThreadPool, problems: &[Prepared]) -> Beginning<'a> {
+pub(crate) fn beginning<'a>(
+    study: &'a LearnStudy,
+    pool: &ThreadPool,
+    problems: &[Prepared],
+) -> Beginning<'a> {
     Beginning {
         name: &study.name,
         seed: study.seed,

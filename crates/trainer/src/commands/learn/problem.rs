@@ -130,6 +130,24 @@ fn files(
     Ok((Ready { data, records: trajectories.len(), truth: None }, origin, read))
 }
 
+/// The files that a data set depends on, without its records being read; none where they are absent.
+pub(crate) fn files_of(problem: &LearningProblem) -> Result<Vec<DataFile>, TrainerError> {
+    let mut found = match &problem.source {
+        LearnSource::Simulation(file) => vec![held(file)?],
+        LearnSource::Files { folder, records, .. } if Path::new(folder).is_dir() => {
+            let paths = records
+                .iter()
+                .map(|pattern| matching(problem, folder, pattern))
+                .collect::<Result<Vec<_>, _>>()?
+                .concat();
+            paths.iter().map(|path| held(&path.display().to_string())).collect::<Result<_, _>>()?
+        }
+        LearnSource::Files { .. } => return Ok(Vec::new()),
+    };
+    found.extend(problem.nominal.as_deref().map(held).transpose()?);
+    Ok(found)
+}
+
 /// A file that the data set depends on, held to its bytes.
 fn held(file: &str) -> Result<DataFile, TrainerError> {
     let bytes = std::fs::read(file)

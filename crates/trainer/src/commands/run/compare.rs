@@ -73,6 +73,7 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
         request: Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel },
         progress: &progress,
         ledger: Some(&run.ledger),
+        pause: None,
     };
     let fit_one = |method: &Method, seed: u64| {
         if run.cancel.is_requested() {

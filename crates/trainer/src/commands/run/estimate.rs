@@ -47,6 +47,7 @@ fn fit_all(run: &Run<'_>, method: &Method) -> Result<Vec<SeedFit>, TrainerError>
         request: Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel },
         progress: &progress,
         ledger: Some(&run.ledger),
+        pause: run.pause_after.map(|after| (after, run.cancel)),
     };
     let first = run.experiment.seed;
     let seeds = seeds(first, run.experiment.fit.seeds)?;

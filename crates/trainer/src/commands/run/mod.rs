@@ -51,8 +51,8 @@ pub(crate) fn run_until(
     };
     let ledger = Ledger::open(&folder, experiment.checkpoint)?;
     let input = input.with_pipelines(&experiment);
-    let run = Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: arguments.output };
-    perform(&run)
+    let output = arguments.output;
+    perform(&Run { experiment: &experiment, input, folder, ledger, pool, cancel, pause_after: None, output })
 }
 
 /// Fits, compares, writes and prints.

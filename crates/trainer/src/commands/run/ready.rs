@@ -20,6 +20,8 @@ pub(crate) struct Run<'a> {
     pub(crate) ledger: Ledger,
     pub(crate) pool: ThreadPool,
     pub(crate) cancel: &'static Cancel,
+    /// Steps of its trace after which each fit of an estimate is stopped, to be gone on with later.
+    pub(crate) pause_after: Option<u64>,
     pub(crate) output: Output,
 }
 

@@ -1,8 +1,11 @@
 //! Making the runs of a sweep, several at a time.
 
 use super::frozen::FrozenSweep;
+use super::search::value_of;
+use crate::commands::learn::problem::prepare;
+use crate::commands::learn::{self, Study};
 use crate::commands::run::{Run, perform};
-use crate::configured::classical;
+use crate::configured::registries;
 use crate::error::TrainerError;
 use crate::fits::input::Input;
 use crate::folders::resume::{Beginning, FAILED, Ledger, TakenUp, start, take_up};
@@ -12,10 +15,10 @@ use crate::run_table::of_sweep::label;
 use crate::terminal::console;
 use crate::terminal::progress::Progress;
 use estimator::Cancel;
-use experiment::{CheckpointSettings, resolve};
-use registry::ESTIMATORS;
+use experiment::CheckpointSettings;
+use experiment::sweep::Swept;
 use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
-use runs::{Disk, RunError, RunFolder, read_run};
+use runs::{Disk, RunFolder, read_run};
 use serde_json::json;
 use settings::Document;
 use std::collections::VecDeque;
@@ -37,21 +40,33 @@ pub(super) type Job<'a> = (&'a SweepLine, &'a str);
 /// What a run of a sweep prints: the sweep speaks for it.
 const SILENT: Output = Output { quiet: true, json: false };
 
+/// How runs are made.
+#[derive(Clone, Copy)]
+pub(super) struct Making {
+    pub(super) threads: usize,
+    pub(super) output: Output,
+    pub(super) cancel: &'static Cancel,
+    /// Steps of its trace after which a training is stopped, to be gone on with later.
+    pub(super) pause_after: Option<u64>,
+}
+
+impl Making {
+    /// Whether nothing is to be said.
+    pub(super) fn is_silent(&self) -> bool {
+        self.output.quiet || self.output.json
+    }
+}
+
 /// Makes the runs on so many threads. Each run is fitted on a single one, so that its bits do not depend on them. A
 /// run that fails is reported and the others go on; a request to stop lets none begin. A run that another process has
 /// in hand is left to it, and taken over where that process ends without a result.
 ///
-/// An error is one of the sweep's folder: what became of a run could not be kept.
-pub(super) fn execute(
-    sweep: &FrozenSweep,
-    jobs: &[Job<'_>],
-    threads: usize,
-    output: Output,
-    cancel: &'static Cancel,
-) -> Result<(), RunError> {
-    let progress = Progress::over(jobs.len() as u64, "runs", output.quiet || output.json);
+/// An error is one of the sweep as a whole: what became of a run could not be kept, or no result has what a search is for.
+pub(super) fn execute(sweep: &FrozenSweep, jobs: &[Job<'_>], making: &Making) -> Result<(), TrainerError> {
+    let Making { output, cancel, .. } = *making;
+    let progress = Progress::over(jobs.len() as u64, "runs", making.is_silent());
     let queue = Queue::new(jobs);
-    let fault: Mutex<Option<RunError>> = Mutex::new(None);
+    let fault: Mutex<Option<TrainerError>> = Mutex::new(None);
     let clerk = Mutex::new(Clerk::new(sweep));
     let remark = |words: &str| {
         if !output.quiet {
@@ -61,9 +76,11 @@ pub(super) fn execute(
     let work = || {
         while !cancel.is_requested() && !is_some(&fault) {
             let Some((job, waited)) = queue.next() else { break };
-            match claimed(sweep, job, cancel, &remark) {
+            match claimed(sweep, job, making, &remark) {
                 Ok(Hands::Own(end)) => {
-                    report(sweep, job.0, &end, &progress, output);
+                    if let Err(error) = report(sweep, job.0, &end, &progress, output) {
+                        *fault.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
+                    }
                     clerk.lock().unwrap_or_else(PoisonError::into_inner).note(sweep);
                 }
                 Ok(Hands::Done) => {
@@ -75,7 +92,7 @@ pub(super) fn execute(
         }
     };
     std::thread::scope(|scope| {
-        for _ in 0..threads.min(jobs.len()) {
+        for _ in 0..making.threads.min(jobs.len()) {
             scope.spawn(work);
         }
     });
@@ -100,12 +117,12 @@ enum Hands {
 fn claimed(
     sweep: &FrozenSweep,
     (line, config): Job<'_>,
-    cancel: &'static Cancel,
+    making: &Making,
     remark: &dyn Fn(&str),
-) -> Result<Hands, RunError> {
+) -> Result<Hands, TrainerError> {
     let Some(_claim) = sweep.folder.claim(&line.digest)? else { return Ok(Hands::Other) };
     let ended = |end: &SweepEnd| match end.state {
-        SweepState::Done => true,
+        SweepState::Done | SweepState::Stopped => true,
         // One that failed is made again where that was asked for, but not one that another process has just made again.
         SweepState::Failed => line.state != SweepState::Failed || end.run != line.run,
         SweepState::Pending | SweepState::Interrupted => false,
@@ -113,7 +130,7 @@ fn claimed(
     if sweep.folder.end_of(&line.digest).is_some_and(|end| ended(&end)) {
         return Ok(Hands::Done);
     }
-    let end = make(sweep, line, config, cancel, remark);
+    let end = make(sweep, (line, config), making, remark);
     sweep.folder.end_run(&end)?;
     Ok(Hands::Own(end))
 }
@@ -154,21 +171,15 @@ fn is_some<T>(shared: &Mutex<Option<T>>) -> bool {
 }
 
 /// Makes one run and says what became of it.
-fn make(
-    sweep: &FrozenSweep,
-    line: &SweepLine,
-    config: &str,
-    cancel: &'static Cancel,
-    remark: &dyn Fn(&str),
-) -> SweepEnd {
+fn make(sweep: &FrozenSweep, (line, config): Job<'_>, making: &Making, remark: &dyn Fn(&str)) -> SweepEnd {
     let mut run = None;
     // A panic would be a fault of the program; even so the other runs go on.
-    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, line, config, cancel, &mut run, remark)));
+    let made = catch_unwind(AssertUnwindSafe(|| attempt(sweep, (line, config), making, &mut run, remark)));
     let (state, message) = match made {
         Ok(Ok(Outcome::Interrupted)) => (SweepState::Interrupted, None),
         Ok(Ok(Outcome::Done | Outcome::CheckFailed)) => (SweepState::Done, None),
         // A request to stop may also end training that has nothing to show yet.
-        Ok(Err(_)) if cancel.is_requested() => (SweepState::Interrupted, None),
+        Ok(Err(_)) if making.cancel.is_requested() => (SweepState::Interrupted, None),
         Ok(Err(error)) => (SweepState::Failed, Some(error.to_string())),
         Err(_) => {
             let message = "the program panicked; what it said stands above (a fault, please report it)";
@@ -186,46 +197,64 @@ fn make(
 /// Reads, fits and keeps; the run's folder is made, or taken up, once its record is read.
 fn attempt(
     sweep: &FrozenSweep,
-    line: &SweepLine,
-    config: &str,
-    cancel: &'static Cancel,
+    (line, config): Job<'_>,
+    making: &Making,
     run: &mut Option<String>,
     remark: &dyn Fn(&str),
 ) -> Result<Outcome, TrainerError> {
-    let experiment = resolve(&Document::parse(&line.config, config)?, ESTIMATORS, &classical())?;
-    let input = Input::read(&experiment)?.with_pipelines(&experiment);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .build()
         .map_err(|error| TrainerError::System { what: "threads", problem: error.to_string() })?;
-    let beginning = Beginning::of(&experiment, &input.source.digest, config.to_owned(), 1);
-    let label = label(&sweep.manifest, line);
-    let (folder, ledger) = match begun_before(sweep, &label, &beginning, experiment.checkpoint, remark) {
-        Some((name, Before::Finished)) => {
-            *run = Some(name);
-            return Ok(Outcome::Done);
+    let Making { cancel, pause_after, .. } = *making;
+    let resolved = Swept::resolve(&Document::parse(&line.config, config)?, &registries())?;
+    match resolved.map_err(|task| TrainerError::System { what: "the task", problem: task })? {
+        Swept::Experiment(experiment) => {
+            let input = Input::read(&experiment)?.with_pipelines(&experiment);
+            let beginning = Beginning::of(&experiment, &input.source.digest, config.to_owned(), 1);
+            let Some(folder) = opened(sweep, line, &beginning, run, remark)? else {
+                return Ok(Outcome::Done);
+            };
+            let ledger = Ledger::open(&folder, experiment.checkpoint)?;
+            let experiment = &experiment;
+            perform(&Run { experiment, input, folder, ledger, pool, cancel, pause_after, output: SILENT })
         }
-        Some((name, Before::Open(folder, ledger))) => {
+        Swept::Learning(study) => {
+            let problems = study.problems.iter().map(prepare).collect::<Result<Vec<_>, _>>()?;
+            let beginning =
+                Beginning { config: config.to_owned(), ..learn::beginning(&study, &pool, &problems) };
+            let Some(folder) = opened(sweep, line, &beginning, run, remark)? else {
+                return Ok(Outcome::Done);
+            };
+            let study = &study;
+            learn::perform(&Study { study, problems, folder, pool, cancel, pause_after, output: SILENT })
+        }
+    }
+}
+
+/// The run's folder, open for work; `None` where an earlier attempt finished it.
+fn opened(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    beginning: &Beginning<'_>,
+    run: &mut Option<String>,
+    remark: &dyn Fn(&str),
+) -> Result<Option<RunFolder>, TrainerError> {
+    let label = label(&sweep.manifest, line);
+    match begun_before(sweep, &label, beginning, remark) {
+        Some((name, before)) => {
             *run = Some(name);
-            (folder, ledger)
+            Ok(match before {
+                TakenUp::Finished(_) => None,
+                TakenUp::Open(folder) => Some(folder),
+            })
         }
         None => {
             let (name, folder) = sweep.folder.begin_run(&label)?;
             *run = Some(name);
-            let folder = start(folder, &beginning)?;
-            let ledger = Ledger::open(&folder, experiment.checkpoint)?;
-            (folder, ledger)
+            Ok(Some(start(folder, beginning)?))
         }
-    };
-    perform(&Run { experiment: &experiment, input, folder, ledger, pool, cancel, output: SILENT })
-}
-
-/// What an earlier attempt left of a run.
-enum Before {
-    /// All of it: it was killed before the sweep was told.
-    Finished,
-    /// Its finished fits, and the state of the one that it was killed in.
-    Open(RunFolder, Ledger),
+    }
 }
 
 /// The folder that the run was begun in and can go on in to the same bits; `None` where there is none, or
@@ -234,22 +263,20 @@ fn begun_before(
     sweep: &FrozenSweep,
     label: &str,
     beginning: &Beginning<'_>,
-    checkpoint: CheckpointSettings,
     remark: &dyn Fn(&str),
-) -> Option<(String, Before)> {
+) -> Option<(String, TakenUp)> {
     let name = sweep.folder.last_begun(label)?;
     let path = sweep.folder.path().join(&name);
     let open = || {
         if RunFolder::open(&path).events()?.last(FAILED).is_some() {
             return Ok(None);
         }
-        Ok(Some(match take_up(&Disk::default(), &path, beginning, &|_| ())? {
-            TakenUp::Finished(_) => Before::Finished,
-            TakenUp::Open(folder) => {
-                let ledger = Ledger::open(&folder, checkpoint)?;
-                Before::Open(folder, ledger)
-            }
-        }))
+        let taken_up = take_up(&Disk::default(), &path, beginning, &|_| ())?;
+        if let TakenUp::Open(folder) = &taken_up {
+            // A damaged checkpoint is found out here.
+            Ledger::open(folder, CheckpointSettings { interval_s: 10.0, interval_steps: None })?;
+        }
+        Ok(Some(taken_up))
     };
     let before = open().unwrap_or_else(|error: TrainerError| {
         remark(&format!("{name} cannot be gone on with, so the run begins again beside it: {error}"));
@@ -258,8 +285,14 @@ fn begun_before(
     before.map(|before| (name, before))
 }
 
-/// Says at once what became of a run.
-fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Progress, output: Output) {
+/// Says at once what became of a run; fails where a result lacks what a search is for.
+fn report(
+    sweep: &FrozenSweep,
+    line: &SweepLine,
+    end: &SweepEnd,
+    progress: &Progress,
+    output: Output,
+) -> Result<(), TrainerError> {
     let name = format!("{:04} ({})", line.number, line.overrides.join(" "));
     if let Some(message) = &end.message {
         let said = format!("run {name} FAILED: {message}");
@@ -267,10 +300,23 @@ fn report(sweep: &FrozenSweep, line: &SweepLine, end: &SweepEnd, progress: &Prog
             progress.aside(|| console::failure(&said));
         }
         progress.run_done(&format!("{name}: FAILED"));
-        return;
+        return Ok(());
     }
     let rows = end.run.as_ref().map(|run| read_run(&sweep.folder.path().join(run)).rows).unwrap_or_default();
-    progress.run_done(&format!("{name}: {}", said(&rows)));
+    let measure = match &sweep.manifest.search {
+        Some(search) => {
+            let ended = SweepLine { state: end.state, run: end.run.clone(), ..line.clone() };
+            let value = value_of(&sweep.folder, search, &ended)?;
+            format!(
+                ", {} {}",
+                search.measure,
+                value.map_or_else(|| "none".to_owned(), |value| format!("{value:.6}"))
+            )
+        }
+        None => String::new(),
+    };
+    progress.run_done(&format!("{name}: {}{measure}", said(&rows)));
+    Ok(())
 }
 
 /// One line on the rows of a run.
@@ -285,6 +331,7 @@ fn said(rows: &[RunTableRow]) -> String {
             let fails = if bad > 0 { ", FAILS its tolerance" } else { "" };
             format!("{}{steps}{seconds}, ζ {zeta:.8}{gap}{fails}", reached.replace('_', " "))
         }
+        [RunTableRow { task, reason, .. }] if task == "learn" => reason.clone(),
         rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
     }
 }

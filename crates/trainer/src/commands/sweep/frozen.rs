@@ -1,15 +1,17 @@
 //! The frozen list of a sweep: made and checked before the first run, or taken up again.
 
 use super::arguments::SweepArguments;
-use crate::configured::{classical, read_with_text};
+use super::execute::Job;
+use super::study::Study;
+use crate::commands::learn::problem::files_of;
+use crate::configured::registries;
 use crate::error::SweepCommandError;
 use crate::error::TrainerError;
 use crate::folders::environment::Environment;
+use crate::folders::resume::DataFile;
 use crate::terminal::console;
-use experiment::resolve;
-use experiment::sweep::{Axis, PlannedRun, digest, first_difference, plan};
-use registry::ESTIMATORS;
-use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepState};
+use experiment::sweep::{PlannedRun, RunData, Swept, first_difference};
+use results::{SWEEP_SCHEMA, SweepAxis, SweepLine, SweepManifest, SweepRecord, SweepSearch, SweepState};
 use runs::{RunError, RunFolder, SweepFolder, default_root};
 use serde_json::json;
 use settings::Document;
@@ -21,6 +23,13 @@ pub(super) struct FrozenSweep {
     pub(super) manifest: SweepManifest,
     /// The runs' configurations, in the list's order.
     pub(super) configs: Vec<String>,
+}
+
+impl FrozenSweep {
+    /// Every run with its configuration, in the list's order.
+    pub(super) fn jobs(&self) -> impl Iterator<Item = Job<'_>> {
+        self.manifest.runs.iter().zip(self.configs.iter().map(String::as_str))
+    }
 }
 
 /// Freezes a new sweep, or takes up the one that the arguments name.
@@ -66,39 +75,35 @@ struct Planned {
     name: String,
     /// The configuration as its file has it.
     text: String,
-    axes: Vec<Axis>,
+    axes: Vec<SweepAxis>,
+    search: Option<SweepSearch>,
     runs: Vec<PlannedRun>,
 }
 
 fn planned(arguments: &SweepArguments, config: &Path) -> Result<Planned, TrainerError> {
-    let (text, mut document) = read_with_text(config)?;
-    if let Some(seed) = arguments.run.seed {
-        document.apply_override(&format!("seed={seed}"))?;
-    }
-    let axes: Vec<Axis> = arguments
-        .axes
-        .iter()
-        .map(|argument| Axis::parse(argument))
-        .collect::<Result<_, _>>()
-        .map_err(SweepCommandError::Plan)?;
-    let runs = plan(&document, &axes, ESTIMATORS, &classical()).map_err(SweepCommandError::Plan)?;
-    let stem = config.file_stem().unwrap_or_default().to_string_lossy();
-    let name = document.get("name").and_then(|leaf| leaf.value.as_str()).unwrap_or(&stem);
-    Ok(Planned { text, name: format!("{name}-sweep"), axes, runs })
+    let study = Study::of_arguments(arguments, config)?;
+    let runs = study.first_runs(arguments.search.trials())?;
+    let (search, axes, name) = (study.search(arguments, &runs)?, study.axes(), study.name(config));
+    Ok(Planned { name, text: study.text, axes, search, runs })
 }
 
 /// The manifest of a sweep that begins now. A record that cannot be read is found out here, not by its runs.
 fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerError> {
-    let mut records: Vec<SweepRecord> = Vec::new();
-    for run in &planned.runs {
-        if records.iter().all(|known| known.path != run.data_path) {
-            let digest = record::file_digest(Path::new(&run.data_path)).map_err(|source| {
-                SweepCommandError::Record { number: run.number, overrides: named(&run.overrides), source }
-            })?;
-            records.push(SweepRecord { path: run.data_path.clone(), digest });
-        }
-    }
-    let line = |run: &PlannedRun| SweepLine {
+    Ok(SweepManifest {
+        schema: SWEEP_SCHEMA.to_owned(),
+        name: planned.name.clone(),
+        config,
+        version: env!("CARGO_PKG_VERSION").to_owned(),
+        axes: planned.axes.clone(),
+        records: records(&planned.runs)?,
+        search: planned.search.clone(),
+        runs: planned.runs.iter().map(line).collect(),
+    })
+}
+
+/// The line of a run that was not begun.
+pub(super) fn line(run: &PlannedRun) -> SweepLine {
+    SweepLine {
         number: run.number,
         digest: run.digest.clone(),
         overrides: run.overrides.clone(),
@@ -106,17 +111,37 @@ fn manifest(config: String, planned: &Planned) -> Result<SweepManifest, TrainerE
         state: SweepState::Pending,
         run: None,
         message: None,
-    };
-    let axis = |axis: &Axis| SweepAxis { key: axis.key.clone(), values: axis.values.clone() };
-    Ok(SweepManifest {
-        schema: SWEEP_SCHEMA.to_owned(),
-        name: planned.name.clone(),
-        config,
-        version: env!("CARGO_PKG_VERSION").to_owned(),
-        axes: planned.axes.iter().map(axis).collect(),
-        records,
-        runs: planned.runs.iter().map(line).collect(),
-    })
+    }
+}
+
+/// The files that runs read, each once.
+fn records(runs: &[PlannedRun]) -> Result<Vec<SweepRecord>, TrainerError> {
+    let mut records: Vec<SweepRecord> = Vec::new();
+    let mut looked_at: Vec<&RunData> = Vec::new();
+    for run in runs {
+        if looked_at.contains(&&run.data) {
+            continue;
+        }
+        looked_at.push(&run.data);
+        let found = match &run.data {
+            RunData::Record(path) => {
+                let digest = record::file_digest(Path::new(path)).map_err(|source| {
+                    let overrides = named(&run.overrides);
+                    SweepCommandError::Record { number: run.number, overrides, source }
+                })?;
+                vec![DataFile { path: path.clone(), digest }]
+            }
+            RunData::Problems(problems) => {
+                problems.iter().map(files_of).collect::<Result<Vec<_>, _>>()?.concat()
+            }
+        };
+        for DataFile { path, digest } in found {
+            if records.iter().all(|known| known.path != path) {
+                records.push(SweepRecord { path, digest });
+            }
+        }
+    }
+    Ok(records)
 }
 
 /// A folder in which a sweep may begin or have begun to be frozen: empty, or with nothing but what is written
@@ -159,8 +184,10 @@ fn take_up(folder: SweepFolder, planned: Option<Planned>) -> Result<FrozenSweep,
         }
     }
     let configs = match planned {
-        Some(planned) => planned.runs.into_iter().map(|run| run.config).collect(),
-        None => manifest.runs.iter().map(|line| frozen_config(&folder, line)).collect::<Result<_, _>>()?,
+        Some(planned) if planned.runs.len() == manifest.runs.len() => {
+            planned.runs.into_iter().map(|run| run.config).collect()
+        }
+        _ => manifest.runs.iter().map(|line| frozen_config(&folder, line)).collect::<Result<_, _>>()?,
     };
     if manifest.version != env!("CARGO_PKG_VERSION") {
         console::remark(&format!(
@@ -178,8 +205,8 @@ fn frozen_config(folder: &SweepFolder, line: &SweepLine) -> Result<String, Sweep
     let file = path.display().to_string();
     let text = std::fs::read_to_string(&path).ok();
     let holds = |text: &String| {
-        let experiment = Document::parse(&file, text).and_then(|d| resolve(&d, ESTIMATORS, &classical()));
-        experiment.is_ok_and(|experiment| digest(&experiment) == line.digest)
+        let swept = Document::parse(&file, text).and_then(|d| Swept::resolve(&d, &registries()));
+        matches!(swept, Ok(Ok(swept)) if swept.digest() == line.digest)
     };
     let lost = || SweepCommandError::Lost { file: file.clone(), digest: line.digest.clone() };
     text.filter(holds).ok_or_else(lost)
@@ -192,6 +219,9 @@ fn named(overrides: &[String]) -> String {
 
 /// What differs between the frozen list and another, in words.
 fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned) -> Option<String> {
+    if let Some(said) = other_search(manifest.search.as_ref(), planned.search.as_ref()) {
+        return Some(said);
+    }
     for (line, run) in manifest.runs.iter().zip(&planned.runs) {
         if line.digest == run.digest {
             continue;
@@ -203,5 +233,21 @@ fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned)
     }
     let (then, now) = (manifest.runs.len(), planned.runs.len());
     // The first of them are the same: an axis has become longer or shorter at its end.
-    (then != now).then(|| format!("{then} runs then, {now} now"))
+    let is_proposed_later = manifest.search.as_ref().is_some_and(|search| search.sampler == "tpe");
+    (then != now && !(is_proposed_later && now < then)).then(|| format!("{then} runs then, {now} now"))
+}
+
+/// What differs between two ways to search, in words; what was reached on the way is no difference.
+fn other_search(then: Option<&SweepSearch>, now: Option<&SweepSearch>) -> Option<String> {
+    let words = |search: Option<&SweepSearch>| {
+        let Some(search) = search else { return "every combination".to_owned() };
+        let aim = if search.maximize { "maximize" } else { "minimize" };
+        let halving = search.halving.as_ref().map_or_else(String::new, |halving| {
+            format!(", halving {} keep one in {}", halving.first_steps, halving.keep_one_in)
+        });
+        let SweepSearch { sampler, trials, batch, seed, measure, .. } = search;
+        format!("{sampler}, {trials} trials in batches of {batch} from seed {seed}, {aim} {measure}{halving}")
+    };
+    let (then, now) = (words(then), words(now));
+    (then != now).then(|| format!("{then} then, {now} now"))
 }

@@ -1,8 +1,11 @@
-//! `trainer sweep`: every combination of some keys' values, resumable.
+//! `trainer sweep`: every combination of some keys' values, or a search among them, resumable.
 
 pub(crate) mod arguments;
 mod execute;
 mod frozen;
+pub(crate) mod measure;
+pub(crate) mod search;
+mod study;
 
 use crate::error::{SweepCommandError, TrainerError};
 use crate::folders::page::write_report;
@@ -12,11 +15,11 @@ use crate::share::{Launcher, Work, launch};
 use crate::terminal::console;
 use crate::terminal::interrupt::{self, Saving};
 use arguments::SweepArguments;
-use execute::Job;
+use execute::{Job, Making};
 use frozen::FrozenSweep;
 use record::counted;
 use report::{run_table_csv, run_table_markdown};
-use results::{RunTable, SweepLine, SweepManifest, SweepState};
+use results::{RunTable, SweepLine, SweepManifest, SweepSearch, SweepState};
 use runs::SweepFolder;
 use serde::Serialize;
 use serde_json::json;
@@ -33,26 +36,39 @@ struct Answer<'a> {
 pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let mut sweep = frozen::settle(arguments)?;
+    let searches = sweep.manifest.search.clone().filter(looks_at_results);
+    if let Some(search) = &searches
+        && (arguments.share.launcher.is_some() || arguments.share.shard.is_some())
+    {
+        let what = if search.halving.is_some() { "--halving" } else { "--search tpe" };
+        return Err(SweepCommandError::Shares { what }.into());
+    }
     if let Some(Launcher::Slurm) = arguments.share.launcher {
         return launched(arguments, &sweep);
     }
     let shard = arguments.share.shard();
     let output = arguments.output;
-    let jobs: Vec<Job<'_>> = sweep
-        .manifest
-        .runs
-        .iter()
-        .zip(&sweep.configs)
-        .enumerate()
-        .filter(|(position, (line, _))| shard.takes(*position) && is_missing(line, arguments.failed))
-        .map(|(_, (line, config))| (line, config.as_str()))
-        .collect();
-    if !output.quiet && !output.json {
-        let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
-        console::remark(&format!("sweep of {} in {path}, {} of them now", counted(all, "run"), jobs.len()));
-    }
-    let made = jobs.len();
-    execute::execute(&sweep, &jobs, arguments.threads(), output, cancel)?;
+    let making = Making { threads: arguments.threads(), output, cancel, pause_after: None };
+    let said = |now: &str| {
+        if !making.is_silent() {
+            let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
+            console::remark(&format!("sweep of {} in {path}{now}", counted(all, "run")));
+        }
+    };
+    let made = match &searches {
+        Some(search) => {
+            said("");
+            search::search(&mut sweep, search, arguments.failed, &making)?
+        }
+        None => {
+            let own = sweep.jobs().enumerate().filter(|(position, _)| shard.takes(*position));
+            let jobs: Vec<Job<'_>> =
+                own.map(|(_, job)| job).filter(|(line, _)| is_missing(line, arguments.failed)).collect();
+            said(&format!(", {} of them now", jobs.len()));
+            execute::execute(&sweep, &jobs, &making)?;
+            jobs.len()
+        }
+    };
     let _saving = Saving::begin();
     let table = finish(&sweep.folder, &mut sweep.manifest)?;
     let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
@@ -65,6 +81,9 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
         output.print(&Answer { folder: path.clone(), table: &table }, String::new)?;
     } else if !output.quiet {
         print_table(&table);
+        if let Some(found) = &table.search {
+            console::result(&format!("\n{}", found.sentence()));
+        }
         console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
     }
     if interrupted {
@@ -72,6 +91,10 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
             console::remark(&format!("interrupted; trainer sweep --out {path} --resume goes on"));
         }
         return Ok(Outcome::Interrupted);
+    }
+    if let Some(found) = &table.search {
+        let outcome = if found.best.is_some() { Outcome::Done } else { Outcome::CheckFailed };
+        return Ok(arguments.share.outcome(outcome));
     }
     let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
     Ok(arguments.share.outcome(if is_fine { Outcome::Done } else { Outcome::CheckFailed }))
@@ -94,11 +117,16 @@ fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, 
     launch(&arguments.share, &work, arguments.output)
 }
 
+/// Whether a search has to wait for results before it knows what to run.
+fn looks_at_results(search: &SweepSearch) -> bool {
+    search.sampler == "tpe" || search.halving.is_some()
+}
+
 fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
     match line.state {
         SweepState::Pending | SweepState::Interrupted => true,
         SweepState::Failed => failed_too,
-        SweepState::Done => false,
+        SweepState::Done | SweepState::Stopped => false,
     }
 }
 
@@ -118,8 +146,11 @@ fn holds(table: &RunTable, manifest: &SweepManifest, line: &SweepLine) -> bool {
 pub(crate) fn finish(sweep: &SweepFolder, manifest: &mut SweepManifest) -> Result<RunTable, TrainerError> {
     loop {
         sweep.refresh(manifest)?;
-        let table = of_sweep::table(sweep, manifest);
+        let table = of_sweep::table(sweep, manifest)?;
         let folder = sweep.folder();
+        if let Some(best) = table.search.as_ref().and_then(|found| found.best.as_ref()) {
+            folder.write("best.toml", of_sweep::best_config(sweep, best, &table)?.as_bytes())?;
+        }
         folder.write_json("result.json", &table)?;
         folder.write("table.csv", run_table_csv(&table).as_bytes())?;
         folder.write("table.md", run_table_markdown(&table).as_bytes())?;

@@ -103,7 +103,7 @@ fn pretrain(
     let progress = Progress::over(methods.len() as u64, "fits", true);
     let train = |method: Method| {
         let name = format!("training of {}", method.id());
-        let watcher = Watcher::new(&progress, Some(Place { ledger, name: &name }))?;
+        let watcher = Watcher::new(&progress, Some(Place { ledger, name: &name }), None)?;
         let trained = method.pretrained(seed, cap, cancel, &watcher);
         trained.map_err(|error| watcher.failure().unwrap_or(error))
     };
