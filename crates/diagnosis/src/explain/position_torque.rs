@@ -4,7 +4,8 @@
 //! vocabulary does, and a record does not tell these causes apart, so that such a torque gets no name. But a simulator
 //! that has it follows the motion more closely, and whoever looks for the cause knows how often it repeats in a turn.
 //!
-//! It is looked for once all names are given, and takes part in none of them.
+//! It is looked for once all names are given. Before, it only takes part as what could stand in the place of others
+//! ([`crate::search::nameless`]).
 
 use crate::answer::Interval;
 use crate::data::segments::Data;
@@ -250,7 +251,7 @@ mod tests {
     fn beside_a_larger_effect_it_takes_no_name_from_that() {
         let answer = diagnosed(&[("quadratic_drag", &[0.05]), ("unknown", &[0.1, 20.0, 0.7])]);
         assert_eq!(answer.verdict.status, Status::Effect);
-        assert_eq!(answer.verdict.effects.first(), Some(&"quadratic_drag"));
+        assert_eq!(answer.verdict.effects, ["quadratic_drag"]);
         let [wavenumber, _] = torque(&answer).unwrap();
         assert!((wavenumber.value - 20.0).abs() < 0.5, "{wavenumber:?}");
         let shares: f64 =

@@ -4,6 +4,7 @@ pub(crate) mod alternatives;
 pub(crate) mod archive;
 pub(crate) mod beam;
 pub(crate) mod chains;
+pub(crate) mod nameless;
 pub(crate) mod null;
 pub(crate) mod plain;
 pub(crate) mod proposals;

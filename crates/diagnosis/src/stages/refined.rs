@@ -12,6 +12,7 @@ use crate::model::candidate::Candidate;
 use crate::search::alternatives::alternatives;
 use crate::search::archive::Archive;
 use crate::search::beam::{Asked, search};
+use crate::search::nameless::nameless;
 use crate::search::refine::refine;
 
 /// Everything fitted, on the segments as they were cut and on the shooting interval that the best sets follow.
@@ -43,6 +44,7 @@ impl Refined {
         let base = followed(&data, &Unjoined { data: &segments, base: &segments_base }, &coarse)?;
         let vocabulary = candidates.len();
         alternatives(&coarse.data, &coarse.calibrated, &mut found, &candidates, vocabulary);
+        nameless(&coarse.data, &coarse.calibrated, &mut found, vocabulary);
         let weighing = Weighing::of(&coarse.data, &coarse.calibrated, &found, vocabulary);
         let known = Archive::of(&base.calibrated);
         let mut archive = refine(&data, &known, &weighing.weigh(&found), &found.rejected, &candidates);

@@ -28,6 +28,8 @@ pub(crate) enum EvidenceClass {
     Sensor,
     /// What the host does to time stamps.
     Stamps,
+    /// A torque without a name: it takes the place of others, and is no answer itself.
+    Unnamed,
 }
 
 impl EvidenceClass {
@@ -45,6 +47,7 @@ impl EvidenceClass {
             Self::Actuator => "actuator",
             Self::Sensor => "sensor",
             Self::Stamps => "stamps",
+            Self::Unnamed => "unknown",
         }
     }
 

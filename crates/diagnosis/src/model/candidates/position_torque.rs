@@ -17,7 +17,7 @@ impl CandidateLaw for PositionTorque {
     }
 
     fn evidence_class(&self) -> EvidenceClass {
-        EvidenceClass::Restoring
+        EvidenceClass::Unnamed
     }
 
     fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
@@ -30,6 +30,10 @@ impl CandidateLaw for PositionTorque {
     }
 
     fn is_non_negative(&self) -> bool {
+        true
+    }
+
+    fn is_flexible(&self) -> bool {
         true
     }
 

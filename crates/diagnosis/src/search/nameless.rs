@@ -1,0 +1,34 @@
+//! A torque without a name in the place of effects that can sit where they like.
+//!
+//! What no law of the vocabulary explains is soaked up by several flexible effects at once, and each of these then seems to be
+//! needed. A law that is none of them but explains the same in one piece shows that they are not. The torque along the position
+//! is such a law: it is fitted beside the best sets of plain laws wherever the best set of all has a flexible member.
+
+use crate::data::segments::Data;
+use crate::evidence::weights::{EVEN, Weighing};
+use crate::explain::position_torque::beside;
+use crate::fit::levenberg_marquardt::Fit;
+use crate::search::archive::Archive;
+use rayon::prelude::*;
+
+/// Sets of plain laws that it is fitted beside.
+const SETS: usize = 2;
+
+/// Takes the best sets of plain laws with a torque without a name into an archive.
+pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
+    let weighing = Weighing::of(data, calibrated, archive, vocabulary);
+    let weighed = weighing.weigh(archive);
+    let is_soaked = |fit: &Fit| fit.hypothesis.candidates.iter().any(|own| own.counts() && own.is_flexible());
+    if !weighed.first().is_some_and(|best| is_soaked(best.fit)) {
+        return;
+    }
+    let is_plain = |fit: &Fit| fit.hypothesis.candidates.iter().all(|own| own.is_plain() || !own.counts());
+    let plain: Vec<&Fit> = weighed.iter().map(|own| own.fit).filter(|fit| is_plain(fit)).take(SETS).collect();
+    let fitted: Vec<Option<Fit>> = plain
+        .par_iter()
+        .map(|set| beside(data, set, set.autocorrelation_time(), EVEN).ok().flatten())
+        .collect();
+    for fit in fitted.into_iter().flatten() {
+        archive.admit(data, fit);
+    }
+}
