@@ -13,7 +13,7 @@ use crate::evidence::probability::{Doubt, probability};
 use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
 use crate::evidence::weights::{Weighed, acts, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
-use crate::model::candidate::{Candidate, is_flexible};
+use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::noise::floor;
 use crate::search::archive::vanished;
@@ -146,7 +146,7 @@ impl<'a> Inclusion<'a> {
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let shown = ClassEvidence { replacement, half_swings: None };
-        Some((1.0 - doubt.left_over) * probability(&shown, error(neither) / error(best), false, doubt))
+        Some((1.0 - doubt.left_over) * probability(&shown, error(neither) / error(best), doubt))
     }
 
     fn class(
@@ -176,8 +176,7 @@ impl<'a> Inclusion<'a> {
             },
         };
         let ratio = class_row.error_without / class_row.error_with;
-        let flexible = class_row.kinds.first().is_some_and(|kind| is_flexible(kind.id));
-        class_row.probability = probability(&class_row.evidence, ratio, flexible, doubt);
+        class_row.probability = probability(&class_row.evidence, ratio, doubt);
         Some(class_row)
     }
 

@@ -22,13 +22,27 @@ use std::f64::consts::TAU;
 /// Bands about every half harmonic of the swing, from its mean value up.
 pub(crate) const BANDS: usize = 25;
 
+/// Independent squares in a bin under a Hann window, with its neighbors in the same band: a third of those in three, whose
+/// amplitudes have the correlations 2/3 and 1/6.
+const TAPERED_WORTH: f64 = 36.0 / 29.0;
+
+/// How a segment is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum View {
+    /// Every sample counts as much as any other, those at a segment's ends too: the cosine transform. A line at one frequency
+    /// falls off by the fourth power beside it.
+    Whole,
+    /// Under a Hann window, where a line that is far above the noise leaves the other bands alone. What lies at a segment's ends
+    /// hardly counts.
+    Tapered,
+}
+
 /// The bins of one segment, as it was cut.
 #[derive(Debug, Clone)]
 struct Bins {
-    /// A row a bin: the cosines of a discrete cosine transform, whose squares have white noise's variance for a mean. Every
-    /// sample counts as much as any other, those at a segment's ends too, and a line at one frequency falls off by the
-    /// fourth power beside it.
+    /// The waves of each bin, so many rows of them, whose squares together have white noise's variance for a mean.
     waves: DMatrix<f64>,
+    rows: usize,
     /// Band of each bin.
     bands: Vec<usize>,
     /// Bins by band.
@@ -45,19 +59,57 @@ pub(crate) struct Likelihood {
     noise: f64,
 }
 
+impl View {
+    /// Independent squares in a bin.
+    fn worth(self) -> f64 {
+        match self {
+            Self::Whole => 1.0,
+            Self::Tapered => TAPERED_WORTH,
+        }
+    }
+
+    /// Weights of samples at times from a segment's first one on, all of which together have its squares for a sum.
+    fn taper(self, after: &[f64], length: f64, interval: f64) -> Vec<f64> {
+        let raised = |time: &f64| 0.5 - 0.5 * (TAU * (time + 0.5 * interval) / length).cos();
+        let window: Vec<f64> = match self {
+            Self::Whole => vec![std::f64::consts::SQRT_2; after.len()],
+            Self::Tapered => after.iter().map(raised).collect(),
+        };
+        let squares = match self {
+            Self::Whole => after.len() as f64,
+            Self::Tapered => window.iter().map(|w| w * w).sum(),
+        };
+        let norm = squares.max(f64::MIN_POSITIVE).sqrt();
+        window.into_iter().map(|w| w / norm).collect()
+    }
+}
+
 impl Bins {
-    fn new(times: &[f64], frequency: f64, interval: f64) -> Self {
+    fn new(times: &[f64], frequency: f64, interval: f64, view: View) -> Self {
         let first = times.first().copied().unwrap_or_default();
-        let count = times.len();
-        let length = times.last().map_or(0.0, |last| last - first) + interval;
+        let after: Vec<f64> = times.iter().map(|time| time - first).collect();
+        let count = after.len();
+        // As many steps as there are samples: neighboring bins are then alike in every segment.
+        let length = after.last().copied().unwrap_or_default() + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
-        let bins = ((2.0 * highest * length / TAU) as usize + 1).min(count);
-        let mut rows = Vec::with_capacity(bins * count);
-        let mut bands = Vec::with_capacity(bins);
-        for bin in 0..bins {
-            let omega = 0.5 * TAU * bin as f64 / length;
-            let norm = (if bin == 0 { 1.0 } else { 2.0 } / count.max(1) as f64).sqrt();
-            rows.extend(times.iter().map(|time| norm * (omega * (time - first + 0.5 * interval)).cos()));
+        let weights = view.taper(&after, length, interval);
+        // The cosine transform has a bin every half turn, from the middle of a step on; a window one every turn.
+        let (turn, begin, most) = match view {
+            View::Whole => (0.5 * TAU, 0.5 * interval, count.saturating_sub(1)),
+            View::Tapered => (TAU, 0.0, count / 2),
+        };
+        let most = ((highest * length / turn) as usize).min(most);
+        let mut waves = Vec::with_capacity(2 * (most + 1) * count);
+        let mut bands = Vec::with_capacity(most + 1);
+        for bin in 0..=most {
+            let omega = turn * bin as f64 / length;
+            // A constant has no sine beside its cosine, and all of the power.
+            let size = if bin == 0 && view == View::Whole { std::f64::consts::FRAC_1_SQRT_2 } else { 1.0 };
+            let along = || weights.iter().zip(&after);
+            waves.extend(along().map(|(w, t)| size * w * (omega * (t + begin)).cos()));
+            if view == View::Tapered {
+                waves.extend(along().map(|(w, t)| w * (omega * t).sin()));
+            }
             bands.push(((2.0 * omega / frequency).round() as usize).min(BANDS - 1));
         }
         let mut counts = [0.0; BANDS];
@@ -66,16 +118,17 @@ impl Bins {
                 *slot += 1.0;
             }
         }
-        Self { waves: DMatrix::from_row_slice(bands.len(), count, &rows), bands, counts }
+        let rows = if view == View::Tapered { 2 } else { 1 };
+        Self { waves: DMatrix::from_row_slice(rows * bands.len(), count, &waves), rows, bands, counts }
     }
 
     /// Sum of the squares by band.
     fn powers(&self, residual: &DVector<f64>) -> [f64; BANDS] {
         let mut powers = [0.0; BANDS];
         let values = &self.waves * residual;
-        for (value, band) in values.iter().zip(&self.bands) {
+        for (own, band) in values.as_slice().chunks(self.rows).zip(&self.bands) {
             if let Some(slot) = powers.get_mut(*band) {
-                *slot += value * value;
+                *slot += own.iter().map(|value| value * value).sum::<f64>();
             }
         }
         powers
@@ -85,18 +138,18 @@ impl Bins {
 impl Likelihood {
     /// Of residuals by segment as these were cut. `closest` is what the closest set leaves there: it says how many
     /// independent numbers a band is worth. `noise` is the standard deviation of the sensor's noise.
-    pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64) -> Self {
+    pub(crate) fn of(data: &Data, closest: &[DVector<f64>], noise: f64, view: View) -> Self {
         let mut bins = Vec::new();
         let interval = data.interval();
         for segment in &data.segments {
             for part in segment.part_ranges() {
                 let times = segment.times.get(part).unwrap_or_default();
-                bins.push(Bins::new(times, data.facts.frequency, interval));
+                bins.push(Bins::new(times, data.facts.frequency, interval, view));
             }
         }
         let mut own = Self { bins, worth: Vec::new(), noise: noise * noise };
         let powers = own.powers(closest);
-        own.worth = (0..BANDS).map(|band| worth(&own.bins, &powers, band)).collect();
+        own.worth = (0..BANDS).map(|band| worth(&own.bins, &powers, band, view.worth())).collect();
         own
     }
 
@@ -141,18 +194,18 @@ impl Likelihood {
 }
 
 /// Independent squares in a band of all segments: fewer than its bins where few segments hold most of the power, beyond
-/// the scatter that noise of one size has. `closest` is the power that the closest set leaves, by segment and band.
-fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize) -> f64 {
+/// the scatter that noise of one size has; a bin has `each`. `closest` is the power that the closest set leaves, by segment and band.
+fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize, each: f64) -> f64 {
     let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
     for (bins, powers) in bins.iter().zip(closest) {
         let own = bins.counts.get(band).copied().unwrap_or_default();
         if own > 0.0 {
             let power = powers.get(band).copied().unwrap_or_default();
             all += power;
-            square += power * power / own / (1.0 + 2.0 / own);
+            square += power * power / own / (1.0 + 2.0 / (own * each));
             count += own;
         }
     }
     let share = if square > 0.0 { (all * all / (count * square)).min(1.0) } else { 1.0 };
-    count * share
+    each * count * share
 }

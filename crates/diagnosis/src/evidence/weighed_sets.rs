@@ -8,7 +8,7 @@
 use crate::data::segments::Data;
 use crate::evidence::context::Predicted;
 use crate::evidence::held_out::HeldOut;
-use crate::evidence::likelihood::{BANDS, Likelihood};
+use crate::evidence::likelihood::{BANDS, Likelihood, View};
 use crate::evidence::score::{further_starts, parameter_price};
 use crate::evidence::weights::{Weighed, price, share};
 use crate::fit::levenberg_marquardt::Fit;
@@ -67,6 +67,14 @@ impl Basis {
         }
     }
 
+    /// Where nothing is left there is no line beside the noise.
+    fn view(self) -> View {
+        match self {
+            Self::HeldOut => View::Tapered,
+            Self::Fitted => View::Whole,
+        }
+    }
+
     /// What a set pays.
     fn price(self, records: &Records<'_>, set: &Fit, worth: f64, left_over: f64) -> f64 {
         let effects = price(records.segments, set, records.vocabulary, left_over);
@@ -92,7 +100,7 @@ impl<'a> WeighedSets<'a> {
         let closest = residuals.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
         let closest = closest.map(Vec::as_slice).unwrap_or_default();
         let noise = floor::floor(records.segments, closest).value;
-        let likelihood = Likelihood::of(records.segments, closest, noise);
+        let likelihood = Likelihood::of(records.segments, closest, noise, basis.view());
         let of = |((fit, held), own): (&(&'a Fit, &HeldOut), &Vec<DVector<f64>>)| {
             let powers = likelihood.powers(own);
             let price = basis.price(records, fit, likelihood.worth(), left_over);

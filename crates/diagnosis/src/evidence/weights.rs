@@ -1,7 +1,7 @@
 //! From scores to probabilities and a verdict.
 
 use crate::data::segments::Data;
-use crate::evidence::likelihood::Likelihood;
+use crate::evidence::likelihood::{Likelihood, View};
 use crate::evidence::score::{further_starts, parameter_price};
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::Candidate;
@@ -83,7 +83,7 @@ impl<'a> Weighing<'a> {
         let closest = archive.fits.iter().min_by(|a, b| a.squares.total_cmp(&b.squares));
         let closest = &closest.unwrap_or(calibrated).residuals;
         let noise = crate::noise::floor::floor(data, closest).value;
-        let likelihood = Likelihood::of(data, &data.by_part(closest), noise);
+        let likelihood = Likelihood::of(data, &data.by_part(closest), noise, View::Whole);
         let bare = likelihood.log(&data.by_part(&calibrated.residuals));
         Self { data, calibrated, likelihood, bare, vocabulary }
     }

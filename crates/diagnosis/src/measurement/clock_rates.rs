@@ -8,7 +8,7 @@
 use crate::answer::Finding;
 use crate::data::observations::Observations;
 use crate::data::segments::Data;
-use crate::evidence::likelihood::Likelihood;
+use crate::evidence::likelihood::{Likelihood, View};
 use crate::evidence::score::parameter_price;
 use crate::fit::levenberg_marquardt::{Fit, solve};
 use crate::model::matrices::element;
@@ -113,7 +113,7 @@ fn rates(data: &Data, fit: &Fit, records: usize) -> Result<Option<(Vec<f64>, f64
     };
     let (before, after) = (by_segment(&residual), by_segment(&left));
     let noise = floor::floor(data, &fit.residuals).value;
-    let likelihood = Likelihood::of(data, &after, noise);
+    let likelihood = Likelihood::of(data, &after, noise, View::Whole);
     // Whether they bring as much as they have to is for the search on the corrected clocks to say.
     let price = parameter_price(records - 1, likelihood.worth());
     if likelihood.log(&after) - likelihood.log(&before) <= price {
