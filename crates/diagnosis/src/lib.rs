@@ -46,7 +46,7 @@ pub use answer::{
 pub use data::observations::Observations;
 pub use diagnose::{diagnose, diagnose_watched};
 pub use error::DiagnosisError;
-pub use evidence::conclusion::DISTINCT_DISTANCE;
+pub use evidence::weights::DISTINCT_DISTANCE;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
 pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;

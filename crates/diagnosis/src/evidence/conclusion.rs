@@ -6,14 +6,11 @@ use crate::answer::{
 };
 use crate::evidence::context::{Context, OFF_BY_CHANCE, Shift};
 use crate::evidence::inclusion::Inclusion;
+use crate::evidence::weights::DISTINCT_DISTANCE;
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::levenberg_marquardt::Fit;
 use crate::model::candidate::{Candidate, evidence_class};
-
-/// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
-/// other in one of twenty records.
-pub const DISTINCT_DISTANCE: f64 = 3.29;
 
 /// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and
 /// no calibration.

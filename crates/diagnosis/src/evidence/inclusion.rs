@@ -11,7 +11,7 @@ use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
 use crate::evidence::probability::{Doubt, probability};
 use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
-use crate::evidence::weights::{Weighed, acts, best_if_nothing_is_left};
+use crate::evidence::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
@@ -84,6 +84,10 @@ const DRAWS: usize = 200;
 
 /// Probability of a member, given its class, from which on it is told; and the same for its absence.
 const TOLD: f64 = 0.9;
+
+/// Log likelihood by which a kind has to explain more than another to be told from it: half the square of the distance at which
+/// either is mistaken for the other in one of twenty records.
+const DISTINCT: f64 = 0.5 * DISTINCT_DISTANCE * DISTINCT_DISTANCE;
 
 impl<'a> Inclusion<'a> {
     /// Weighs what was predicted of the segments that a shooting interval's data were cut into.
@@ -253,9 +257,24 @@ impl<'a> Inclusion<'a> {
         kinds
     }
 
-    /// Whether these data tell the kind of a class: every member either acts for certain, or not at all.
+    /// Whether these data tell the kind of a class: every member either acts for certain, or not at all, and no other one leaves
+    /// nearly as little in the likeliest one's place. What a kind pays for its parameters tells nothing.
     fn is_kind_told(&self, class: EvidenceClass) -> bool {
-        self.memberships(class).iter().all(|(_, share)| *share >= TOLD || *share <= 1.0 - TOLD)
+        let members = self.memberships(class);
+        if !members.iter().all(|(_, share)| *share >= TOLD || *share <= 1.0 - TOLD) {
+            return false;
+        }
+        let has = |w: &Weighed<'_>, own: Candidate| w.fit.hypothesis.candidates.contains(&own);
+        let explains = |chosen: &dyn Fn(&Weighed<'_>) -> bool| {
+            let all = self.sets.weighed.iter().zip(&self.sets.left).filter(|(w, _)| chosen(w));
+            all.map(|(w, left)| w.evidence + left.price).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let Some((likeliest, _)) = members.iter().max_by(|a, b| a.1.total_cmp(&b.1)) else { return true };
+        let with = explains(&|w| has(w, *likeliest));
+        let others = members.iter().filter(|(own, share)| own != likeliest && *share < TOLD);
+        others
+            .map(|(other, _)| explains(&|w| has(w, *other) && !has(w, *likeliest)))
+            .all(|own| with - own >= DISTINCT)
     }
 
     /// Part of the draws of segments in which the best set has the class.

@@ -27,6 +27,10 @@ const UNKNOWN_ODDS: f64 = 0.01;
 /// Log evidence that makes them even.
 pub(crate) const EVEN: f64 = 4.605_170_185_988_091;
 
+/// Distance in noise units below which two explanations are one class: 2·1.645, so that either is mistaken for the
+/// other in one of twenty records.
+pub const DISTINCT_DISTANCE: f64 = 3.29;
+
 /// A set with its evidence.
 #[derive(Debug, Clone)]
 pub(crate) struct Weighed<'a> {
