@@ -59,7 +59,6 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("diagnosis", "fit::levenberg_marquardt::fit", "not divided yet"),
     ("diagnosis", "model::predictor::new", "not divided yet"),
     ("diagnosis", "model::predictor::predict", "not divided yet"),
-    ("diagnosis", "search::beam::search", "not divided yet"),
     ("diagnosis", "search::refine::refine", "not divided yet"),
     ("envelope-matching", "fit::minimize", "one iteration of a published method, in its order"),
     ("export", "modelica::modelica", "one text from its first line to its last"),

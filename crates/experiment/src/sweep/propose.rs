@@ -92,6 +92,7 @@ impl Estimator {
     fn place<R: Rng>(&self, generator: &mut R) -> f64 {
         let candidates = (0..CANDIDATES).map(|_| self.good.draw(generator));
         let rated = candidates.map(|place| (self.good.log(place) - self.others.log(place), place));
+        // Without candidates, which there are, the middle.
         rated.max_by(|one, other| one.0.total_cmp(&other.0)).map_or(0.5, |(_, place)| place)
     }
 }
@@ -149,9 +150,11 @@ impl Density {
                 let mut draw = || {
                     let number = generator.random_range(0..kernels.len());
                     let standard: f64 = StandardNormal.sample(generator);
+                    // Never without kernels; the middle is where nothing is known.
                     kernels.get(number).map_or(0.5, |(center, width)| center + width * standard)
                 };
                 let drawn = std::iter::repeat_with(&mut draw).take(MOST_DRAWS);
+                // The middle, after draws that all fell outside: a kernel far beyond an end.
                 drawn.into_iter().find(|place| (0.0..1.0).contains(place)).unwrap_or(0.5)
             }
             Self::Weights(weights) => {
@@ -174,6 +177,7 @@ impl Density {
                 (kernels.iter().map(kernel).sum::<f64>() / kernels.len() as f64).ln()
             }
             Self::Weights(weights) => {
+                // A place behind the last weight has none.
                 let weight = weights.get((place * weights.len() as f64) as usize).copied().unwrap_or(0.0);
                 (weight / weights.iter().sum::<f64>()).ln()
             }

@@ -108,6 +108,7 @@ impl Dimension {
         let value = match &self.domain {
             Domain::Choice(values) => {
                 let number = ((place * values.len() as f64) as usize).min(values.len().saturating_sub(1));
+                // A choice has values; an axis without any was refused where it was read.
                 values.get(number).cloned().unwrap_or_default()
             }
             Domain::Range(range) => range.text(place),
