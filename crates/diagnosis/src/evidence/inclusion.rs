@@ -21,16 +21,13 @@ use crate::search::proposals::proposal;
 use dynamics::DynamicsError;
 use seed::Seed;
 
-/// Sets that are asked for what they predict: the best, the best of plain laws alone, and the best where nothing is left.
+/// Sets that are asked for what they predict: the best, and the best of plain laws alone.
 const BEST: usize = 5;
 const PLAIN: usize = 2;
-const CLEAN: usize = 2;
 
 /// The sets that are asked for what they predict: the best, the best of plain laws alone, the best where nothing is left, and
 /// for each class of the first one the best without it, and for each class of any the best with it.
 pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
-    let is_plain =
-        |w: &&Weighed<'_>| w.fit.hypothesis.candidates.iter().all(|own| own.is_plain() || !own.counts());
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
         named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
@@ -39,8 +36,8 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let classes: Vec<EvidenceClass> =
         named().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class()).collect();
     let with = classes.iter().filter_map(|class| named().find(|w| holds(w.fit, *class)));
-    let plain = named().filter(is_plain).take(PLAIN);
-    let clean = best_if_nothing_is_left(weighed.iter(), CLEAN);
+    let plain = named().filter(|w| w.fit.hypothesis.is_plain()).take(PLAIN);
+    let clean = best_if_nothing_is_left(weighed.iter());
     for w in named().take(BEST).chain(plain).chain(clean).chain(without).chain(with) {
         if !asked.iter().any(|known| known.hypothesis.candidates == w.fit.hypothesis.candidates) {
             asked.push(w.fit);
@@ -64,7 +61,7 @@ fn is_of(own: Candidate, class: &str) -> bool {
 
 /// Whether a set has an effect of a class.
 pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
-    fit.hypothesis.candidates.iter().any(|own| own.counts() && own.evidence_class() == class)
+    fit.hypothesis.counted().any(|own| own.evidence_class() == class)
 }
 
 /// Sets weighed by what they leave.
@@ -101,10 +98,10 @@ impl<'a> Inclusion<'a> {
         let own = |set: &'b Predicted<'a>| (set.followed, &set.after);
         let bare = (records.bare, &predictions.recalibrated);
         let sets: Vec<(&'a Fit, &'b HeldOut)> = predictions.sets.iter().map(own).chain([bare]).collect();
-        let fitted = WeighedSets::of(&records, &sets, Basis::Fitted, 0.0);
+        let fitted = WeighedSets::of(&records, &sets, Basis::Fitted);
         let doubt = fitted.best().map_or(Ok(1.0), |(best, error)| left_over(records.data, best, error))?;
-        let basis = if doubt > 0.5 { Basis::HeldOut } else { Basis::Fitted };
-        Ok(Self { sets: WeighedSets::of(&records, &sets, basis, doubt), records })
+        let sets = if doubt > 0.5 { WeighedSets::of(&records, &sets, Basis::HeldOut) } else { fitted };
+        Ok(Self { sets: sets.priced(&records, doubt), records })
     }
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to

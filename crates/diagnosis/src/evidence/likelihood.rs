@@ -68,16 +68,16 @@ impl View {
         }
     }
 
-    /// Weights of samples at times from a segment's first one on, all of which together have its squares for a sum.
-    fn taper(self, after: &[f64], length: f64, interval: f64) -> Vec<f64> {
-        let raised = |time: &f64| 0.5 - 0.5 * (TAU * (time + 0.5 * interval) / length).cos();
-        let window: Vec<f64> = match self {
-            Self::Whole => vec![std::f64::consts::SQRT_2; after.len()],
-            Self::Tapered => after.iter().map(raised).collect(),
-        };
-        let squares = match self {
-            Self::Whole => after.len() as f64,
-            Self::Tapered => window.iter().map(|w| w * w).sum(),
+    /// Weights of samples at times from a segment's first one on, so that white noise has its variance in a wave's square.
+    fn weights(self, after: &[f64], length: f64, interval: f64) -> Vec<f64> {
+        let (window, squares): (Vec<f64>, f64) = match self {
+            Self::Whole => (vec![std::f64::consts::SQRT_2; after.len()], after.len() as f64),
+            Self::Tapered => {
+                let raised = |time: &f64| 0.5 - 0.5 * (TAU * (time + 0.5 * interval) / length).cos();
+                let window: Vec<f64> = after.iter().map(raised).collect();
+                let squares = window.iter().map(|w| w * w).sum();
+                (window, squares)
+            }
         };
         let norm = squares.max(f64::MIN_POSITIVE).sqrt();
         window.into_iter().map(|w| w / norm).collect()
@@ -92,7 +92,7 @@ impl Bins {
         // As many steps as there are samples: neighboring bins are then alike in every segment.
         let length = after.last().copied().unwrap_or_default() + interval;
         let highest = below_images(interval).min(0.5 * (BANDS as f64 - 0.5) * frequency);
-        let weights = view.taper(&after, length, interval);
+        let weights = view.weights(&after, length, interval);
         // The cosine transform has a bin every half turn, from the middle of a step on; a window one every turn.
         let (turn, begin, most) = match view {
             View::Whole => (0.5 * TAU, 0.5 * interval, count.saturating_sub(1)),

@@ -87,13 +87,8 @@ impl Basis {
 }
 
 impl<'a> WeighedSets<'a> {
-    /// Weighs sets; the last of these is the recalibrated simulator.
-    pub(crate) fn of(
-        records: &Records<'_>,
-        sets: &[(&'a Fit, &HeldOut)],
-        basis: Basis,
-        left_over: f64,
-    ) -> Self {
+    /// Weighs sets as if nothing were left; the last of these is the recalibrated simulator.
+    pub(crate) fn of(records: &Records<'_>, sets: &[(&'a Fit, &HeldOut)], basis: Basis) -> Self {
         let residuals: Vec<Vec<DVector<f64>>> =
             sets.iter().map(|(fit, held)| basis.residuals(records, fit, held)).collect();
         let square = |own: &&Vec<DVector<f64>>| own.iter().map(DVector::norm_squared).sum::<f64>();
@@ -103,12 +98,23 @@ impl<'a> WeighedSets<'a> {
         let likelihood = Likelihood::of(records.segments, closest, noise, basis.view());
         let of = |((fit, held), own): (&(&'a Fit, &HeldOut), &Vec<DVector<f64>>)| {
             let powers = likelihood.powers(own);
-            let price = basis.price(records, fit, likelihood.worth(), left_over);
-            let left = Left { error: held.mean_square().sqrt(), powers, price };
-            (Weighed { fit, evidence: left.evidence(&likelihood), probability: 0.0 }, left)
+            let left = Left { error: held.mean_square().sqrt(), powers, price: 0.0 };
+            (Weighed { fit, evidence: 0.0, probability: 0.0 }, left)
         };
-        let mut all: Vec<(Weighed<'a>, Left)> = sets.iter().zip(&residuals).map(of).collect();
-        let bare = all.last().map_or(0.0, |bare| bare.0.evidence);
+        let (weighed, left) = sets.iter().zip(&residuals).map(of).unzip();
+        Self { weighed, left, likelihood, basis, left_over: 0.0, bare: 0.0 }.priced(records, 0.0)
+    }
+
+    /// The same sets with what they pay where something is left with a probability.
+    pub(crate) fn priced(self, records: &Records<'_>, left_over: f64) -> Self {
+        let Self { weighed, left, likelihood, basis, .. } = self;
+        let mut all: Vec<(Weighed<'a>, Left)> = weighed.into_iter().zip(left).collect();
+        for (own, left) in &mut all {
+            left.price = basis.price(records, own.fit, likelihood.worth(), left_over);
+            own.evidence = left.evidence(&likelihood);
+        }
+        let is_bare = |own: &&(Weighed<'_>, Left)| std::ptr::eq(own.0.fit, records.bare);
+        let bare = all.iter().find(is_bare).map_or(0.0, |bare| bare.0.evidence);
         all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
         let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();
         share(&mut weighed);

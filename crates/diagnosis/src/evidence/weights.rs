@@ -44,15 +44,16 @@ impl Weighed<'_> {
     /// The evidence where nothing is left that flexible effects could soak up: whether that is so is known only once sets
     /// were asked what they predict.
     fn if_nothing_is_left(&self) -> f64 {
-        let flexible = self.fit.hypothesis.candidates.iter().filter(|own| own.counts() && own.is_flexible());
-        self.evidence + FLEXIBLE * flexible.count() as f64
+        self.evidence + FLEXIBLE * self.fit.hypothesis.flexible() as f64
     }
 }
 
-/// The best of weighed sets with effects where nothing is left, so many of them.
+/// Sets that are kept for the case that nothing is left.
+const CLEAN: usize = 2;
+
+/// The best [`CLEAN`] of weighed sets with effects where nothing is left.
 pub(crate) fn best_if_nothing_is_left<'a, 'b>(
     weighed: impl Iterator<Item = &'b Weighed<'a>>,
-    most: usize,
 ) -> Vec<&'b Weighed<'a>>
 where
     'a: 'b,
@@ -60,7 +61,7 @@ where
     let mut best: Vec<&Weighed<'a>> =
         weighed.filter(|own| !own.fit.hypothesis.candidates.is_empty()).collect();
     best.sort_by(|a, b| b.if_nothing_is_left().total_cmp(&a.if_nothing_is_left()));
-    best.truncate(most);
+    best.truncate(CLEAN);
     best
 }
 
@@ -141,7 +142,7 @@ pub(crate) fn price(data: &Data, fit: &Fit, vocabulary: usize, left_over: f64) -
             + SHAPE * shapes as f64
             + if own.is_flexible() { FLEXIBLE * left_over } else { 0.0 }
     };
-    fit.hypothesis.candidates.iter().filter(|own| own.counts()).map(of).sum()
+    fit.hypothesis.counted().map(of).sum()
 }
 
 /// Probability that anything acts that has no name, from the evidence for it.

@@ -294,6 +294,21 @@ impl Hypothesis {
         2 + self.known.iter().map(|known| known.candidate.free_hidden()).sum::<usize>()
     }
 
+    /// Its members that count as effects.
+    pub(crate) fn counted(&self) -> impl Iterator<Item = &Candidate> {
+        self.candidates.iter().filter(|own| own.counts())
+    }
+
+    /// Whether all of its effects are plain laws.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.counted().all(|own| own.is_plain())
+    }
+
+    /// How many of its effects can sit where they like on a record.
+    pub(crate) fn flexible(&self) -> usize {
+        self.counted().filter(|own| own.is_flexible()).count()
+    }
+
     /// The places of its candidates in the vocabulary: what tells sets apart.
     pub(crate) fn ranks(&self) -> Vec<usize> {
         self.candidates.iter().map(|candidate| candidate.rank()).collect()

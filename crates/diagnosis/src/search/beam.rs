@@ -33,6 +33,18 @@ pub(crate) struct Breadth {
     pub(crate) additions: usize,
 }
 
+/// What is asked of a search.
+#[derive(Clone, Copy)]
+pub(crate) struct Asked<'a> {
+    pub(crate) data: &'a Data,
+    /// The calibrated nominal simulator, where a search begins.
+    pub(crate) calibrated: &'a Fit,
+    pub(crate) candidates: &'a [Candidate],
+    pub(crate) breadth: &'a Breadth,
+    /// The increase of the score that a further effect has to bring for the search to go on.
+    pub(crate) threshold: f64,
+}
+
 /// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
 const NEAR: f64 = 1.5;
 const POLISHED: usize = 6;
@@ -121,17 +133,11 @@ fn stands_alone(
 const FAR_BEHIND: f64 = 60.0;
 
 /// Proposals at a fit: what to add.
-fn around(
-    data: &Data,
-    base: &Fit,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-    threshold: f64,
-    best: bool,
-) -> Vec<Proposal> {
+fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
+    let &Asked { data, candidates, breadth, threshold, .. } = asked;
     let Ok(dictionary) = Dictionary::at(data, base, candidates) else { return Vec::new() };
     let mut proposals = Vec::new();
-    let size = base.hypothesis.candidates.iter().filter(|c| c.counts()).count();
+    let size = base.hypothesis.counted().count();
     let ranked = singles(&dictionary);
     let time = base.autocorrelation_time();
     let counts = |gain: &Gain| dictionary.candidate(gain).is_none_or(|own| own.counts());
@@ -163,8 +169,9 @@ fn around(
 
 /// Puts each member's confusions in its place, linearized where the member is taken out. Gives the sets without the
 /// member too: begun here they often fit better than on their own.
-fn swaps(data: &Data, base: &Fit, candidates: &[Candidate], breadth: &Breadth) -> (Vec<Proposal>, Vec<Fit>) {
-    let counted: Vec<Candidate> = base.hypothesis.candidates.iter().copied().filter(|c| c.counts()).collect();
+fn swaps(asked: &Asked<'_>, base: &Fit) -> (Vec<Proposal>, Vec<Fit>) {
+    let &Asked { data, candidates, breadth, .. } = asked;
+    let counted: Vec<Candidate> = base.hypothesis.counted().copied().collect();
     let of = |&member: &Candidate| {
         let reduced = proposal(data, base, &[member], &[]);
         let bare = fit(data, &reduced.hypothesis, reduced.point, Moving::All, Stopping::SEARCH).ok()?;
@@ -213,15 +220,8 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
 }
 
 /// The first round: single candidates and pairs at the calibrated simulator.
-fn begin(
-    data: &Data,
-    calibrated: &Fit,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-    threshold: f64,
-    pool: &mut Archive,
-    tried: &mut BTreeSet<Vec<usize>>,
-) {
+fn begin(asked: &Asked<'_>, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>) {
+    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
     let Ok(dictionary) = Dictionary::at(data, calibrated, candidates) else { return };
     let mut proposals: Vec<Proposal> = Vec::new();
     let ranked = singles(&dictionary);
@@ -249,18 +249,6 @@ fn begin(
     settle(data, pool, tried, proposals);
 }
 
-/// What is asked of a search.
-#[derive(Clone, Copy)]
-pub(crate) struct Asked<'a> {
-    pub(crate) data: &'a Data,
-    /// The calibrated nominal simulator, where a search begins.
-    pub(crate) calibrated: &'a Fit,
-    pub(crate) candidates: &'a [Candidate],
-    pub(crate) breadth: &'a Breadth,
-    /// The increase of the score that a further effect has to bring for the search to go on.
-    pub(crate) threshold: f64,
-}
-
 /// How far a search has got: what it has fitted, and what need not be looked at again. Sets are known by their ranks.
 pub(crate) struct Explored {
     pub(crate) archive: Archive,
@@ -271,7 +259,7 @@ pub(crate) struct Explored {
 
 /// Searches sets of candidates. Where there are `known` sets already, the search goes on from these.
 pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
-    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
+    let &Asked { data, calibrated, .. } = asked;
     let mut archive = Archive::of(calibrated);
     let mut tried = BTreeSet::from([Vec::new()]);
     let begun = !known.is_empty();
@@ -280,7 +268,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
         archive.admit(data, fit);
     }
     if !begun {
-        begin(data, calibrated, candidates, breadth, threshold, &mut archive, &mut tried);
+        begin(asked, &mut archive, &mut tried);
     }
     let mut explored = Explored { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() };
     go_on(asked, &mut explored);
@@ -332,14 +320,14 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
 
 /// What to fit around a set, and the sets that were fitted to find that out.
 fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fit>) {
-    let &Asked { data, candidates, breadth, threshold, .. } = asked;
-    let mut own = around(data, base, candidates, breadth, threshold, is_best);
+    let &Asked { data, candidates, .. } = asked;
+    let mut own = around(asked, base, is_best);
     own.extend(simplified(data, base, candidates));
     if !is_best {
         return (own, Vec::new());
     }
     own.extend(generalized(data, base, candidates));
-    let (proposals, dropped) = swaps(data, base, candidates, breadth);
+    let (proposals, dropped) = swaps(asked, base);
     own.extend(proposals);
     (own, dropped)
 }

@@ -9,35 +9,29 @@ use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;
-use crate::search::beam::{singles, stands_out};
+use crate::search::beam::{Asked, singles, stands_out};
 use crate::search::proposals::{Proposal, additions, left_over, proposal};
 use rayon::prelude::*;
 
 /// Chains that are grown, each from another class.
 const MOST: usize = 6;
 
-/// Grows chains to at most `longest` effects and takes every set on the way into an archive.
-pub(crate) fn chains(
-    data: &Data,
-    calibrated: &Fit,
-    candidates: &[Candidate],
-    longest: usize,
-    threshold: f64,
-    archive: &mut Archive,
-) {
+/// Grows chains to as many effects as a set can hold and takes every set on the way into an archive.
+pub(crate) fn chains(asked: &Asked<'_>, archive: &mut Archive) {
+    let &Asked { data, calibrated, breadth, .. } = asked;
     let first: Vec<Vec<Proposal>> =
-        next(data, calibrated, candidates, threshold).into_iter().take(MOST).map(|own| vec![own]).collect();
+        next(asked, calibrated).into_iter().take(MOST).map(|own| vec![own]).collect();
     let grown: Vec<Vec<Fit>> = first
         .into_par_iter()
         .map(|mut begun| {
             let mut chain: Vec<Fit> = Vec::new();
             while let Some(set) = begun.pop() {
                 let Some(ended) = fitted(data, set) else { break };
-                let size = ended.hypothesis.candidates.iter().filter(|own| own.counts()).count();
+                let size = ended.hypothesis.counted().count();
                 let is_known = chain.iter().any(|own| own.hypothesis == ended.hypothesis);
                 chain.push(ended);
-                if let Some(last) = chain.last().filter(|_| size < longest && !is_known) {
-                    begun = next(data, last, candidates, threshold);
+                if let Some(last) = chain.last().filter(|_| size < breadth.most_effects && !is_known) {
+                    begun = next(asked, last);
                     begun.truncate(1);
                 }
             }
@@ -59,7 +53,8 @@ fn fitted(data: &Data, set: Proposal) -> Option<Fit> {
 }
 
 /// What could be added to a set and stands out there: of each class the best, the most gain first.
-fn next(data: &Data, set: &Fit, candidates: &[Candidate], threshold: f64) -> Vec<Proposal> {
+fn next(asked: &Asked<'_>, set: &Fit) -> Vec<Proposal> {
+    let &Asked { data, candidates, threshold, .. } = asked;
     let own = &set.hypothesis.candidates;
     let others: Vec<Candidate> =
         candidates.iter().copied().filter(|other| other.counts() && !own.contains(other)).collect();

@@ -18,12 +18,11 @@ const SETS: usize = 2;
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
-    let is_soaked = |fit: &Fit| fit.hypothesis.candidates.iter().any(|own| own.counts() && own.is_flexible());
-    if !weighed.first().is_some_and(|best| is_soaked(best.fit)) {
+    if weighed.first().is_none_or(|best| best.fit.hypothesis.flexible() == 0) {
         return;
     }
-    let is_plain = |fit: &Fit| fit.hypothesis.candidates.iter().all(|own| own.is_plain() || !own.counts());
-    let plain: Vec<&Fit> = weighed.iter().map(|own| own.fit).filter(|fit| is_plain(fit)).take(SETS).collect();
+    let plain = weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
+    let plain: Vec<&Fit> = plain.take(SETS).collect();
     let fitted: Vec<Option<Fit>> = plain
         .par_iter()
         .map(|set| beside(data, set, set.autocorrelation_time(), EVEN).ok().flatten())

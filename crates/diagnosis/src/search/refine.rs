@@ -16,12 +16,12 @@ const FEWEST: usize = 3;
 /// and nobody would mistake it for the best.
 const HOPELESS: f64 = 30.0;
 
-/// Sets that are fitted again on every sample, and as many of their rivals; and the best where nothing is left.
+/// Sets that are fitted again on every sample, and as many of their rivals.
 const MOST: usize = 6;
-const CLEAN: usize = 2;
 
 /// Refits the best [`MOST`] of weighed sets on other data with the same segments, as many more that differ from the best of
-/// their size in one member (its rivals), and the best set with every class of effects and without every class of the best.
+/// their size in one member (its rivals), the best set with every class of effects and without every class of the
+/// best, and the best ones where nothing is left.
 /// What has been `refined` already, the calibrated simulator first, stays as it is.
 pub(crate) fn refine(
     data: &Data,
@@ -60,11 +60,11 @@ pub(crate) fn refine(
         let without = classes.filter_map(|class| waiting.iter().find(|w| lacks(w, class)));
         let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
         let with = classes.filter_map(|class| waiting.iter().find(|w| !lacks(w, class)));
-        let clean = best_if_nothing_is_left(waiting.iter().copied(), CLEAN);
+        let clean = best_if_nothing_is_left(waiting.iter().copied());
         let mut chosen: Vec<&Fit> = Vec::new();
         for w in batch.iter().take(MOST).chain(further).chain(without).chain(with).chain(&clean) {
             let fit = w.fit;
-            if !chosen.iter().any(|known| counted(known).eq(counted(fit))) {
+            if !chosen.iter().any(|known| known.hypothesis.counted().eq(fit.hypothesis.counted())) {
                 chosen.push(fit);
             }
         }
@@ -91,11 +91,6 @@ pub(crate) fn refine(
         }
     }
     refined
-}
-
-/// The members of a set that count as effects.
-fn counted(fit: &Fit) -> impl Iterator<Item = &Candidate> {
-    fit.hypothesis.candidates.iter().filter(|own| own.counts())
 }
 
 /// The members of a set that do not count as effects, with their parameters: how the sensor shows the motion is the same

@@ -1,13 +1,11 @@
 //! Sets of effects that come into question, on the longest shooting interval that they follow.
 
 use super::{Question, Request};
-use crate::data::segments::Data;
 use crate::data::shooting_interval::ShootingInterval;
 use crate::evidence::left_over::unexplained;
 use crate::evidence::score::score;
 use crate::evidence::weights::{acts, price};
 use crate::fit::levenberg_marquardt::Fit;
-use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use crate::search::beam::{Asked, Breadth, Explored, WHITE, go_on, search};
 use crate::search::chains::chains;
@@ -39,9 +37,16 @@ impl Searched {
             additions: 4,
         };
         let Question { candidates, coarse, coarse_base, enough, .. } = question;
-        let (interval, mut explored) = explore(coarse, coarse_base, candidates, &breadth, *enough, is_whole);
+        let asked = Asked {
+            data: coarse,
+            calibrated: coarse_base,
+            candidates,
+            breadth: &breadth,
+            threshold: *enough,
+        };
+        let (interval, mut explored) = explore(&asked, is_whole);
         let ShootingInterval { data, calibrated, .. } = &interval;
-        let asked = Asked { data, calibrated, candidates, breadth: &breadth, threshold: *enough };
+        let asked = Asked { data, calibrated, ..asked };
         plain_family(data, calibrated, candidates, &mut explored.archive);
         further(&asked, &mut explored);
         let found = explored.archive;
@@ -74,32 +79,25 @@ impl Searched {
 
 /// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
 fn further(asked: &Asked<'_>, explored: &mut Explored) {
-    let &Asked { data, calibrated, candidates, breadth, threshold } = asked;
     let found = &mut explored.archive;
     let leaves_more = |best: &Fit| {
-        let left = || unexplained(data, best).map_or(f64::INFINITY, |left| left.evidence);
+        let left = || unexplained(asked.data, best).map_or(f64::INFINITY, |left| left.evidence);
         best.autocorrelation_time() > WHITE || acts(left()) > 0.5
     };
     if !found.ranked(found.autocorrelation_time()).first().is_some_and(|best| leaves_more(best)) {
         return;
     }
-    chains(data, calibrated, candidates, breadth.most_effects, threshold, found);
+    chains(asked, found);
     go_on(asked, explored);
 }
 
-/// Searches on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
+/// Searches, where the segments as they were cut are asked about, on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
 /// longer ones for as long as what was found follows the motion there.
-fn explore(
-    segments: &Data,
-    calibrated: &Fit,
-    candidates: &[Candidate],
-    breadth: &Breadth,
-    threshold: f64,
-    is_whole: bool,
-) -> (ShootingInterval, Explored) {
+fn explore(asked: &Asked<'_>, is_whole: bool) -> (ShootingInterval, Explored) {
+    let &Asked { data: segments, calibrated, .. } = asked;
     let from = |horizon: &ShootingInterval, known: Vec<Fit>| {
         let ShootingInterval { data, calibrated, .. } = horizon;
-        search(&Asked { data, calibrated, candidates, breadth, threshold }, known)
+        search(&Asked { data, calibrated, ..*asked }, known)
     };
     let begin = |horizon: &ShootingInterval| from(horizon, Vec::new());
     let shortest = ShootingInterval::shortest(segments, calibrated);
