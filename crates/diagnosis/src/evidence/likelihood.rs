@@ -209,3 +209,70 @@ fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize, each: f64) -> f64
     let share = if square > 0.0 { (all * all / (count * square)).min(1.0) } else { 1.0 };
     each * count * share
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{Likelihood, View};
+    use crate::evidence::score::calibrated_swing;
+    use crate::fixtures::record;
+    use crate::{Observations, Settings, diagnose};
+    use dynamics::chain::{Chain, Observed};
+    use dynamics::{Active, Nominal, System};
+    use nalgebra::DVector;
+    use rand_distr::{Distribution, StandardNormal};
+    use record::{Clock, ClockChoice};
+    use seed::Seed;
+
+    /// White noise of unit variance on the segments of a swing.
+    fn noise(lengths: &[usize], seed: u64) -> Vec<DVector<f64>> {
+        let mut generator = Seed::new(seed).child("noise").generator();
+        let mut draw = || -> f64 { StandardNormal.sample(&mut generator) };
+        lengths.iter().map(|length| DVector::from_fn(*length, |_, _| draw())).collect()
+    }
+
+    /// Eight samples of five standard deviations are a hundred nats, wherever they lie.
+    #[test]
+    fn what_lies_at_the_end_of_a_segment_counts() {
+        let (data, _) = calibrated_swing();
+        let lengths: Vec<usize> = data.segments.iter().map(|segment| segment.times.len()).collect();
+        let gains = [View::Whole, View::Tapered].map(|view| {
+            let white = noise(&lengths, 1);
+            let mut clipped = white.clone();
+            clipped[0].rows_mut(0, 8).add_scalar_mut(5.0);
+            let likelihood = Likelihood::of(&data, &white, 1.0, view);
+            likelihood.log(&white) - likelihood.log(&clipped)
+        });
+        assert!(gains[0] > 30.0 && gains[1].abs() < 5.0, "{gains:?}");
+    }
+
+    /// The power of white noise by bin is its variance.
+    #[test]
+    fn white_noise_has_its_variance_in_either_view() {
+        let (data, _) = calibrated_swing();
+        let lengths: Vec<usize> = data.segments.iter().map(|segment| segment.times.len()).collect();
+        for view in [View::Whole, View::Tapered] {
+            let (mut power, mut bins) = (0.0, 0.0);
+            for seed in 0..20 {
+                let white = noise(&lengths, seed);
+                let likelihood = Likelihood::of(&data, &white, 1.0, view);
+                power += likelihood.powers(&white).iter().flatten().sum::<f64>();
+                bins += likelihood.bins.iter().flat_map(|own| own.counts).sum::<f64>();
+            }
+            assert!((power / bins - 1.0).abs() < 0.05, "{view:?}: {}", power / bins);
+        }
+    }
+
+    /// Only the first peak of 25 s is beyond the bound.
+    #[test]
+    fn a_sensor_that_clips_the_first_peak_is_named() {
+        let nominal = Nominal::new(1.0, 0.08, 110.0, 0.0).unwrap();
+        let system = System::new(nominal, Vec::new()).unwrap();
+        let bound = Active::new("sensor_saturation", &[0.9912]).unwrap();
+        let chain = Chain::new(Observed::Position, 5e-4, vec![bound]).unwrap();
+        let record = record(&system, 1.0, 6500, &chain, 1);
+        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+        let answer =
+            diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap();
+        assert_eq!(answer.verdict.effects, ["sensor_saturation"]);
+    }
+}
