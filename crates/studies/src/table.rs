@@ -150,6 +150,7 @@ fn examine(
     let mut found = ProblemStudy {
         unit: ready.unit.clone(),
         peaks: envelope.len(),
+        // An envelope without a peak was refused when it was made.
         duration_s: envelope.times_s().last().copied().unwrap_or_default(),
         data: ready.data.clone(),
         law: ready.truth.as_ref().map(|truth| truth.law.clone()),

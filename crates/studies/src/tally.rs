@@ -56,6 +56,7 @@ pub(crate) fn outcome(
     let of = |kind| score(problem, trials, kind, common, Some(exponential));
     let (equation, commonest_form) = laws(problem, trials);
     PredictionOutcome::Scored(Box::new(MethodScores {
+        // Of no trials there is no draw.
         draws: trials.iter().map(|placed| placed.draw + 1).max().unwrap_or(0),
         failed_fits: trials.iter().filter(|placed| placed.trial.is_err()).count(),
         first_failure,

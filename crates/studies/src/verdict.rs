@@ -129,6 +129,7 @@ fn methods(count: usize) -> String {
 }
 
 fn listed(names: &[String]) -> String {
+    // No more than there are: the range is never beyond the end.
     let shown = names.get(..names.len().min(MOST_NAMES)).unwrap_or_default().join(", ");
     match names.len().saturating_sub(MOST_NAMES) {
         0 => shown,

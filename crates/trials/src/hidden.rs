@@ -104,7 +104,7 @@ pub struct Hidden {
     /// Ids of classes that an answer may name for what acts from outside the vocabulary.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub allowed: Vec<String>,
-    /// Ids of effects of the measuring chain that come with records of every bank alike. They count neither for nor
+    /// Ids of effects of the measurement chain that come with records of every bank alike. They count neither for nor
     /// against an answer.
     pub nuisances: Vec<String>,
     /// Whether the nominal coefficients are off.

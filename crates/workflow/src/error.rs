@@ -95,6 +95,7 @@ pub enum WorkflowError {
 #[must_use]
 pub fn in_options(text: &str) -> String {
     let mut parts = text.split("`data.");
+    // Splitting gives at least one part.
     let mut told = parts.next().unwrap_or_default().to_owned();
     for part in parts {
         let (key, rest) = part.split_once('`').unwrap_or((part, ""));

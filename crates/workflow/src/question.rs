@@ -121,7 +121,9 @@ impl Question {
             | E::MixedQuantities { record } => *record,
             _ => 1,
         };
-        let file = record.checked_sub(1).and_then(|index| self.given.get(index)).map(|given| &given.row.path);
-        WorkflowError::Diagnosis { file: file.cloned().unwrap_or_default(), source }
+        let file = record.checked_sub(1).and_then(|index| self.given.get(index));
+        // An error of a question without a record names no file.
+        let file = file.map(|given| given.row.path.clone()).unwrap_or_default();
+        WorkflowError::Diagnosis { file, source }
     }
 }

@@ -167,6 +167,7 @@ impl Loaded {
                 digest: summary.digest,
                 origin: summary.origin,
                 samples: summary.samples,
+                // A record of no sample lasts no time.
                 duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
                 clock: summary.clock,
                 clock_reason: summary.clock_reason,
@@ -184,6 +185,7 @@ impl Loaded {
 fn header(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let mut lines = text.trim_start_matches('\u{feff}').lines().map(str::trim);
+    // A file of comments has no header.
     lines.find(|line| !line.is_empty() && !line.starts_with('#')).unwrap_or_default().to_owned()
 }
 

@@ -49,6 +49,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
     let (rate_hz, seconds) = first.map_or((1.0, 1.0), |given| (given.rate_hz, given.row.duration_s));
     // What the sensor's noise leaves of a position, and of a velocity over a swing or the record.
     let per_second = system.nominal().angular_frequency().max(1.0 / seconds);
+    // A diagnosis of no sample was refused before.
     let at_start = |values: &[f64], error| rounded(values.first().copied().unwrap_or_default(), error);
     Ok(Repaired {
         system,
@@ -60,6 +61,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
             position: at_start(&found.series.position, noise),
             velocity: at_start(&found.series.velocity, noise * per_second),
         },
+        // Without a record nothing says what is observed: an angle, as everywhere.
         observed: observed(first.map(|given| given.quantity).unwrap_or_default()),
         noise: rounded(noise, OF_NOISE * noise),
         rate_hz: rounded(rate_hz, OF_TIME * rate_hz),

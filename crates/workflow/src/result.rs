@@ -28,6 +28,7 @@ pub(crate) struct Beside<'a> {
 /// The content of `diagnosis.json`.
 pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult {
     let first = beside.given.first();
+    // Without a record nothing says what is observed: an angle, as everywhere.
     let quantity = first.map(|given| given.quantity).unwrap_or_default();
     let units = beside.repaired.units;
     let effects = effects(found);
@@ -47,6 +48,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         place: place(found),
         measuring_chain: ChainSummary {
             clock: chain.clock.to_owned(),
+            // No record, no reason.
             clock_reason: first.map(|given| given.row.clock_reason.clone()).unwrap_or_default(),
             sample_rate_hz: chain.sample_rate_hz,
             resolution: chain.resolution,
@@ -333,16 +335,20 @@ fn backbones(series: &Series) -> Backbone {
 /// Restoring force that the recalibrated law lacks, by cells of the phase plane; a coefficient that these data cannot tell stays as it was.
 fn surface_cells(found: &Diagnosis, quantity: record::Quantity) -> Vec<SurfaceCell> {
     let value = |name: &str| {
-        let row = found.calibration.iter().find(|row| row.name == name);
-        row.map_or(0.0, |row| row.recalibrated.map_or(row.nominal, |interval| interval.value))
+        let row = found.calibration.iter().find(|row| row.name == name)?;
+        Some(row.recalibrated.map_or(row.nominal, |interval| interval.value))
     };
-    let coefficients = dynamics::Coefficients {
-        inertia: value("inertia"),
-        damping: value("damping"),
-        stiffness: value("stiffness"),
-        rest_angle: value("rest_angle"),
-        input_gain: 1.0,
+    let recalibrated = || {
+        Some(dynamics::Coefficients {
+            inertia: value("inertia")?,
+            damping: value("damping")?,
+            stiffness: value("stiffness")?,
+            rest_angle: value("rest_angle")?,
+            input_gain: 1.0,
+        })
     };
+    // What a law without one of its coefficients lacks cannot be told.
+    let Some(coefficients) = recalibrated() else { return Vec::new() };
     surface(&found.series, quantity, &coefficients)
         .into_iter()
         .map(|cell| SurfaceCell {

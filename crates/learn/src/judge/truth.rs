@@ -148,7 +148,7 @@ fn accelerations(system: &System, places: &[Place]) -> Result<Vec<f64>, LearnErr
     places.iter().map(at).collect()
 }
 
-/// Acceleration of a nominal simulator at places; what its measuring chain adds is no torque.
+/// Acceleration of a nominal simulator at places; what its measurement chain adds is no torque.
 fn accelerations_of(nominal: &NominalSimulator, places: &[Place]) -> Result<Vec<f64>, LearnError> {
     accelerations(&crate::baselines::system_of(nominal)?, places)
 }

@@ -18,7 +18,7 @@ pub const WEAK_FORM: &str = "weak-form";
 
 /// What it does, in a sentence.
 pub const WEAK_FORM_METHOD: &str = "weak-form sparse regression with one term for each of ten effects, the one that explains \
-    most is named; it has no term for forcing, a second body, delays or the measuring chain";
+    most is named; it has no term for forcing, a second body, delays or the measurement chain";
 
 /// Exponent of the test function (1 − s²)^p.
 const EXPONENT: i32 = 6;

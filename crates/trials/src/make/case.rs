@@ -102,7 +102,7 @@ impl Setup {
         Ok(Self { seed: own, branch, situation, nuisances, square_velocities, white })
     }
 
-    /// The nuisances as effects of the measuring chain.
+    /// The nuisances as effects of the measurement chain.
     pub(crate) fn nuisance_effects(&self) -> Result<Vec<Active>, TrialError> {
         let count = (self.situation.sampling.samples * self.situation.starts.len()) as f64;
         self.nuisances.active(&self.situation, self.square_velocities / count)

@@ -16,13 +16,13 @@ pub enum TrialError {
         /// How many there are.
         cases: usize,
     },
-    /// The system, its motion or its measuring chain is impossible.
+    /// The system, its motion or its measurement chain is impossible.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
     /// A record could not be generated.
     #[error(transparent)]
     Generation(#[from] GenerationError),
-    /// What the measuring chain leaves is no record.
+    /// What the measurement chain leaves is no record.
     #[error("what is left is no record: {0}")]
     Fault(#[from] Fault),
     /// A file of a bank from outside cannot be read.

@@ -62,7 +62,7 @@ pub(crate) struct Told {
     pub(crate) made: String,
 }
 
-/// Sends motions through the measuring chain and puts the case together.
+/// Sends motions through the measurement chain and puts the case together.
 pub(crate) fn written(
     plan: &TrialPlan,
     job: Job,

@@ -114,7 +114,7 @@ impl Shape {
     }
 }
 
-/// Effects of the measuring chain that are random, or do to every sample the same as noise would. Their size
+/// Effects of the measurement chain that are random, or do to every sample the same as noise would. Their size
 /// follows from the expected sum of squares of what they do, E‖Δ‖², without projection: what a recalibration
 /// absorbs of it is of the order of the number of its unknowns over that of the samples.
 pub(crate) const RANDOM: &[&str] =

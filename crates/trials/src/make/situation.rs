@@ -50,7 +50,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// As the measuring chain takes it.
+    /// As the measurement chain takes it.
     pub(crate) fn sampled(&self) -> SampledMotion<'_, f64> {
         SampledMotion {
             times_s: &self.times,
@@ -206,7 +206,7 @@ pub(crate) fn believed(nominal: &Nominal, off: Option<f64>, seed: &Seed) -> Resu
     })?)
 }
 
-/// What the measuring chain does in every bank with the same probabilities.
+/// What the measurement chain does in every bank with the same probabilities.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub(crate) struct Nuisances {
     /// The encoder's step, where the sensor has one; `nominal.toml` states it.
@@ -258,7 +258,7 @@ impl Nuisances {
         self
     }
 
-    /// As effects of the measuring chain, for motions with a mean square velocity.
+    /// As effects of the measurement chain, for motions with a mean square velocity.
     pub(crate) fn active(
         &self,
         situation: &Situation,

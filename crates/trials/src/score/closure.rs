@@ -32,7 +32,7 @@ const MEANS: &str = "1 − m²/m₀², m and m₀ the root mean square distances
 /// effects that its gap was computed with.
 ///
 /// # Errors
-/// In words, why there is no such number: measured residuals, hidden or named effects in the measuring chain, no spring, no gap to close, a
+/// In words, why there is no such number: measured residuals, hidden or named effects in the measurement chain, no spring, no gap to close, a
 /// law outside the vocabulary, or a coefficient outside its range.
 pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult) -> Result<f64, String> {
     // What the simulator of a measured record leaves is motion too, and belongs to the gap that the diagnosis sees.
@@ -44,7 +44,7 @@ pub fn true_closure(hidden: &Hidden, nominal: &Nominal, answer: &DiagnosisResult
     }
     let in_chain = |id: &str| matches!(Effect::find(id), Ok(Effect::MeasuringChain(_)));
     if hidden.effects.iter().any(|effect| in_chain(&effect.id)) {
-        return Err("a hidden effect lies in the measuring chain".to_owned());
+        return Err("a hidden effect lies in the measurement chain".to_owned());
     }
     let repaired = repaired(nominal, answer)?;
     let given = System::new(*nominal, Vec::new()).map_err(|error| error.to_string())?;
@@ -79,7 +79,7 @@ fn repaired(nominal: &Nominal, answer: &DiagnosisResult) -> Result<System, Strin
     // An effect with a share of the gap is part of the simulator that the gap was computed with.
     for row in answer.effects.iter().filter(|row| row.gap_share.is_some()) {
         if matches!(Effect::find(&row.id), Ok(Effect::MeasuringChain(_))) {
-            return Err("a named effect lies in the measuring chain".to_owned());
+            return Err("a named effect lies in the measurement chain".to_owned());
         }
         let parameters: Vec<(&str, f64)> =
             row.parameters.iter().map(|(name, parameter)| (name.as_str(), parameter.value)).collect();
@@ -355,7 +355,7 @@ mod tests {
         let exact = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
         assert_eq!(why(&own, &exact, &answer(&[], None)), "there is no gap to close");
         let drift = answer(&[("sensor_drift", &[])], None);
-        assert_eq!(why(&own, &nominal, &drift), "a named effect lies in the measuring chain");
+        assert_eq!(why(&own, &nominal, &drift), "a named effect lies in the measurement chain");
         let impossible = answer(&[("coulomb_friction", &[("torque", -1.0)])], None);
         assert_eq!(why(&own, &nominal, &impossible), "a coefficient of the answer is outside its range");
         own.bank = Bank::Measured;

@@ -82,7 +82,7 @@ pub(crate) const BANKS: [Bank; 13] = [
 ];
 
 /// The words for what `right` means, for the result.
-pub(crate) const RIGHT_MEANS: &str = "Effects of the measuring chain that come with records of every bank alike are struck \
+pub(crate) const RIGHT_MEANS: &str = "Effects of the measurement chain that come with records of every bank alike are struck \
     from an answer first. Where nothing is missing, an answer is right that names nothing, be its status none or \
     calibration. Where effects are hidden, its status has to be `effect` and its set exactly the hidden one. Where the hidden \
     effect was not to be considered or lies outside the vocabulary, `unknown` is right, and so are names of classes only \

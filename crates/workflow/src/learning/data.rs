@@ -45,6 +45,7 @@ pub fn trajectory(
         values.iter().map(|value| if problem.remove_mean { value - mean } else { *value }).collect()
     };
     let thin = |values: &[f64]| values.iter().step_by(problem.every).copied().collect::<Vec<f64>>();
+    // Without a sample there is no time to count from.
     let first = times_s.first().copied().unwrap_or_default();
     let times = thin(times_s).iter().map(|time| time - first).collect();
     let input = record.input().map(|input| thin(&centered(input)));

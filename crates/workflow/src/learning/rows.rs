@@ -86,6 +86,7 @@ fn coefficients(
     model: &dyn learn::Model,
     truth: Option<&Truth>,
 ) -> Option<BTreeMap<String, LearnCoefficient>> {
+    // Without a truth there are no errors.
     let errors = truth.and_then(|truth| truth.coefficient_errors(model)).unwrap_or_default();
     let true_value = |name: &str| errors.iter().find(|error| error.name == name).map(|error| error.truth);
     let mut all: BTreeMap<String, LearnCoefficient> = model
@@ -145,6 +146,7 @@ pub fn described(id: &str, title: &str, origin: &str, ready: Result<&Ready, &Str
             test: data.test.len(),
         };
         described.training_samples = data.training_samples();
+        // Data without a training part were refused before.
         described.rate_hz = data.train.first().map_or(0.0, Trajectory::rate_hz);
         described.period_s = data.period_s;
         described.warm_up_s = data.warm_up_s;

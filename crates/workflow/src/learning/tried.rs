@@ -39,5 +39,6 @@ pub fn tried(
     let fitted =
         attempt(ready, method, &Context { seed, max_steps, cancel, observe: &observe, checkpoints: None });
     let seconds = start.elapsed().as_secs_f64();
+    // A lock that a panic left behind counted no step.
     Tried { fitted, seconds, steps: steps.into_inner().unwrap_or_default() }
 }
