@@ -196,8 +196,8 @@ fn every_kind_diagnosed_with_its_own_repaired_simulator_lacks_nothing() {
     println!("{} of {} lack nothing", jobs.len() - lacking.len(), jobs.len());
     for (id, _) in KINDS.iter().filter(|(id, _)| wanted(id)) {
         let own = lacking.iter().filter(|line| line.starts_with(&format!("{id} "))).count();
-        // Where a static torque stops the swing, the first diagnosis itself ends beside the truth in two of ten.
-        let most = if *id == "stribeck_friction" { 2 } else { 0 };
+        // Where a static torque stops the swing, one of ten lacks nothing and leaves 0.15 % more.
+        let most = if *id == "stribeck_friction" { 1 } else { 0 };
         assert!(own <= most, "{id}: {lacking:#?}");
     }
 }

@@ -200,6 +200,7 @@ registry! {
     }
     unnamed {
     PositionTorque,
+    SmoothTorque,
     }
     measuring_chain {
     SensorLag,

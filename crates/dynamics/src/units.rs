@@ -52,10 +52,16 @@ pub enum Quantity {
     QuadraticStiffness,
     /// Torque per position cubed.
     CubicStiffness,
+    /// Torque per position to the fifth power.
+    QuinticStiffness,
     /// Torque per velocity.
     Damping,
     /// Torque per velocity squared.
     QuadraticDamping,
+    /// Torque per velocity cubed.
+    CubicDamping,
+    /// Torque per velocity and position squared.
+    DeflectionDamping,
     /// Reciprocal of a velocity.
     InverseVelocity,
     /// Radians of a wave to a radian or meter of the position; of an angle, waves in a turn.
@@ -119,6 +125,10 @@ impl Quantity {
             (Self::CubicStiffness, Units::Si(Displacement)) => "N/m^3",
             (Self::CubicStiffness, Units::PerInertia(Angle)) => "1/(rad^2 s^2)",
             (Self::CubicStiffness, Units::PerInertia(Displacement)) => "1/(m^2 s^2)",
+            (Self::QuinticStiffness, Units::Si(Angle)) => "N m/rad^5",
+            (Self::QuinticStiffness, Units::Si(Displacement)) => "N/m^5",
+            (Self::QuinticStiffness, Units::PerInertia(Angle)) => "1/(rad^4 s^2)",
+            (Self::QuinticStiffness, Units::PerInertia(Displacement)) => "1/(m^4 s^2)",
             (Self::Damping, Units::Si(Angle)) => "N m s/rad",
             (Self::Damping, Units::Si(Displacement)) => "N s/m",
             (Self::Damping, Units::PerInertia(_)) => "1/s",
@@ -126,6 +136,14 @@ impl Quantity {
             (Self::QuadraticDamping, Units::Si(Displacement)) => "N s^2/m^2",
             (Self::QuadraticDamping, Units::PerInertia(Angle)) => "1/rad",
             (Self::QuadraticDamping, Units::PerInertia(Displacement)) => "1/m",
+            (Self::CubicDamping, Units::Si(Angle)) => "N m s^3/rad^3",
+            (Self::CubicDamping, Units::Si(Displacement)) => "N s^3/m^3",
+            (Self::CubicDamping, Units::PerInertia(Angle)) => "s/rad^2",
+            (Self::CubicDamping, Units::PerInertia(Displacement)) => "s/m^2",
+            (Self::DeflectionDamping, Units::Si(Angle)) => "N m s/rad^3",
+            (Self::DeflectionDamping, Units::Si(Displacement)) => "N s/m^3",
+            (Self::DeflectionDamping, Units::PerInertia(Angle)) => "1/(rad^2 s)",
+            (Self::DeflectionDamping, Units::PerInertia(Displacement)) => "1/(m^2 s)",
         }
     }
 

@@ -5,7 +5,7 @@ use crate::noise::statistics::{mean, median};
 /// A swing as the values show it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Swing {
-    /// Twice the median time between crossings of the middle, in seconds.
+    /// Median time between every second crossing of the middle, in seconds.
     pub(crate) period_s: f64,
     /// Number of full cycles seen.
     pub(crate) cycles: f64,
@@ -16,57 +16,154 @@ pub(crate) struct Swing {
 /// Part of the largest deflection below which a crossing may be noise.
 const THRESHOLD: f64 = 0.04;
 
+/// The same where crossings come at no regular intervals.
+const HIGHER: [f64; 4] = [0.04, 0.1, 0.25, 0.5];
+
+/// Median distance of half periods from their median, relative to it, up to which they are regular.
+const REGULAR: f64 = 0.2;
+
+/// Crossings that regularity is told from, at least.
+const FEWEST: usize = 5;
+
+/// Times of the crossings of the middle.
+struct Crossings(Vec<f64>);
+
 /// Finds a swing about the mean by its crossings; `None` where fewer than two are seen.
 ///
 /// A crossing counts once the values have gone from beyond the threshold on one side to beyond it on the other,
 /// so that noise on a slow crossing is no swing. Its time is interpolated.
+///
+/// Crossings that come at no regular intervals are noise, wrong readings or steps of the sensor. Then medians of three
+/// neighbors are looked at, with higher thresholds too, and the most regular crossings are believed.
 pub(crate) fn swing(times: &[f64], values: &[f64]) -> Option<Swing> {
-    let middle = mean(values);
-    let largest = values.iter().map(|v| (v - middle).abs()).fold(0.0, f64::max);
-    let threshold = THRESHOLD * largest;
-    let mut side = 0.0;
-    let mut crossing = None;
-    let mut crossings = Vec::new();
-    let pairs = times.iter().zip(values).zip(times.iter().zip(values).skip(1));
-    for ((&before, &low), (&after, &high)) in pairs {
-        let (low, high) = (low - middle, high - middle);
-        if low * high <= 0.0 && low != high {
-            crossing = Some(before + (after - before) * low / (low - high));
-        }
-        if high.abs() > threshold && high.signum() != side {
-            if side != 0.0 {
-                crossings.extend(crossing);
-            }
-            side = high.signum();
-        }
+    let first = Crossings::of(times, values, THRESHOLD);
+    if first.irregularity().is_some_and(|own| own <= REGULAR) {
+        return first.swing();
     }
-    let halves: Vec<f64> =
-        crossings.iter().zip(crossings.iter().skip(1)).map(|(one, next)| next - one).collect();
-    crossings.first().filter(|_| !halves.is_empty()).map(|&first_s| Swing {
-        period_s: 2.0 * median(&halves),
-        cycles: 0.5 * (halves.len() + 1) as f64,
-        first_s,
-    })
+    let filtered = medians_of_three(values);
+    let others = HIGHER.map(|threshold| Crossings::of(times, &filtered, threshold));
+    let all = [&first].into_iter().chain(&others).filter_map(|own| Some((own.irregularity()?, own)));
+    let regular = all.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, own)| own);
+    regular.unwrap_or(&first).swing()
+}
+
+impl Crossings {
+    fn of(times: &[f64], values: &[f64], threshold: f64) -> Self {
+        let middle = mean(values);
+        let largest = values.iter().map(|v| (v - middle).abs()).fold(0.0, f64::max);
+        let threshold = threshold * largest;
+        let mut side = 0.0;
+        let mut crossing = None;
+        let mut crossings = Vec::new();
+        let pairs = times.iter().zip(values).zip(times.iter().zip(values).skip(1));
+        for ((&before, &low), (&after, &high)) in pairs {
+            let (low, high) = (low - middle, high - middle);
+            if low * high <= 0.0 && low != high {
+                crossing = Some(before + (after - before) * low / (low - high));
+            }
+            if high.abs() > threshold && high.signum() != side {
+                if side != 0.0 {
+                    crossings.extend(crossing);
+                }
+                side = high.signum();
+            }
+        }
+        Self(crossings)
+    }
+
+    /// Times between crossings so many apart.
+    fn intervals(&self, apart: usize) -> Vec<f64> {
+        self.0.iter().zip(self.0.iter().skip(apart)).map(|(one, next)| next - one).collect()
+    }
+
+    /// How far full periods lie from their median, relative to it. None of fewer than [`FEWEST`].
+    fn irregularity(&self) -> Option<f64> {
+        let periods = self.intervals(2);
+        if periods.len() < FEWEST {
+            return None;
+        }
+        let middle = median(&periods);
+        let distances: Vec<f64> = periods.iter().map(|own| (own - middle).abs()).collect();
+        Some(median(&distances) / middle)
+    }
+
+    fn swing(&self) -> Option<Swing> {
+        let halves = self.intervals(1);
+        let periods = self.intervals(2);
+        self.0.first().filter(|_| !halves.is_empty()).map(|&first_s| Swing {
+            // A middle that is off makes every second half period longer.
+            period_s: if periods.is_empty() { 2.0 * median(&halves) } else { median(&periods) },
+            cycles: 0.5 * (halves.len() + 1) as f64,
+            first_s,
+        })
+    }
+}
+
+/// Each value replaced by the median of itself and its neighbors: a reading that is wrong by itself is gone.
+fn medians_of_three(values: &[f64]) -> Vec<f64> {
+    let at = |index: usize| values.get(index).copied();
+    let of = |(index, own): (usize, &f64)| {
+        let around = [index.checked_sub(1).and_then(at), Some(*own), at(index + 1)];
+        median(&around.into_iter().flatten().collect::<Vec<f64>>())
+    };
+    values.iter().enumerate().map(of).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::swing;
+    use std::f64::consts::TAU;
+
+    const OMEGA: f64 = 22.0;
+
+    /// 10 s of a decay with an offset, 260 samples a second, and a little noise.
+    fn decay() -> (Vec<f64>, Vec<f64>) {
+        let times: Vec<f64> = (0..2600).map(|i| i as f64 / 260.0).collect();
+        let noise = |i: usize| 1e-3 * ((i * 7919 % 13) as f64 - 6.0) / 6.0;
+        let swing = |t: f64| 0.02 + 0.7 * (-0.13 * t).exp() * (OMEGA * t).cos();
+        let values = times.iter().enumerate().map(|(i, t)| swing(*t) + noise(i)).collect();
+        (times, values)
+    }
+
+    fn assert_period(times: &[f64], values: &[f64], tolerance: f64, of: &str) {
+        let found = swing(times, values).unwrap();
+        assert!((found.period_s / (TAU / OMEGA) - 1.0).abs() < tolerance, "{of}: {found:?}");
+    }
 
     #[test]
     fn a_decay_with_an_offset_and_noise() {
-        let times: Vec<f64> = (0..2600).map(|i| i as f64 / 260.0).collect();
-        let values: Vec<f64> = times
-            .iter()
-            .enumerate()
-            .map(|(i, t)| {
-                0.02 + 0.7 * (-0.13 * t).exp() * (22.0 * t).cos()
-                    + 1e-3 * ((i * 7919 % 13) as f64 - 6.0) / 6.0
-            })
-            .collect();
+        let (times, values) = decay();
+        assert_period(&times, &values, 2e-3, "a decay");
         let found = swing(&times, &values).unwrap();
-        assert!((found.period_s / (std::f64::consts::TAU / 22.0) - 1.0).abs() < 2e-3, "{found:?}");
         assert!((found.cycles - 35.0).abs() <= 1.0, "{found:?}");
+    }
+
+    /// Every tenth reading is wrong, to either side.
+    #[test]
+    fn wrong_readings_make_no_swing() {
+        let (times, mut values) = decay();
+        for (at, value) in values.iter_mut().enumerate().skip(3).step_by(10) {
+            *value = if at % 20 == 3 { 1.6 } else { -1.5 };
+        }
+        assert_period(&times, &values, 0.02, "wrong readings");
+    }
+
+    /// Noise of a seventh of the first amplitude, a sensor of seven steps a swing with such a noise, and one that shows
+    /// nothing of the middle half.
+    #[test]
+    fn noise_steps_and_dead_zones() {
+        let (times, values) = decay();
+        let mut state = 1_u64;
+        let mut uniform = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        };
+        let noisy: Vec<f64> = values.iter().map(|own| own + 0.35 * uniform()).collect();
+        assert_period(&times, &noisy, 0.02, "noise");
+        let steps: Vec<f64> = noisy.iter().map(|own| (own / 0.2).round() * 0.2).collect();
+        assert_period(&times, &steps, 0.02, "steps");
+        let dead = values.iter().map(|own| own - own.clamp(-0.15, 0.15)).collect::<Vec<f64>>();
+        assert_period(&times, &dead, 0.05, "a dead zone");
     }
 
     #[test]

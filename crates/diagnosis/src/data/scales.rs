@@ -1,5 +1,6 @@
 //! Scales of a record that bounds and grids of parameters are stated in.
 
+use crate::model::candidates::Repeats;
 use std::f64::consts::{PI, TAU};
 
 /// Scales of the motion, from the records and the nominal simulator.
@@ -36,6 +37,8 @@ pub(crate) struct Scales {
     pub(crate) resolution: f64,
     /// Largest relative standard error of a clock's rate; 0 where the stamps are believed.
     pub(crate) rate_error: f64,
+    /// How a driven motion repeats; none of one that does not, or swings freely.
+    pub(crate) repeats: Option<Repeats>,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
     pub(crate) tolerance: f64,
 }

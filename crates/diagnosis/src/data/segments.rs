@@ -7,7 +7,9 @@ use crate::data::observations::Observations;
 use crate::data::period::swing;
 use crate::data::scales::Scales;
 use crate::error::DiagnosisError;
+use crate::model::candidates::Repeats;
 use crate::model::matrices::element;
+use crate::noise::spectrum::{dominant_frequency, strongest_period};
 use crate::noise::statistics::{median, quantile};
 use dynamics::{Coordinate, Hold, Input, NominalSimulator};
 use record::Quantity;
@@ -34,14 +36,18 @@ pub(crate) const MOST_SEARCHED: usize = 20_000;
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
 
+/// Samples in which a driven motion's repetition is looked for, at most.
+const MOST_REPEATED: usize = 4000;
+
 /// Steps of the sensor that a motion has to span to be seen.
 const FEW_STEPS: f64 = 2.5;
 
 /// Part of its largest excursion that a motion counts as visible.
 const VISIBLE: f64 = 0.02;
 
-/// Factor between measured and nominal period from which on they are not the same system.
-const ANOTHER_SYSTEM: f64 = 2.0;
+/// Factor between measured and nominal period from which on they are not the same system: a spring that misses a weight
+/// swings several times slower, and a unit that is wrong makes a factor of 2π at least.
+const ANOTHER_SYSTEM: f64 = 5.0;
 
 /// A stretch of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -183,8 +189,8 @@ pub(crate) fn cut(
 ) -> Result<Data, DiagnosisError> {
     let first = records.first().ok_or(DiagnosisError::NoRecord)?;
     let mut swings = Vec::new();
-    for (index, record) in records.iter().enumerate() {
-        swings.push(check(index + 1, record, first, simulator)?);
+    for (index, (record, kept)) in records.iter().zip(kept).enumerate() {
+        swings.push(check(index + 1, (record, kept), first, simulator)?);
     }
     let measured: Vec<f64> = swings.iter().flatten().copied().collect();
     let period_s = (!measured.is_empty()).then(|| median(&measured));
@@ -239,10 +245,10 @@ fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
     values.iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
 }
 
-/// Refuses a record that says nothing; gives its period where it swings freely.
+/// Refuses a record that says nothing; gives its period where it swings freely. `kept` tells which samples are no outliers.
 fn check(
     number: usize,
-    record: &Observations,
+    (record, kept): (&Observations, &[bool]),
     first: &Observations,
     simulator: &NominalSimulator,
 ) -> Result<Option<f64>, DiagnosisError> {
@@ -279,7 +285,8 @@ fn check(
         return Ok(None);
     }
     let nominal_s = TAU / omega;
-    let swing = swing(&record.times_s, &record.values);
+    let (times, values) = (only(&record.times_s, kept), only(&record.values, kept));
+    let swing = swing(&times, &values);
     let cycles = swing.map_or(0.0, |swing| swing.cycles);
     let spans = record.duration_s() / nominal_s;
     if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
@@ -291,11 +298,15 @@ fn check(
         });
     }
     // A swing that friction stops within a few half periods has no period of its own to compare.
-    let Some(measured_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
+    let Some(crossed_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
     else {
         return Ok(None);
     };
-    let ratio = (measured_s / nominal_s).max(nominal_s / measured_s);
+    let ratio = |period_s: f64| (period_s / nominal_s).max(nominal_s / period_s);
+    // Refused is what the spectrum does not allow either.
+    let of_spectrum = || strongest_period(&times, &values, crossed_s.min(nominal_s)).unwrap_or(crossed_s);
+    let measured_s = if ratio(crossed_s) < ANOTHER_SYSTEM { crossed_s } else { of_spectrum() };
+    let ratio = ratio(measured_s);
     if ratio >= ANOTHER_SYSTEM {
         return Err(DiagnosisError::AnotherPeriod { record: number, nominal_s, measured_s, ratio });
     }
@@ -416,9 +427,19 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         inertia,
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
+        repeats: records.iter().find(|record| record.input.is_some()).and_then(repeats),
         rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
         tolerance: Scales::UNKNOWN_NOISE,
     }
+}
+
+/// How a driven motion repeats: at the line that holds most of its squares.
+fn repeats(record: &Observations) -> Option<Repeats> {
+    let stride = record.len().div_ceil(MOST_REPEATED);
+    let times: Vec<f64> = record.times_s.iter().copied().step_by(stride).collect();
+    let values: Vec<f64> = record.values.iter().copied().step_by(stride).collect();
+    let frequency = dominant_frequency(&times, &values)?;
+    Some(Repeats { frequency, resolution: TAU / record.duration_s() })
 }
 
 /// Large speeds of a drive without a spring, from differences of positions over stretches of samples.

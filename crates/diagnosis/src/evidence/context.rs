@@ -10,6 +10,7 @@ use crate::explain::attribution::shapley;
 use crate::fit::calibrate::Baseline;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
 use crate::model::candidate::Candidate;
+use crate::model::candidates::EvidenceClass;
 use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
 use crate::model::matrices::entry;
 use crate::noise::statistics::normal_above;
@@ -141,15 +142,8 @@ impl<'a> Context<'a> {
         Some(Shift { torque: Interval { value: torque(angle), interval_95 } })
     }
 
-    /// What a recalibration moves: nothing of a simulator whose effects explain the records as it is given. Its many
-    /// coefficients, fitted to half of a short record, would predict the other half worse.
-    fn calibrating(&self) -> Moving {
-        let has_effects = !self.base.calibrated.hypothesis.known.is_empty();
-        if has_effects && !self.base.is_off() { Moving::Starts } else { Moving::All }
-    }
-
-    /// Predicts held-out parts with the simulator as given, with the recalibrated one, and with every set that is asked;
-    /// sets whose motion cannot be followed from parts of the data predict nothing and are left out.
+    /// Predicts held-out parts with the simulator as given, with the recalibrated one (as given, where a recalibration predicts
+    /// worse), and with every set that is asked; sets whose motion cannot be followed from parts of the data predict nothing and are left out.
     pub(crate) fn predictions(&self, sets: &[&'a Fit]) -> Result<Predictions<'a>, DiagnosisError> {
         let short = self.segments.base;
         let own = |followed: &'a Fit, fitted: &'a Fit| Both {
@@ -158,16 +152,18 @@ impl<'a> Context<'a> {
             segments: self.segments.data,
             fitted,
         };
-        let unjoined = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
-        let nominal = unjoined.interleaved(Moving::Starts)?;
-        let moving = self.calibrating();
-        let both = match moving {
-            Moving::All => own(&self.base.calibrated, &short.calibrated),
-            Moving::Starts => own(&self.base.nominal, &short.nominal),
+        let given = own(&self.base.nominal, &short.nominal);
+        let nominal = Both { longer: self.segments.data, followed: &short.nominal, ..given };
+        let nominal = nominal.interleaved(Moving::Starts)?;
+        let calibrated = own(&self.base.calibrated, &short.calibrated);
+        let recalibrated = calibrated.interleaved(Moving::All)?;
+        // Many coefficients, fitted to half of a record, may predict the other half worse than they do as given.
+        let (recalibrated, last_third) = if recalibrated.mean_square() > nominal.mean_square() {
+            (given.interleaved(Moving::Starts)?, given.last_third(Moving::Starts)?)
+        } else {
+            (recalibrated, calibrated.last_third(Moving::All)?)
         };
-        let recalibrated = both.interleaved(moving)?;
         let sets: Vec<Predicted<'a>> = sets.par_iter().filter_map(|set| self.predicted(set)).collect();
-        let last_third = both.last_third(moving)?;
         Ok(Predictions { nominal, recalibrated, last_third, sets })
     }
 
@@ -289,7 +285,8 @@ impl<'a> Context<'a> {
             let others = &fit.hypothesis.candidates;
             let gone: Vec<&Candidate> = own.iter().filter(|c| !others.contains(c)).collect();
             let come: Vec<&Candidate> = others.iter().filter(|c| !own.contains(c)).collect();
-            if let (&[gone], &[come]) = (gone.as_slice(), come.as_slice()) {
+            let has_names = come.iter().all(|own| own.evidence_class() != EvidenceClass::Unnamed);
+            if let (&[gone], &[come], true) = (gone.as_slice(), come.as_slice(), has_names) {
                 let distance = (2.0 * ratio(repaired, fit, self.time)).max(0.0).sqrt();
                 found.push((Rivalry { effect: gone.id(), rival: come.id(), distance }, fit));
             }

@@ -31,7 +31,7 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
         named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
-    let without = first.iter().filter_map(|own| named().find(|w| !holds(w.fit, own.evidence_class())));
+    let without = first.iter().filter_map(|own| named().find(|w| lacks(w.fit, own.evidence_class())));
     let mut asked: Vec<&'a Fit> = Vec::new();
     let classes: Vec<EvidenceClass> =
         named().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class()).collect();
@@ -62,6 +62,11 @@ fn is_of(own: Candidate, class: &str) -> bool {
 /// Whether a set has an effect of a class.
 pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
     fit.hypothesis.counted().any(|own| own.evidence_class() == class)
+}
+
+/// Whether a set has neither an effect of a class nor a law without a name that stands for one.
+pub(crate) fn lacks(fit: &Fit, class: EvidenceClass) -> bool {
+    fit.hypothesis.counted().all(|own| own.evidence_class() != class && !own.stands_for().contains(&class))
 }
 
 /// Sets weighed by what they leave.
@@ -137,7 +142,7 @@ impl<'a> Inclusion<'a> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| holds(fit, one))?;
         let with_other = place(&|fit| holds(fit, other))?;
-        let neither = place(&|fit| !holds(fit, one) && !holds(fit, other))?;
+        let neither = place(&|fit| lacks(fit, one) && lacks(fit, other))?;
         let set = |at: usize| self.sets.weighed.get(at).map(|w| w.fit);
         if holds(set(with_one)?, other) || holds(set(with_other)?, one) {
             return None;
@@ -157,8 +162,8 @@ impl<'a> Inclusion<'a> {
         doubt: Doubt,
         seed: &Seed,
     ) -> Option<EffectClass> {
-        let place = |with: bool| self.sets.weighed.iter().position(|w| holds(w.fit, class) == with);
-        let (with, without) = (place(true)?, place(false)?);
+        let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
+        let (with, without) = (place(&|fit| holds(fit, class))?, place(&|fit| lacks(fit, class))?);
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let mut class_row = EffectClass {

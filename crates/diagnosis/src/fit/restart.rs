@@ -3,7 +3,7 @@
 //! Dry friction and stops make a segment's squares uneven in its start state: the number of half swings
 //! before it sticks is a whole number. A step that serves all segments together leaves a single one behind in
 //! a hollow of its own, and that one then holds the coefficients. So each segment may begin again: where it
-//! is, where its first samples point, or at rest at its mean value.
+//! is, where its first samples point, at rest at its mean value, or where the segment before it arrives.
 
 use crate::data::segments::{Data, Segment};
 use crate::fit::levenberg_marquardt::{Point, extended};
@@ -21,6 +21,9 @@ const BEHIND: f64 = 1.25;
 /// that were tried in simulated records with friction 113 ended lower, and all but one of these had begun less than 1.6
 /// times as high; in measured records the farthest began 8 times as high and gained little.
 const FAR_OFF: f64 = 5.0;
+
+/// Sampling intervals between two segments up to which one goes directly before the other.
+const ADJACENT: f64 = 3.0;
 
 /// Steps tried for one start at most.
 const STEPS: usize = 8;
@@ -49,15 +52,19 @@ pub(crate) fn settle(
         }
         let rest = extended(&[mean(&segment.values), 0.0], hypothesis);
         let guess = extended(&segment.guess, hypothesis);
+        let arriving = arriving(&mut simulator, data, point, index)?;
+        let arriving = arriving.map(|state| extended(&state, hypothesis));
         let far_off = FAR_OFF * prediction.residual.norm_squared();
-        let others = [guess, rest].map(|from| {
-            let at = simulator.predict(segment, &from).ok()?;
-            (at.residual.norm_squared() < far_off).then_some((from, at))
-        });
-        let here = Some((start.clone(), prediction.clone()));
+        let mut begun = vec![(start.clone(), prediction.clone())];
+        for from in [guess, rest].into_iter().chain(arriving) {
+            let Ok(at) = simulator.predict(segment, &from) else { continue };
+            if at.residual.norm_squared() < far_off {
+                begun.push((from, at));
+            }
+        }
         let mut least = prediction.residual.norm_squared();
         let mut best = None;
-        for (from, at) in [here].into_iter().chain(others).flatten() {
+        for (from, at) in begun {
             let (found, fitted) = descend(&mut simulator, segment, from, at);
             let squares = fitted.residual.norm_squared();
             if squares < 0.999 * least {
@@ -67,6 +74,28 @@ pub(crate) fn settle(
         better.extend(best.map(|start| (index, start)));
     }
     Ok(better)
+}
+
+/// Position and velocity with which the segment before one arrives at its first sample; none where none goes directly before
+/// it, or where it has a hidden motion of its own.
+fn arriving(
+    simulator: &mut Simulator<'_>,
+    data: &Data,
+    point: &Point,
+    index: usize,
+) -> Result<Option<[f64; 2]>, DynamicsError> {
+    let Some(at) = index.checked_sub(1) else { return Ok(None) };
+    let both = data.segments.get(at).zip(data.segments.get(index));
+    let (Some((before, own)), Some(start)) = (both, point.starts.get(at)) else { return Ok(None) };
+    let (Some(last), Some(first)) = (before.times.last(), own.times.first()) else { return Ok(None) };
+    let gap = first - last;
+    if before.record != own.record || gap > ADJACENT * data.interval() || start.len() > 2 {
+        return Ok(None);
+    }
+    let motion = simulator.motion(before, start)?;
+    // One sampling interval is a small part of a period.
+    let state = motion.position.last().zip(motion.velocity.last());
+    Ok(state.map(|(position, velocity)| [position + gap * velocity, *velocity]))
 }
 
 /// Levenberg–Marquardt in one segment's start state alone, from where its prediction is `at`.

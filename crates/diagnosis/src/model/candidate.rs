@@ -54,7 +54,7 @@ pub fn has_fitted_hidden_start(id: &str) -> bool {
 /// the vocabulary.
 #[must_use]
 pub fn evidence_class(id: &str) -> Option<&'static str> {
-    let effect = Effect::find(id).ok().filter(|effect| *effect != Candidate::UNNAMED.effect())?;
+    let effect = Effect::find(id).ok().filter(|effect| !dynamics::UNNAMED.contains(effect))?;
     EvidenceClass::of(effect).map(EvidenceClass::id)
 }
 
@@ -72,6 +72,12 @@ impl Candidate {
     /// A torque along the position, whatever its cause. It is none of the candidates for a name.
     pub(crate) const UNNAMED: Self = Self::new(&candidates::PositionTorque);
 
+    /// A smooth torque of higher order, whatever its cause. It is none of the candidates for a name either.
+    pub(crate) const SMOOTH: Self = Self::new(&candidates::SmoothTorque);
+
+    /// What is no candidate for a name.
+    pub(crate) const NAMELESS: [Self; 2] = [Self::UNNAMED, Self::SMOOTH];
+
     /// The handle on a law.
     pub(crate) const fn new(law: &'static dyn CandidateLaw) -> Self {
         Self(law)
@@ -84,7 +90,7 @@ impl Candidate {
 
     /// The law that fits an effect, with a name or without one; none where no fit follows it.
     pub(crate) fn that_fits(effect: Effect) -> Option<Self> {
-        Self::ALL.iter().chain([&Self::UNNAMED]).copied().find(|candidate| candidate.effect() == effect)
+        Self::ALL.iter().chain(&Self::NAMELESS).copied().find(|candidate| candidate.effect() == effect)
     }
 
     /// Its place in [`Self::ALL`].

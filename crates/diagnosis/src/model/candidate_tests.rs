@@ -1,7 +1,9 @@
 use super::{Candidate, MainMode, Parameter, evidence_class, is_flexible};
 use crate::data::scales::Scales;
 use crate::model::candidates::flexible_coupling::FlexibleCoupling;
-use crate::model::candidates::{Along, Lines, Mode};
+use crate::model::candidates::hysteresis::Hysteresis;
+use crate::model::candidates::periodic_forcing::PeriodicForcing;
+use crate::model::candidates::{Along, Lines, Mode, Repeats};
 use dynamics::{Coordinate, Hold, Input, Nominal, REGISTRY};
 use record::Quantity;
 
@@ -22,6 +24,7 @@ const FACTS: Scales = Scales {
     stiffness: 484.0,
     resolution: 1e-3,
     rate_error: 0.0,
+    repeats: None,
     tolerance: Scales::UNKNOWN_NOISE,
 };
 
@@ -41,7 +44,7 @@ fn no_sine_is_taken_of_a_length() {
 
 #[test]
 fn parameters_are_the_laws_own() {
-    for candidate in Candidate::ALL.iter().chain(&[Candidate::UNNAMED]) {
+    for candidate in Candidate::ALL.iter().chain(&Candidate::NAMELESS) {
         let parameters = candidate.parameters(&FACTS);
         for parameter in &parameters {
             assert!(parameter.lower < parameter.upper, "{} {}", candidate.id(), parameter.name);
@@ -54,12 +57,43 @@ fn parameters_are_the_laws_own() {
     }
 }
 
+/// A swing of 22 rad/s that decays at 0.1/s, released once.
+const SWING: MainMode = MainMode {
+    frequency: 22.0,
+    decay_rate: 0.1,
+    inertia: 1.0,
+    amplitude: 0.5,
+    starts_once: true,
+    repeats: None,
+};
+
+/// Four repetitions of a driven motion at 1.01 rad/s: whatever depends on it has lines at 2.02, 3.03, ...
+#[test]
+fn a_multiple_of_what_repeats_is_no_forcing() {
+    let forcing = Candidate::new(&PeriodicForcing);
+    let driven = MainMode { repeats: Some(Repeats { frequency: 1.01, resolution: 0.25 }), ..SWING };
+    for (frequency, is_itself) in
+        [(1.0, false), (2.1, false), (1.5, true), (4.1, false), (4.4, true), (0.5, true)]
+    {
+        assert_eq!(forcing.is_itself(&[1.0, frequency, 0.0], &driven), is_itself, "{frequency}");
+        assert!(forcing.is_itself(&[1.0, frequency, 0.0], &SWING), "{frequency}");
+    }
+}
+
+/// A contact that bends over half the swing hardly slides.
+#[test]
+fn a_contact_that_hardly_slides_is_no_friction() {
+    let hysteresis = Candidate::new(&Hysteresis);
+    assert!(hysteresis.is_itself(&[1.0, 0.1], &SWING));
+    assert!(!hysteresis.is_itself(&[1.0, 0.2], &SWING));
+}
+
 /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third
 /// harmonic, which decays at 0.3/s.
 #[test]
 fn a_harmonic_is_no_second_body() {
     let coupling = Candidate::new(&FlexibleCoupling);
-    let swing = MainMode { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true };
+    let swing = SWING;
     let is_itself = |line: f64, rate: f64, swing: &MainMode| coupling.is_itself(&[0.0, line, rate], swing);
     assert!(!is_itself(66.0, 0.3, &swing));
     assert!(!is_itself(66.0, 0.44, &swing));
@@ -97,7 +131,7 @@ fn inside(candidate: Candidate) -> Vec<f64> {
 
 #[test]
 fn a_fits_parameters_come_back_from_the_laws_with_their_derivatives() {
-    for candidate in Candidate::ALL.iter().chain(&[Candidate::UNNAMED]).copied() {
+    for candidate in Candidate::ALL.iter().chain(&Candidate::NAMELESS).copied() {
         let fitted = inside(candidate);
         let again = candidate.fitted(&candidate.values(&fitted));
         for (own, again) in fitted.iter().zip(&again) {

@@ -93,13 +93,17 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
             frequency: (stiffness / nominal.inertia()).max(0.0).sqrt(),
             decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
             inertia: nominal.inertia(),
+            amplitude: data.facts.amplitude,
             starts_once,
+            repeats: data.facts.repeats,
         },
         Err(_) => MainMode {
             frequency: data.facts.frequency,
             decay_rate: f64::INFINITY,
             inertia: data.facts.inertia,
+            amplitude: data.facts.amplitude,
             starts_once,
+            repeats: data.facts.repeats,
         },
     };
     members.any(|(candidate, part)| !candidate.is_itself(part, &swing))

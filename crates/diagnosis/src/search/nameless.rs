@@ -1,33 +1,64 @@
-//! A torque without a name in the place of effects that can sit where they like.
+//! Torques without a name in the place of effects that have one.
 //!
-//! What no law of the vocabulary explains is soaked up by several flexible effects at once, and each of these then seems to be
-//! needed. A law that is none of them but explains the same in one piece shows that they are not. The torque along the position
-//! is such a law: it is fitted beside the best sets of plain laws wherever the best set of all has a flexible member.
+//! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
+//! needed. A law that is none of them but explains the same in one piece shows that they are not. Two such laws are fitted
+//! wherever the best set of all has a member that not every mechanism has: a torque along the position beside the best sets of
+//! plain laws, and a smooth torque of higher order beside these and in the place of each class of the best of them.
 
 use crate::data::segments::Data;
-use crate::evidence::weights::{EVEN, Weighing};
+use crate::evidence::inclusion::lacks;
+use crate::evidence::weights::{EVEN, Weighed, Weighing};
 use crate::explain::position_torque::beside;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use rayon::prelude::*;
 
-/// Sets of plain laws that it is fitted beside.
+/// Sets of plain laws that they are fitted beside.
 const SETS: usize = 2;
 
 /// Takes the best sets of plain laws with a torque without a name into an archive.
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
-    if weighed.first().is_none_or(|best| best.fit.hypothesis.flexible() == 0) {
+    if weighed.first().is_none_or(|best| best.fit.hypothesis.is_plain()) {
         return;
     }
-    let plain = weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
-    let plain: Vec<&Fit> = plain.take(SETS).collect();
-    let fitted: Vec<Option<Fit>> = plain
-        .par_iter()
-        .map(|set| beside(data, set, set.autocorrelation_time(), EVEN).ok().flatten())
-        .collect();
-    for fit in fitted.into_iter().flatten() {
+    let plain: Vec<&Fit> =
+        weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain()).take(SETS).collect();
+    let along = plain.par_iter().map(|set| {
+        let time = set.autocorrelation_time();
+        beside(data, set, time, EVEN).ok().flatten()
+    });
+    let along: Vec<Option<Fit>> = along.collect();
+    let bases = bases(&weighed, &plain);
+    let smooth: Vec<Option<Fit>> = bases.par_iter().map(|set| with_smooth(data, set)).collect();
+    for fit in along.into_iter().chain(smooth).flatten() {
         archive.admit(data, fit);
     }
+}
+
+/// Some sets, and for each class of the first of these the best plain set without it.
+fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
+    let mut bases = plain.to_vec();
+    let all = || weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
+    for member in plain.first().iter().flat_map(|best| &best.hypothesis.candidates) {
+        let class = member.evidence_class();
+        let without = all().find(|fit| lacks(fit, class));
+        bases.extend(without.filter(|own| !bases.iter().any(|known| known.hypothesis == own.hypothesis)));
+    }
+    bases
+}
+
+/// A set with a smooth torque of higher order beside it, begun where the set ended.
+fn with_smooth(data: &Data, set: &Fit) -> Option<Fit> {
+    if set.hypothesis.knows(Candidate::SMOOTH) {
+        return None;
+    }
+    let members = [set.hypothesis.candidates.as_slice(), &[Candidate::SMOOTH]].concat();
+    let hypothesis = set.hypothesis.with(&members);
+    // Its parameters come last: it is behind every candidate.
+    let globals = [set.point.globals.as_slice(), &[0.0; 3]].concat();
+    let point = Point { globals, starts: set.point.starts.clone() };
+    fit(data, &hypothesis, point, Moving::All, Stopping::SEARCH).ok()
 }

@@ -15,6 +15,7 @@ mod input_saturation;
 mod periodic_forcing;
 mod position_torque;
 mod quadratic_drag;
+mod smooth_torque;
 mod stiffness_drift;
 mod stribeck_friction;
 
@@ -33,5 +34,6 @@ pub use input_saturation::InputSaturation;
 pub use periodic_forcing::PeriodicForcing;
 pub use position_torque::PositionTorque;
 pub use quadratic_drag::QuadraticDrag;
+pub use smooth_torque::SmoothTorque;
 pub use stiffness_drift::StiffnessDrift;
 pub use stribeck_friction::StribeckFriction;

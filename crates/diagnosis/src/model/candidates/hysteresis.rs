@@ -1,14 +1,17 @@
 //! Friction with a pre-sliding spring.
 
 use super::coulomb_friction::CoulombFriction;
-use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
+use super::{Along, CandidateLaw, EvidenceClass, MainMode, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use crate::model::contact::bent;
 use dynamics::{Effect, Moment, SystemEffect, Values};
 
 /// Displacements to begin with, relative to the amplitude.
-const BENDING: [f64; 5] = [0.005, 0.02, 0.06, 0.2, 0.6];
+const BENDING: [f64; 4] = [0.005, 0.02, 0.06, 0.2];
+
+/// Displacement over the largest deflection from which on a contact hardly slides in most of a record.
+const MOST_BENT: f64 = 0.3;
 
 /// Friction with a pre-sliding spring: the torque once sliding, and the displacement over which it builds up.
 #[derive(Debug, Clone, Copy)]
@@ -33,6 +36,11 @@ impl CandidateLaw for Hysteresis {
 
     fn is_non_negative(&self) -> bool {
         true
+    }
+
+    /// What hardly slides is a spring and a loss that grow with the amplitude: other laws do that too, and no friction need act.
+    fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
+        fitted.get(1).is_none_or(|displacement| *displacement <= MOST_BENT * swing.amplitude)
     }
 
     /// Hysteresis that builds up at once is Coulomb friction.

@@ -50,6 +50,7 @@ pub(crate) mod sensor_lag;
 pub(crate) mod sensor_nonlinearity;
 pub(crate) mod sensor_quantization;
 pub(crate) mod sensor_saturation;
+mod smooth_torque;
 pub(crate) mod stiffness_drift;
 pub(crate) mod stribeck_friction;
 
@@ -57,10 +58,11 @@ use crate::model::candidate::Candidate;
 pub(crate) use along::{Along, Lines, Mode, held};
 pub(crate) use evidence_class::EvidenceClass;
 pub(crate) use law::{CandidateLaw, grid, padded, secant};
-pub(crate) use main_mode::MainMode;
+pub(crate) use main_mode::{MainMode, Repeats};
 pub(crate) use parameter::Parameter;
 pub(crate) use polar::Polar;
 pub(crate) use position_torque::PositionTorque;
+pub(crate) use smooth_torque::SmoothTorque;
 
 /// Every effect that can be named by a fit, in the order in which sets and answers list them.
 pub(crate) const REGISTRY: &[Candidate] = &[

@@ -1,6 +1,6 @@
 //! A torque that repeats in time.
 
-use super::{CandidateLaw, EvidenceClass, Lines, Parameter, Polar};
+use super::{CandidateLaw, EvidenceClass, Lines, MainMode, Parameter, Polar};
 use crate::data::scales::Scales;
 use dynamics::{Effect, SystemEffect};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -59,6 +59,12 @@ impl CandidateLaw for PeriodicForcing {
 
     fn shapes_for(&self, _facts: &Scales, residual: &dyn Lines) -> Vec<Vec<f64>> {
         residual.steady(LINES).into_iter().map(|frequency| vec![1.0, frequency, 0.0]).collect()
+    }
+
+    /// Whatever depends on a motion that repeats has lines at multiples of its frequency: a forcing there cannot be told from
+    /// any law that the model lacks.
+    fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
+        fitted.get(1).is_none_or(|frequency| !swing.repeats.is_some_and(|own| own.has(*frequency)))
     }
 
     fn is_chosen_by_frequency(&self) -> bool {
