@@ -200,7 +200,8 @@ registry! {
     }
     unnamed {
     PositionTorque,
-    SmoothTorque,
+    UnlistedDamping,
+    UnlistedStiffness,
     }
     measuring_chain {
     SensorLag,

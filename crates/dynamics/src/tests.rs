@@ -169,7 +169,7 @@ fn the_signs_are_those_of_the_equations() {
     use SystemEffect::{
         AsymmetricStiffness, Backlash, ConstantTorque, CoulombFriction, CubicStiffness, DampingDrift,
         EndStop, FlexibleCoupling, Gravity, Hysteresis, InputDelay, InputSaturation, PeriodicForcing,
-        PositionTorque, QuadraticDrag, SmoothTorque, StiffnessDrift, StribeckFriction,
+        PositionTorque, QuadraticDrag, StiffnessDrift, StribeckFriction, UnlistedDamping, UnlistedStiffness,
     };
     let at = moment(0.5, 0.8, 0, 0.0, NONE);
     // Depth beyond the stop at 0.3.
@@ -193,7 +193,8 @@ fn the_signs_are_those_of_the_equations() {
         (StiffnessDrift, 0, -5.0 * 0.7 * 2.3 * 0.4),
         (DampingDrift, 0, -0.6 * 0.7 * 2.3 * 0.8),
         (PositionTorque, 0, -0.7 * (0.9 * 0.5 + 1.3_f64).sin()),
-        (SmoothTorque, 0, -(0.7 * 0.8_f64.powi(3) + 0.9 * 0.16 * 0.8 + 1.3 * 0.4_f64.powi(5))),
+        (UnlistedDamping, 0, -(0.7 * 0.8_f64.powi(3) + 0.9 * 0.16 * 0.8)),
+        (UnlistedStiffness, 0, -0.7 * 0.4_f64.powi(5)),
         (PeriodicForcing, 0, 0.7 * (0.9 * 2.3 + 1.3_f64).sin()),
         (FlexibleCoupling, 0, 0.9 * (0.3 - 0.5) + 1.3 * (-0.8 - 0.8)),
         (InputDelay, 0, 0.0),

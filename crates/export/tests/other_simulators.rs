@@ -40,7 +40,8 @@ const CASES: &[(&str, &[f64])] = &[
     ("input_delay", &[0.05]),
     ("input_saturation", &[8e-3]),
     ("unknown", &[4e-3, 18.0, 0.7]),
-    ("smooth_torque", &[1e-5, 5e-3, 0.2]),
+    ("unlisted_damping", &[1e-5, 5e-3]),
+    ("unlisted_stiffness", &[0.2]),
 ];
 
 fn is_driven(id: &str) -> bool {

@@ -66,7 +66,7 @@ pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
 
 /// Whether a set has neither an effect of a class nor a law without a name that stands for one.
 pub(crate) fn lacks(fit: &Fit, class: EvidenceClass) -> bool {
-    fit.hypothesis.counted().all(|own| own.evidence_class() != class && !own.stands_for().contains(&class))
+    fit.hypothesis.counted().all(|own| own.evidence_class() != class && own.stands_for() != Some(class))
 }
 
 /// Sets weighed by what they leave.

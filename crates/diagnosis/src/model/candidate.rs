@@ -72,11 +72,12 @@ impl Candidate {
     /// A torque along the position, whatever its cause. It is none of the candidates for a name.
     pub(crate) const UNNAMED: Self = Self::new(&candidates::PositionTorque);
 
-    /// A smooth torque of higher order, whatever its cause. It is none of the candidates for a name either.
-    pub(crate) const SMOOTH: Self = Self::new(&candidates::SmoothTorque);
+    /// A damping and a stiffness of higher order, whatever their causes. They are none of the candidates for a name either.
+    pub(crate) const UNLISTED: [Self; 2] =
+        [Self::new(&candidates::UnlistedDamping), Self::new(&candidates::UnlistedStiffness)];
 
     /// What is no candidate for a name.
-    pub(crate) const NAMELESS: [Self; 2] = [Self::UNNAMED, Self::SMOOTH];
+    pub(crate) const NAMELESS: [Self; 3] = [Self::UNNAMED, Self::UNLISTED[0], Self::UNLISTED[1]];
 
     /// The handle on a law.
     pub(crate) const fn new(law: &'static dyn CandidateLaw) -> Self {
@@ -93,9 +94,10 @@ impl Candidate {
         Self::ALL.iter().chain(&Self::NAMELESS).copied().find(|candidate| candidate.effect() == effect)
     }
 
-    /// Its place in [`Self::ALL`].
+    /// Its place in [`Self::ALL`], and behind all of these in [`Self::NAMELESS`].
     pub(crate) fn rank(self) -> usize {
-        Self::ALL.iter().position(|other| *other == self).unwrap_or(Self::ALL.len())
+        let mut all = Self::ALL.iter().chain(&Self::NAMELESS);
+        all.position(|other| *other == self).unwrap_or(Self::ALL.len())
     }
 
     /// The public id.

@@ -1,9 +1,10 @@
 //! Torques without a name in the place of effects that have one.
 //!
 //! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
-//! needed. A law that is none of them but explains the same in one piece shows that they are not. Two such laws are fitted
+//! needed. A law that is none of them but explains the same in one piece shows that they are not. Such laws are fitted
 //! wherever the best set of all has a member that not every mechanism has: a torque along the position beside the best sets of
-//! plain laws, and a smooth torque of higher order beside these and in the place of each class of the best of them.
+//! plain laws; and a damping and a stiffness of higher order, alone and together, beside these and in the place of each class of
+//! the best of them.
 
 use crate::data::segments::Data;
 use crate::evidence::inclusion::lacks;
@@ -32,8 +33,12 @@ pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, voc
     });
     let along: Vec<Option<Fit>> = along.collect();
     let bases = bases(&weighed, &plain);
-    let smooth: Vec<Option<Fit>> = bases.par_iter().map(|set| with_smooth(data, set)).collect();
-    for fit in along.into_iter().chain(smooth).flatten() {
+    let [damping, stiffness] = Candidate::UNLISTED;
+    let laws = [vec![damping], vec![stiffness], vec![damping, stiffness]];
+    let asked: Vec<(&Fit, &[Candidate])> =
+        bases.iter().flat_map(|set| laws.iter().map(|laws| (*set, laws.as_slice()))).collect();
+    let unlisted: Vec<Option<Fit>> = asked.par_iter().map(|(set, laws)| with(data, set, laws)).collect();
+    for fit in along.into_iter().chain(unlisted).flatten() {
         archive.admit(data, fit);
     }
 }
@@ -50,15 +55,15 @@ fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
     bases
 }
 
-/// A set with a smooth torque of higher order beside it, begun where the set ended.
-fn with_smooth(data: &Data, set: &Fit) -> Option<Fit> {
-    if set.hypothesis.knows(Candidate::SMOOTH) {
+/// A set with laws of higher order beside it, begun where the set ended.
+fn with(data: &Data, set: &Fit, laws: &[Candidate]) -> Option<Fit> {
+    if laws.iter().any(|law| set.hypothesis.knows(*law)) {
         return None;
     }
-    let members = [set.hypothesis.candidates.as_slice(), &[Candidate::SMOOTH]].concat();
-    let hypothesis = set.hypothesis.with(&members);
-    // Its parameters come last: it is behind every candidate.
-    let globals = [set.point.globals.as_slice(), &[0.0; 3]].concat();
+    let hypothesis = set.hypothesis.with(&[set.hypothesis.candidates.as_slice(), laws].concat());
+    // Their parameters come last: they are behind every candidate.
+    let mut globals = set.point.globals.clone();
+    globals.extend(laws.iter().flat_map(|law| law.parameters(&data.facts)).map(|_| 0.0));
     let point = Point { globals, starts: set.point.starts.clone() };
     fit(data, &hypothesis, point, Moving::All, Stopping::SEARCH).ok()
 }

@@ -36,9 +36,9 @@ pub(crate) trait CandidateLaw: Sync {
         false
     }
 
-    /// The classes that a law without a name belongs to by its mechanism: a set with it is no set without these. Default: none.
-    fn stands_for(&self) -> &'static [EvidenceClass] {
-        &[]
+    /// The class that a law without a name belongs to by its mechanism: a set with it is no set without the class. Default: none.
+    fn stands_for(&self) -> Option<EvidenceClass> {
+        None
     }
 
     /// Whether it takes one of the places that a set has. Default: it does.

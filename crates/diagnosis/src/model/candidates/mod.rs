@@ -50,9 +50,10 @@ pub(crate) mod sensor_lag;
 pub(crate) mod sensor_nonlinearity;
 pub(crate) mod sensor_quantization;
 pub(crate) mod sensor_saturation;
-mod smooth_torque;
 pub(crate) mod stiffness_drift;
 pub(crate) mod stribeck_friction;
+mod unlisted_damping;
+mod unlisted_stiffness;
 
 use crate::model::candidate::Candidate;
 pub(crate) use along::{Along, Lines, Mode, held};
@@ -62,7 +63,8 @@ pub(crate) use main_mode::{MainMode, Repeats};
 pub(crate) use parameter::Parameter;
 pub(crate) use polar::Polar;
 pub(crate) use position_torque::PositionTorque;
-pub(crate) use smooth_torque::SmoothTorque;
+pub(crate) use unlisted_damping::UnlistedDamping;
+pub(crate) use unlisted_stiffness::UnlistedStiffness;
 
 /// Every effect that can be named by a fit, in the order in which sets and answers list them.
 pub(crate) const REGISTRY: &[Candidate] = &[
