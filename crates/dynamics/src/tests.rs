@@ -151,7 +151,7 @@ fn duals_agree_with_the_complex_step_in_every_law() {
 #[test]
 fn dissipative_laws_take_energy_out_whatever_the_state() {
     let dissipative = |effect: &&SystemEffect| effect.description().class == Class::Dissipative;
-    assert_eq!(SystemEffect::ALL.iter().filter(dissipative).count(), 4);
+    assert_eq!(SystemEffect::ALL.iter().filter(dissipative).count(), 5);
     for effect in SystemEffect::ALL.iter().filter(dissipative) {
         let own = values(*effect);
         for velocity in [-3.0, -0.2, 0.2, 3.0] {

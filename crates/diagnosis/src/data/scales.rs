@@ -1,6 +1,5 @@
 //! Scales of a record that bounds and grids of parameters are stated in.
 
-use crate::model::candidates::Repeats;
 use std::f64::consts::{PI, TAU};
 
 /// Scales of the motion, from the records and the nominal simulator.
@@ -41,6 +40,23 @@ pub(crate) struct Scales {
     pub(crate) repeats: Option<Repeats>,
     /// Error of an integration step relative to the amplitude: a small part of the noise, and no smaller.
     pub(crate) tolerance: f64,
+}
+
+/// A motion that is driven over the same way again and again.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Repeats {
+    /// Angular frequency of its repetition.
+    pub(crate) frequency: f64,
+    /// Angular frequencies that the record is too short to tell apart.
+    pub(crate) resolution: f64,
+}
+
+impl Repeats {
+    /// Whether an angular frequency is a multiple of the repetition's.
+    pub(crate) fn has(&self, frequency: f64) -> bool {
+        let order = (frequency / self.frequency).round().max(1.0);
+        (frequency - order * self.frequency).abs() < 0.5 * self.resolution
+    }
 }
 
 /// Finest and coarsest error of an integration step, and its part of the noise: a period takes about ten steps, so that

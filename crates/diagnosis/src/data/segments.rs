@@ -5,11 +5,10 @@
 
 use crate::data::observations::Observations;
 use crate::data::period::swing;
-use crate::data::scales::Scales;
+use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
-use crate::model::candidates::Repeats;
 use crate::model::matrices::element;
-use crate::noise::spectrum::{dominant_frequency, strongest_period};
+use crate::noise::periodogram::{dominant_frequency, strongest_period};
 use crate::noise::statistics::{median, quantile};
 use dynamics::{Coordinate, Hold, Input, NominalSimulator};
 use record::Quantity;

@@ -31,11 +31,12 @@ pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
         named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
-    let without = first.iter().filter_map(|own| named().find(|w| lacks(w.fit, own.evidence_class())));
+    let without =
+        first.iter().filter_map(|own| named().find(|w| w.fit.hypothesis.lacks(own.evidence_class())));
     let mut asked: Vec<&'a Fit> = Vec::new();
     let classes: Vec<EvidenceClass> =
         named().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class()).collect();
-    let with = classes.iter().filter_map(|class| named().find(|w| holds(w.fit, *class)));
+    let with = classes.iter().filter_map(|class| named().find(|w| w.fit.hypothesis.holds(*class)));
     let plain = named().filter(|w| w.fit.hypothesis.is_plain()).take(PLAIN);
     let clean = best_if_nothing_is_left(weighed.iter());
     for w in named().take(BEST).chain(plain).chain(clean).chain(without).chain(with) {
@@ -57,16 +58,6 @@ fn left_over(data: &Data, set: &Fit, held_out: f64) -> Result<f64, DynamicsError
 /// Whether an effect is one of a class.
 fn is_of(own: Candidate, class: &str) -> bool {
     own.counts() && own.evidence_class().id() == class
-}
-
-/// Whether a set has an effect of a class.
-pub(crate) fn holds(fit: &Fit, class: EvidenceClass) -> bool {
-    fit.hypothesis.counted().any(|own| own.evidence_class() == class)
-}
-
-/// Whether a set has neither an effect of a class nor a law without a name that stands for one.
-pub(crate) fn lacks(fit: &Fit, class: EvidenceClass) -> bool {
-    fit.hypothesis.counted().all(|own| own.evidence_class() != class && own.stands_for() != Some(class))
 }
 
 /// Sets weighed by what they leave.
@@ -140,11 +131,11 @@ impl<'a> Inclusion<'a> {
     /// not. Where something is left, there is always one of several that takes some of it.
     fn either(&self, one: EvidenceClass, other: EvidenceClass, doubt: Doubt) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
-        let with_one = place(&|fit| holds(fit, one))?;
-        let with_other = place(&|fit| holds(fit, other))?;
-        let neither = place(&|fit| lacks(fit, one) && lacks(fit, other))?;
+        let with_one = place(&|fit| fit.hypothesis.holds(one))?;
+        let with_other = place(&|fit| fit.hypothesis.holds(other))?;
+        let neither = place(&|fit| fit.hypothesis.lacks(one) && fit.hypothesis.lacks(other))?;
         let set = |at: usize| self.sets.weighed.get(at).map(|w| w.fit);
-        if holds(set(with_one)?, other) || holds(set(with_other)?, one) {
+        if set(with_one)?.hypothesis.holds(other) || set(with_other)?.hypothesis.holds(one) {
             return None;
         }
         let best = with_one.min(with_other);
@@ -163,7 +154,8 @@ impl<'a> Inclusion<'a> {
         seed: &Seed,
     ) -> Option<EffectClass> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
-        let (with, without) = (place(&|fit| holds(fit, class))?, place(&|fit| lacks(fit, class))?);
+        let (with, without) =
+            (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let mut class_row = EffectClass {
@@ -225,7 +217,7 @@ impl<'a> Inclusion<'a> {
 
     /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
-        let with = || self.sets.weighed.iter().filter(|w| holds(w.fit, class));
+        let with = || self.sets.weighed.iter().filter(|w| w.fit.hypothesis.holds(class));
         let best = with().next().map_or(0.0, |w| w.evidence);
         let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
         let total: f64 = with().map(odds).sum();
@@ -287,7 +279,10 @@ impl<'a> Inclusion<'a> {
             let drawn: Vec<usize> =
                 (0..segments).map(|_| rand::RngExt::random_range(&mut generator, 0..segments)).collect();
             let of = |(w, left): (&Weighed<'_>, &Left)| {
-                (self.sets.likelihood.log_of(&left.powers, &drawn) - left.price, holds(w.fit, class))
+                (
+                    self.sets.likelihood.log_of(&left.powers, &drawn) - left.price,
+                    w.fit.hypothesis.holds(class),
+                )
             };
             let best =
                 self.sets.weighed.iter().zip(&self.sets.left).map(of).max_by(|a, b| a.0.total_cmp(&b.0));

@@ -1,9 +1,9 @@
 use super::{Candidate, MainMode, Parameter, evidence_class, is_flexible};
-use crate::data::scales::Scales;
+use crate::data::scales::{Repeats, Scales};
 use crate::model::candidates::flexible_coupling::FlexibleCoupling;
 use crate::model::candidates::hysteresis::Hysteresis;
 use crate::model::candidates::periodic_forcing::PeriodicForcing;
-use crate::model::candidates::{Along, Lines, Mode, Repeats};
+use crate::model::candidates::{Along, Lines, Mode};
 use dynamics::{Coordinate, Hold, Input, Nominal, REGISTRY};
 use record::Quantity;
 

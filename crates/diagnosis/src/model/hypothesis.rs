@@ -1,7 +1,7 @@
 //! A hypothesis: the nominal simulator with some of its coefficients free, and candidates with parameters.
 
 use crate::data::scales::Scales;
-use crate::model::candidate::{Candidate, Parameter};
+use crate::model::candidate::{Candidate, EvidenceClass, Parameter};
 use crate::model::sensor::Sensor;
 use dynamics::sensitivity::Free;
 use dynamics::{
@@ -297,6 +297,16 @@ impl Hypothesis {
     /// Its members that count as effects.
     pub(crate) fn counted(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|own| own.counts())
+    }
+
+    /// Whether it has an effect of a class.
+    pub(crate) fn holds(&self, class: EvidenceClass) -> bool {
+        self.counted().any(|own| own.evidence_class() == class)
+    }
+
+    /// Whether it has neither an effect of a class nor a law without a name that stands for one.
+    pub(crate) fn lacks(&self, class: EvidenceClass) -> bool {
+        self.counted().all(|own| own.evidence_class() != class && own.stands_for() != Some(class))
     }
 
     /// Whether all of its effects are plain laws.

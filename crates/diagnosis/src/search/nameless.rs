@@ -7,7 +7,6 @@
 //! the best of them.
 
 use crate::data::segments::Data;
-use crate::evidence::inclusion::lacks;
 use crate::evidence::weights::{EVEN, Weighed, Weighing};
 use crate::explain::position_torque::beside;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
@@ -49,7 +48,7 @@ fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
     let all = || weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
     for member in plain.first().iter().flat_map(|best| &best.hypothesis.candidates) {
         let class = member.evidence_class();
-        let without = all().find(|fit| lacks(fit, class));
+        let without = all().find(|fit| fit.hypothesis.lacks(class));
         bases.extend(without.filter(|own| !bases.iter().any(|known| known.hypothesis == own.hypothesis)));
     }
     bases

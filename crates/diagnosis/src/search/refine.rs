@@ -1,7 +1,6 @@
 //! The best sets once more, on every sample and to convergence.
 
 use crate::data::segments::Data;
-use crate::evidence::inclusion::{holds, lacks};
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
 use crate::model::candidate::Candidate;
@@ -54,9 +53,9 @@ pub(crate) fn refine(
         };
         let further = batch.iter().skip(MOST).filter(|w| rival(w)).take(MOST);
         let classes = best.fit.hypothesis.candidates.iter().map(|own| own.evidence_class());
-        let without = classes.filter_map(|class| waiting.iter().find(|w| lacks(w.fit, class)));
+        let without = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.lacks(class)));
         let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
-        let with = classes.filter_map(|class| waiting.iter().find(|w| holds(w.fit, class)));
+        let with = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.holds(class)));
         let clean = best_if_nothing_is_left(waiting.iter().copied());
         let mut chosen: Vec<&Fit> = Vec::new();
         for w in batch.iter().take(MOST).chain(further).chain(without).chain(with).chain(&clean) {

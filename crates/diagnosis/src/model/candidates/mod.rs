@@ -59,7 +59,7 @@ use crate::model::candidate::Candidate;
 pub(crate) use along::{Along, Lines, Mode, held};
 pub(crate) use evidence_class::EvidenceClass;
 pub(crate) use law::{CandidateLaw, grid, padded, secant};
-pub(crate) use main_mode::{MainMode, Repeats};
+pub(crate) use main_mode::MainMode;
 pub(crate) use parameter::Parameter;
 pub(crate) use polar::Polar;
 pub(crate) use position_torque::PositionTorque;

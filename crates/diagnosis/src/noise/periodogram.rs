@@ -1,0 +1,158 @@
+//! Lines in values over time, at even or uneven times.
+
+use crate::data::scales::below_images;
+use crate::noise::statistics::mean;
+
+/// A line and its score.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Line {
+    /// Angular frequency in rad/s.
+    pub(crate) frequency: f64,
+    /// Squares of the residual that a sine and a cosine of this frequency take away.
+    pub(crate) gain: f64,
+}
+
+/// Frequencies looked at, at most.
+pub(crate) const MOST_FREQUENCIES: usize = 4000;
+
+/// Adds to each frequency of a grid what a sine and a cosine of it, under weights that have been multiplied
+/// with the values already, take away from these at even or uneven times; `squares` is the sum of the squared
+/// weights.
+///
+/// The phasor of each sample is turned from one frequency to the next, which costs four products in place of a sine
+/// and a cosine.
+pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, gains: &mut [f64]) {
+    let turned = |frequency: f64| points.iter().map(move |(time, _)| (frequency * time).sin_cos());
+    let mut phasors: Vec<(f64, f64)> = turned(lowest).collect();
+    let turns: Vec<(f64, f64)> = turned(step).collect();
+    let scale = 2.0 / squares.max(f64::MIN_POSITIVE);
+    for gain in gains {
+        let (mut sine, mut cosine) = (0.0, 0.0);
+        for (((s, c), (ds, dc)), (_, value)) in phasors.iter_mut().zip(&turns).zip(points) {
+            sine += value * *s;
+            cosine += value * *c;
+            (*s, *c) = (*s * dc + *c * ds, *c * dc - *s * ds);
+        }
+        *gain += scale * (sine * sine + cosine * cosine);
+    }
+}
+
+/// The highest peaks of gains on a grid.
+pub(crate) fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
+    let at = |index: Option<usize>| index.and_then(|i| gains.get(i)).copied().unwrap_or(0.0);
+    let mut peaks: Vec<Line> = gains
+        .iter()
+        .enumerate()
+        .filter(|(i, gain)| **gain > at(i.checked_sub(1)) && **gain >= at(Some(i + 1)))
+        .map(|(i, gain)| Line { frequency: lowest + step * i as f64, gain: *gain })
+        .collect();
+    peaks.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    peaks.truncate(most);
+    peaks
+}
+
+/// Shortest periods of a swing that its strongest line is looked for in.
+const PERIODS: f64 = 200.0;
+
+/// Period in seconds of the strongest line in values about their mean, of a swing whose period is no shorter than `shortest`
+/// by more than a few times; none where the values are too short for one.
+pub(crate) fn strongest_period(times: &[f64], values: &[f64], shortest: f64) -> Option<f64> {
+    let (first, last) = (times.first()?, times.last()?);
+    let span = (last - first).min(PERIODS * shortest);
+    let seen = times.iter().zip(values).take_while(|(time, _)| **time - first <= span);
+    let (times, values): (Vec<f64>, Vec<f64>) = seen.map(|(time, value)| (time - first, *value)).unzip();
+    let middle = mean(&values);
+    let points: Vec<(f64, f64)> = times.into_iter().zip(values.iter().map(|own| own - middle)).collect();
+    let highest = below_images(span / points.len().max(1) as f64).min(5.0 * std::f64::consts::TAU / shortest);
+    let lowest = 1.5 * std::f64::consts::TAU / span;
+    let count = ((highest - lowest) * span / std::f64::consts::PI).min(MOST_FREQUENCIES as f64);
+    if count.is_nan() || count < 2.0 {
+        return None;
+    }
+    let step = (highest - lowest) / count;
+    let mut gains = vec![0.0; count as usize];
+    add(&points, points.len() as f64, lowest, step, &mut gains);
+    peaks(&gains, lowest, step, 1).first().map(|line| std::f64::consts::TAU / line.frequency)
+}
+
+/// Frequencies that a dominant line is looked for among, and steps between two of them in which its place is told.
+const MOST_DOMINANT: usize = 1000;
+const FINER: f64 = 40.0;
+
+/// Part of the squares that a dominant line holds at least.
+const DOMINANT: f64 = 0.5;
+
+/// Angular frequency of the line that holds most of the squares of values about their mean; none where there is no such line.
+pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
+    let (first, last) = (times.first()?, times.last()?);
+    let resolution = std::f64::consts::TAU / (last - first);
+    let middle = mean(values);
+    let points: Vec<(f64, f64)> =
+        times.iter().zip(values).map(|(time, value)| (time - first, value - middle)).collect();
+    let squares: f64 = points.iter().map(|(_, value)| value * value).sum();
+    let count = (times.len() / 2).min(MOST_DOMINANT);
+    let strongest = |lowest: f64, step: f64, count: usize| {
+        let mut gains = vec![0.0; count];
+        add(&points, points.len() as f64, lowest, step, &mut gains);
+        peaks(&gains, lowest, step, 1).first().copied()
+    };
+    // A line between two of the grid's frequencies keeps 0.8 of its squares at half the resolution.
+    let coarse = strongest(1.5 * resolution, 0.5 * resolution, count)?;
+    let step = 2.0 * resolution / FINER;
+    let fine = strongest(coarse.frequency - resolution, step, FINER as usize + 1)?;
+    (fine.gain > DOMINANT * squares).then_some(fine.frequency)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{add, dominant_frequency, peaks, strongest_period};
+
+    /// A swing of 0.4 s under noise of its own size.
+    #[test]
+    fn a_swing_in_noise_has_its_period() {
+        let times: Vec<f64> = (0..3000).map(|at| f64::from(at) * 0.01).collect();
+        let noise = |at: usize| (at * 7919 % 13) as f64 / 6.0 - 1.0;
+        let swing = |time: f64| (std::f64::consts::TAU * time / 0.4).sin();
+        let values: Vec<f64> = times.iter().enumerate().map(|(at, time)| swing(*time) + noise(at)).collect();
+        for shortest in [0.1, 0.4] {
+            let found = strongest_period(&times, &values, shortest).unwrap();
+            assert!((found / 0.4 - 1.0).abs() < 0.02, "{shortest}: {found}");
+        }
+        assert_eq!(strongest_period(&times[..1], &values[..1], 0.4), None);
+    }
+
+    /// Four repetitions that are no sine, and a chirp.
+    #[test]
+    fn a_motion_that_repeats_has_a_dominant_line() {
+        let times: Vec<f64> = (0..2500).map(|at| f64::from(at) * 0.01).collect();
+        let of = |motion: &dyn Fn(f64) -> f64| times.iter().map(|time| motion(*time)).collect::<Vec<f64>>();
+        let repeated = of(&|time| (1.01 * time).sin() + 0.1 * (3.03 * time).cos());
+        let found = dominant_frequency(&times, &repeated).unwrap();
+        assert!((found - 1.01).abs() < 0.03, "{found}");
+        assert_eq!(dominant_frequency(&times, &of(&|time| ((1.0 + 0.3 * time) * time).sin())), None);
+    }
+
+    /// A sine of amplitude a that decays at a rate r takes a²/(4r) with it, sampled n times a second: n·a²/(4r).
+    #[test]
+    fn a_decaying_line_is_found_with_its_squares() {
+        let (rate, frequency, amplitude, interval) = (0.8, 31.0, 2e-3, 0.01);
+        let weight = |time: f64| (-rate * time).exp();
+        let times: Vec<f64> = (0..2500).map(|at| f64::from(at) * interval).collect();
+        let values: Vec<f64> =
+            times.iter().map(|t| amplitude * weight(*t) * (frequency * t + 0.4).sin()).collect();
+        let points: Vec<(f64, f64)> = times.iter().zip(&values).map(|(t, v)| (*t, weight(*t) * v)).collect();
+        let squares = times.iter().map(|t| weight(*t).powi(2)).sum();
+        let mut gains = vec![0.0; 400];
+        add(&points, squares, 10.0, 0.1, &mut gains);
+        let best = peaks(&gains, 10.0, 0.1, 1)[0];
+        assert!((best.frequency - frequency).abs() < 0.11, "{best:?}");
+        let expected = amplitude * amplitude / (4.0 * rate) / interval;
+        assert!((best.gain / expected - 1.0).abs() < 0.05, "{} {expected}", best.gain);
+        // A steady sine over the same 25 s takes a tenth of that.
+        let plain: Vec<(f64, f64)> = times.iter().copied().zip(values).collect();
+        let mut steady = vec![0.0; 400];
+        add(&plain, plain.len() as f64, 10.0, 0.1, &mut steady);
+        let share = peaks(&steady, 10.0, 0.1, 1)[0].gain / best.gain;
+        assert!((share / (2.0 / (rate * 25.0)) - 1.0).abs() < 0.1, "{share}");
+    }
+}
