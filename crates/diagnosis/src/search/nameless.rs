@@ -2,9 +2,8 @@
 //!
 //! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
 //! needed. A law that is none of them but explains the same in one piece shows that they are not. Such laws are fitted
-//! wherever the best set of all has a member that not every mechanism has: a torque along the position beside the best sets of
-//! plain laws; and a damping and a stiffness of higher order, alone and together, beside these and in the place of each class of
-//! the best of them.
+//! wherever the best set of all has a member that not every mechanism has, beside the best sets of plain laws and in the place of
+//! each class of the best of them: a torque along the position, and a damping and a stiffness of higher order, alone and together.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{EVEN, Weighed, Weighing};
@@ -26,12 +25,12 @@ pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, voc
     }
     let plain: Vec<&Fit> =
         weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain()).take(SETS).collect();
-    let along = plain.par_iter().map(|set| {
+    let bases = bases(&weighed, &plain);
+    let along = bases.par_iter().map(|set| {
         let time = set.autocorrelation_time();
         beside(data, set, time, EVEN).ok().flatten()
     });
     let along: Vec<Option<Fit>> = along.collect();
-    let bases = bases(&weighed, &plain);
     let [damping, stiffness] = Candidate::UNLISTED;
     let laws = [vec![damping], vec![stiffness], vec![damping, stiffness]];
     let asked: Vec<(&Fit, &[Candidate])> =
