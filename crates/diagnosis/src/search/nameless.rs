@@ -2,7 +2,7 @@
 //!
 //! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
 //! needed. A law that is none of them but explains the same in one piece shows that they are not. Such laws are fitted
-//! wherever the best set of all has a member that not every mechanism has, beside the best sets of plain laws and in the place of
+//! wherever the best set of all has several members or one that not every mechanism has, beside the best sets of plain laws and in the place of
 //! each class of the best of them: a torque along the position, and a damping and a stiffness of higher order, alone and together.
 
 use crate::data::segments::Data;
@@ -20,7 +20,9 @@ const SETS: usize = 2;
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
-    if weighed.first().is_none_or(|best| best.fit.hypothesis.is_plain()) {
+    // Of a single law that every mechanism has nothing is asked: there is nothing that a law in one piece could spare.
+    let is_plain = |best: &Fit| best.hypothesis.is_plain() && best.hypothesis.counted().count() < 2;
+    if weighed.first().is_none_or(|best| is_plain(best.fit)) {
         return;
     }
     let plain: Vec<&Fit> =
