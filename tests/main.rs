@@ -24,6 +24,7 @@ mod documents;
 mod explain;
 mod exports;
 mod fuzz_regressions;
+mod gaps;
 mod honesty;
 mod init;
 mod json_schema;

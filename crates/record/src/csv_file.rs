@@ -206,6 +206,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         pushed.map_err(|fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault))?;
     }
     samples.input.iter().for_each(|value| parsed.push_input(value * input_factor));
+    parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(samples.numbers);
     findings.extend(assumed.then(|| like_degrees(&samples.values, unit)).flatten());
     parsed.findings = findings;
     Ok(parsed)

@@ -230,13 +230,17 @@ pub fn centered(record: &Record) -> Result<Record, Fault> {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         values.iter().map(|value| value - mean).collect()
     };
-    Record::new(
+    let centered = Record::new(
         record.stamps_s().to_vec(),
         center(record.values()),
         record.input().map(center),
         record.quantity(),
         record.unit(),
-    )
+    )?;
+    Ok(match record.rows() {
+        Some(rows) => centered.with_rows(rows.to_vec()),
+        None => centered,
+    })
 }
 
 /// The simulator's name for what the sensor observes.
