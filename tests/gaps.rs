@@ -31,9 +31,9 @@ fn decay(stamped: bool) -> String {
     })
 }
 
-/// 40 s of a damped swing about a rest, pushed by six tones, by steps of a twentieth of a sampling interval; the input is
-/// written where the angle is missing too.
-fn driven() -> String {
+/// So many seconds of a damped swing about a rest, pushed by six tones, by steps of a twentieth of a sampling interval; with a
+/// gap in the angle at 12 s, where the input is written all the same.
+pub(crate) fn driven(seconds: u32, with_gap: bool) -> String {
     let tones = [(0.3, 0.1), (0.7, 1.2), (1.1, 2.5), (1.7, 3.9), (2.3, 5.0), (3.1, 0.7)];
     let input = |time: f64| -> f64 {
         tones.iter().map(|(f, phase)| 0.5 * (std::f64::consts::TAU * f * time + phase).sin()).sum()
@@ -41,9 +41,10 @@ fn driven() -> String {
     let (mut x, mut v) = (0.0, 0.0);
     let step = 1.0 / SAMPLING / 20.0;
     let pull = |x: f64, v: f64, time: f64| 3.0 * input(time) - 0.1 * OMEGA * v - OMEGA * OMEGA * x;
-    (0..8000).fold("time_s,angle_rad,torque_nm\n".to_owned(), |text, index| {
+    let gap = if with_gap { 12.0 } else { f64::INFINITY };
+    (0..200 * seconds as usize).fold("time_s,angle_rad,torque_nm\n".to_owned(), |text, index| {
         let time = index as f64 / SAMPLING;
-        let line = format!("{time:.3},{},{:.7}\n", cell(time, 12.0, x + 5e-4 * noise(index)), input(time));
+        let line = format!("{time:.3},{},{:.7}\n", cell(time, gap, x + 5e-4 * noise(index)), input(time));
         for part in 0..20 {
             let now = time + f64::from(part) * step;
             let (vm, am) = (v + 0.5 * step * pull(x, v, now), x + 0.5 * step * v);
@@ -95,7 +96,7 @@ fn a_diagnosis_invents_no_effect_from_a_gap() {
     let bare = of("bare.csv", &decay(false));
     let inertia = "inertia = 0.3333333\ndamping = 0.2666667\nstiffness = 21.333333\nrest_angle = 0.0\n\
                    input_gain = 1.0\n";
-    let (pushed, drive) = (of("driven.csv", &driven()), of("driven.toml", inertia));
+    let (pushed, drive) = (of("driven.csv", &driven(40, true)), of("driven.toml", inertia));
     let calls: [&[&str]; 4] = [
         &[&log, "--nominal", &nominal],
         &[&log, "--nominal", &nominal, "--clock", "uniform-index"],

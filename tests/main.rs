@@ -50,5 +50,6 @@ mod slurm;
 mod support;
 mod sweep;
 mod trials;
+mod units;
 mod unnamed;
 mod verifying;

@@ -281,6 +281,53 @@ fn odd_rates_and_angles_are_remarked() {
     assert!(source.findings.is_empty(), "{:?}", source.findings);
 }
 
+/// A bare column is taken to be in SI units, and that is said where its numbers are rather those of another unit.
+#[test]
+fn numbers_that_are_rather_in_another_unit_are_told() {
+    let told = |header: &str, value: &dyn Fn(f64) -> f64| {
+        let (_, source) = read(&file(header, |_, t, a| format!("{t:.2},{:.6}", value(a))));
+        assert!(source.reading.sentence.contains("(assumed)"), "{}", source.reading.sentence);
+        source.findings.join(" ")
+    };
+    let said = told("time_s,angle", &|a| 5.0 * a);
+    assert!(
+        said.contains("if they are degrees (a factor of 57.3), 2.9 of them, set `data.unit` to deg"),
+        "{said}"
+    );
+    assert_eq!(told("time_s,angle", &|a| a), "");
+    let said = told("time_s,gyro_z", &|a| 400.0 * a);
+    assert!(said.contains("degrees a second (a factor of 57.3), set `data.unit` to deg/s"), "{said}");
+    assert_eq!(told("time_s,gyro_z", &|a| 10.0 * a), "");
+    let said = told("time_s,acc_x", &|a| 1.0 + 0.2 * a);
+    assert!(said.contains("in g (a factor of 9.81), set `data.unit` to g"), "{said}");
+    assert_eq!(told("time_s,acc_x", &|a| 2.0 * a), "");
+}
+
+#[test]
+fn a_unit_that_is_not_known_is_told() {
+    let (_, source) =
+        read(&file("time_s,angle [grd],torque [lbf ft]", |_, t, a| format!("{t:.2},{a:.6},0.1")));
+    let said = source.findings.join(" ");
+    assert!(said.contains("the header `angle [grd]` states `grd`, which is no known unit"), "{said}");
+    assert!(said.contains("`lbf ft`") && said.contains("set `data.input_unit`"), "{said}");
+    let (_, source) = read(&file("time_s,angle (deg)", |_, t, a| format!("{t:.2},{a:.6}")));
+    assert!(source.findings.is_empty(), "{:?}", source.findings);
+}
+
+#[test]
+fn torques_in_kilogram_force_are_converted() {
+    for (header, factor) in [
+        ("t,angle_rad,torque [kgf m]", 9.806_65),
+        ("t,angle_rad,torque (kg cm)", 0.098_066_5),
+        ("t,angle_rad,torque_kgf_cm", 0.098_066_5),
+        ("t,angle_rad,force [kgf]", 9.806_65),
+    ] {
+        let (record, source) = read(&file(header, |_, t, a| format!("{t},{a},2")));
+        assert!((record.input().unwrap()[0] - 2.0 * factor).abs() < 1e-12, "{header}");
+        assert!(source.findings.is_empty(), "{header}: {:?}", source.findings);
+    }
+}
+
 #[test]
 fn files_that_do_not_say_enough_get_the_key_to_set() {
     for text in ["0.0,0.5\n0.1,0.4\n", "0.0;0.5\n", "0,0;0,5\n", "0.0 0.5\n", "-1e-3\t2\n"] {
