@@ -77,3 +77,39 @@ fn a_period_tells_the_factor_that_its_stiffness_is_off_by() {
         assert!(message.contains(words), "{factor}: {message}");
     }
 }
+
+/// A gyroscope with a bias, an accelerometer that feels gravity: a swing's rate has no mean, and an effect had been
+/// named for it.
+#[test]
+fn a_mean_that_no_swing_has_is_told_and_taken_away_as_printed() {
+    let scratch = tempfile::tempdir().unwrap();
+    let log = (0..4000).fold("time_s,gyro [deg/s]\n".to_owned(), |text, index| {
+        let time = f64::from(index) / 200.0;
+        let noise = (f64::from(index) * 12.9898).sin().mul_add(43_758.545_3, 0.0).rem_euclid(1.0) - 0.5;
+        let rate = 275.0 * (-0.13 * time).exp() * (8.0 * time).sin() + noise;
+        text + &format!("{time:.3},{:.4}\n", rate + 3.0)
+    });
+    write(scratch.path(), "gyro.csv", &log);
+    let run = |arguments: &[&str]| {
+        let program = std::process::Command::new(env!("CARGO_BIN_EXE_trainer"))
+            .args(arguments)
+            .current_dir(scratch.path())
+            .output()
+            .unwrap();
+        (String::from_utf8(program.stdout).unwrap(), String::from_utf8(program.stderr).unwrap())
+    };
+    let (shown, _) = run(&["init", "gyro.csv"]);
+    assert!(shown.contains("which the velocity of a free swing does not"), "{shown}");
+    assert!(shown.contains("--nominal gyro/nominal.toml --remove-mean"), "{shown}");
+    let nominal = ["--nominal", "gyro/nominal.toml", "--json", "--out"];
+    let call = |more: &[&str], out: &str| -> Value {
+        let start = ["diagnose", "gyro.csv"].iter().chain(more).chain(&nominal);
+        let (found, message) = run(&start.copied().chain([out]).collect::<Vec<_>>());
+        serde_json::from_str(&found).unwrap_or_else(|error| panic!("{error}: {message}"))
+    };
+    let (with, without) = (call(&[], "with"), call(&["--remove-mean"], "without"));
+    let findings = |found: &Value| found["records"][0]["findings"].to_string();
+    assert!(findings(&with).contains("subtract it with --remove-mean"), "{}", findings(&with));
+    assert!(!findings(&without).contains("--remove-mean"), "{}", findings(&without));
+    assert_eq!(without["verdict"]["effects"], serde_json::json!([]), "{}", without["verdict"]);
+}

@@ -99,3 +99,17 @@ fn dropped_rows_close_up() {
     let (segment, drop) = (of(Missing::Segment), of(Missing::Drop));
     assert!((segment - drop - 1.0 / 3.0).abs() < 0.05, "{segment} {drop}");
 }
+
+/// A log whose second half is filled up with zeros: its noise had been taken for none, and every wiggle for a swing.
+#[test]
+fn a_log_filled_up_with_zeros_has_the_noise_of_its_moving_part() {
+    let text = (0..12_000).fold("angle_rad\n".to_owned(), |text, index| {
+        let time = f64::from(index) / 200.0;
+        let swing = 0.6 * (-0.6 * time).exp() * (8.0 * time).cos() + NOISE * noise(index);
+        text + &format!("{:.6}\n", if index < 4000 { swing } else { 0.0 })
+    });
+    let found = extract(&text, Missing::Segment, ClockChoice::Auto, &recommended);
+    let (rate, error, _) = line(&found);
+    assert!((rate - 0.6).abs() < 4.0 * error && error < 0.01, "{rate} ± {error}");
+    assert!((found.envelope.omega_rad_s() / 8.0 - 1.0).abs() < 5e-3, "{}", found.envelope.omega_rad_s());
+}

@@ -39,6 +39,9 @@ const MOST_SWEEPS: usize = 1000;
 /// Prominence that noise alone does not reach, in its standard deviations.
 const NO_WIGGLE: f64 = 8.0;
 
+/// Step of the sensor, as a share of the values' range, below which it is none that hides the noise.
+const FINE: f64 = 1e-4;
+
 /// Half-width of the running median that is compared with the floor, in turning points.
 const NEIGHBORS: usize = 2;
 
@@ -79,7 +82,12 @@ impl RecommendedPipeline {
         let values = record.values();
         // Values on no lattice are not rounded.
         let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
-        let noise = noise_level(values).max(quantum / 12_f64.sqrt());
+        let noise = match noise_level(values) {
+            // A log that is filled up with zeros stands still in most of its samples, and moves with noise in the others.
+            0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),
+            level => level,
+        };
+        let noise = noise.max(quantum / 12_f64.sqrt());
         let floor = self.floor_in_noise * noise;
 
         // Prominence is from valley to top: twice the amplitude. Tops well below the floor are found too, so that the cut is
@@ -129,6 +137,17 @@ impl RecommendedPipeline {
             samples: values.len(),
         })
     }
+}
+
+fn range(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    highest - values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The values without those that equal both neighbors.
+fn moving(values: &[f64]) -> Vec<f64> {
+    let inner = values.windows(3).filter(|part| part.iter().any(|value| Some(value) != part.first()));
+    inner.filter_map(|part| part.get(1).copied()).collect()
 }
 
 /// Tops and bottoms at least so prominent.
