@@ -22,14 +22,19 @@ pub(crate) fn stretches(times: &[f64], longest: f64) -> Vec<Range<usize>> {
 mod tests {
     use super::stretches;
 
+    /// First sample of each stretch and the one after its last.
+    fn cut(times: &[f64], longest: f64) -> Vec<(usize, usize)> {
+        stretches(times, longest).into_iter().map(|range| (range.start, range.end)).collect()
+    }
+
     #[test]
     fn cuts_at_gaps_and_nowhere_else() {
         let even: Vec<f64> = (0..10).map(f64::from).collect();
-        assert_eq!(stretches(&even, 0.5), [0..10]);
+        assert_eq!(cut(&even, 0.5), [(0, 10)]);
         let hole = [0.0, 1.0, 2.0, 3.0, 7.0, 8.0, 9.0, 12.0, 13.0];
-        assert_eq!(stretches(&hole, 0.5), [0..4, 4..9], "three steps leave neighbors");
-        assert_eq!(stretches(&hole, 4.0), [0..9]);
+        assert_eq!(cut(&hole, 0.5), [(0, 4), (4, 9)], "three steps leave neighbors");
+        assert_eq!(cut(&hole, 4.0), [(0, 9)]);
         let bursts = [0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 2.0, 2.0, 6.0];
-        assert_eq!(stretches(&bursts, 0.5), [0..8, 8..9]);
+        assert_eq!(cut(&bursts, 0.5), [(0, 8), (8, 9)]);
     }
 }
