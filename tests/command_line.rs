@@ -106,6 +106,38 @@ fn a_configuration_in_the_place_of_a_simulator_is_told_as_one() {
 }
 
 #[test]
+fn files_in_each_others_places_are_told_apart() {
+    let record = "experiments/default-record/record.csv";
+    refused(
+        &["diagnose", record, "--nominal", record],
+        &[
+            "is a record, not a nominal simulator",
+            "`trainer init experiments/default-record/record.csv` writes one",
+        ],
+    );
+    let nominal = "experiments/default-record/nominal.toml";
+    refused(&["init", nominal], &["describes a nominal simulator, not a log", "trainer diagnose RECORD"]);
+    refused(
+        &["init", "configs/pinn.toml"],
+        &["is a configuration, not a log", "`trainer configs/pinn.toml`"],
+    );
+    refused(&["--nominal", nominal, record], &["--nominal is an option of `trainer diagnose`"]);
+}
+
+#[test]
+fn a_missing_record_is_answered_with_the_nearest_one() {
+    let nominal = "experiments/default-record/nominal.toml";
+    let near = "did you mean experiments/default-record/record.csv?";
+    for line in [
+        &["init", "experiments/default-record/recrod.csv"][..],
+        &["diagnose", "experiments/default-record/records.csv", "--nominal", nominal],
+    ] {
+        refused(line, &["there is no such file", near]);
+    }
+    refused(&["init", "experiments/default-record/other.csv"], &["other.csv: cannot be read"]);
+}
+
+#[test]
 fn a_missing_configuration_is_answered_with_the_nearest_one() {
     refused(&["configs/pin.toml"], &["did you mean configs/pinn.toml?"]);
     refused(&["pinn.tml"], &["did you mean configs/pinn.toml?"]);

@@ -125,7 +125,13 @@ fn known_factor(ratio: f64) -> &'static str {
         () if near(1e3) => ". The factor is near 1000: are the stamps in ms? Set --time-unit ms",
         () if near(1e6) => ". The factor is near a million: are the stamps in us? Set --time-unit us",
         () if near(1e3_f64.sqrt()) => {
-            ". Its square is near 1000: is the inertia or the stiffness a thousand times off, for example in g or mm?"
+            ". Its square is near 1000: is the inertia or the stiffness stated with g, mm or mN in place of kg, m or N?"
+        }
+        () if near(9.806_65_f64.sqrt()) => {
+            ". Its square is near 9.81: is the inertia or the stiffness stated with kgf in place of N?"
+        }
+        () if near(1f64.to_degrees().sqrt()) => {
+            ". Its square is near 57.3: is the stiffness stated per degree in place of per radian?"
         }
         () => "",
     }

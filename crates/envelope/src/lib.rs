@@ -9,12 +9,15 @@
 
 mod envelope;
 mod error;
+#[cfg(test)]
+mod gap_tests;
 mod interpolation;
 mod noise;
 mod paper;
 mod peaks;
 mod recommended;
 mod savitzky_golay;
+mod stretches;
 
 pub use envelope::{Envelope, Extraction, RatioDefinition};
 pub use error::EnvelopeError;

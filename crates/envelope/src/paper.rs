@@ -5,6 +5,7 @@ use crate::error::EnvelopeError;
 use crate::interpolation::resample;
 use crate::peaks::find_peaks;
 use crate::savitzky_golay::savitzky_golay;
+use crate::stretches::stretches;
 use record::{Clock, Record};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -43,40 +44,23 @@ impl PaperPipeline {
     /// window that does not fit.
     pub fn extract(&self, record: &Record, clock: &Clock) -> Result<Extraction, EnvelopeError> {
         let step = self.interpolation_step_s;
-        let mut smooth = self.smooth(record, clock)?;
+        let pieces = self.smooth(record, clock)?;
 
         // At least one point, at most all of them. The product is a rounding error above a whole number
         // for some lengths, which must not add a point.
-        let late = (smooth.len() as f64 * self.late_fraction - 1e-9).ceil() as usize;
-        let late = late.clamp(1, smooth.len().max(1));
-        let tail = smooth.iter().skip(smooth.len().saturating_sub(late));
-        let offset = tail.sum::<f64>() / late as f64;
-        for value in &mut smooth {
-            *value -= offset;
-        }
+        let points: usize = pieces.iter().map(|piece| piece.values.len()).sum();
+        let late = (points as f64 * self.late_fraction - 1e-9).ceil() as usize;
+        let late = late.clamp(1, points.max(1));
+        let all = pieces.iter().flat_map(|piece| piece.values.iter().copied());
+        let offset = all.skip(points.saturating_sub(late)).sum::<f64>() / late as f64;
 
-        let peaks = find_peaks(&smooth, self.peak_distance, self.prominence);
+        let peaks = self.peaks(pieces, offset);
         if peaks.len() < FEWEST_PEAKS {
-            return Err(EnvelopeError::TooFewPeaks {
-                pipeline: "paper",
-                found: peaks.len(),
-                needed: FEWEST_PEAKS,
-                remedy: format!(
-                    "Peaks are at least {} points of {step} s apart and {} {} prominent; lower \
-                     envelope.paper.peak_distance or envelope.paper.prominence, or give a longer record. A motion that \
-                     stops within a few swings has no envelope.",
-                    self.peak_distance,
-                    self.prominence,
-                    record.unit()
-                ),
-            });
+            return Err(self.too_few(peaks.len(), record.unit()));
         }
-        let peak_times: Vec<f64> = peaks.iter().map(|&peak| peak as f64 * step).collect();
+        let peak_times: Vec<f64> = peaks.iter().map(|(point, _)| *point as f64 * step).collect();
         let mut log_amplitudes = Vec::with_capacity(peaks.len());
-        for ((number, &peak), &time_s) in peaks.iter().enumerate().zip(&peak_times) {
-            debug_assert!(peak < smooth.len(), "peak {peak} of {} values", smooth.len());
-            // Never absent: asserted above; and an amplitude of 0 is refused.
-            let amplitude = smooth.get(peak).copied().unwrap_or(0.0);
+        for ((number, &(_, amplitude)), &time_s) in peaks.iter().enumerate().zip(&peak_times) {
             if amplitude <= 0.0 {
                 return Err(EnvelopeError::AmplitudeNotPositive {
                     number: number + 1,
@@ -97,12 +81,37 @@ impl PaperPipeline {
             first_peak_s,
             period_s,
             offset,
-            samples: smooth.len(),
+            samples: points,
         })
     }
 
-    /// The record on an even grid from its first sample on, smoothed.
-    fn smooth(&self, record: &Record, clock: &Clock) -> Result<Vec<f64>, EnvelopeError> {
+    /// Numbers of the peaks' points with their heights over the rest position.
+    fn peaks(&self, pieces: Vec<Piece>, offset: f64) -> Vec<(usize, f64)> {
+        let of_piece = |piece: Piece| {
+            let values: Vec<f64> = piece.values.iter().map(|value| value - offset).collect();
+            let found = find_peaks(&values, self.peak_distance, self.prominence);
+            found.into_iter().filter_map(move |at| Some((piece.first + at, *values.get(at)?)))
+        };
+        pieces.into_iter().flat_map(of_piece).collect()
+    }
+
+    fn too_few(&self, found: usize, unit: &str) -> EnvelopeError {
+        EnvelopeError::TooFewPeaks {
+            pipeline: "paper",
+            found,
+            needed: FEWEST_PEAKS,
+            remedy: format!(
+                "Peaks are at least {} points of {} s apart and {} {unit} prominent; lower \
+                 envelope.paper.peak_distance or envelope.paper.prominence, or give a longer record. A motion that \
+                 stops within a few swings has no envelope.",
+                self.peak_distance, self.interpolation_step_s, self.prominence
+            ),
+        }
+    }
+
+    /// The record on an even grid from its first sample on, smoothed: one piece, or one between any two gaps of rows
+    /// without a value that are longer than three usual steps and half a peak's least distance.
+    fn smooth(&self, record: &Record, clock: &Clock) -> Result<Vec<Piece>, EnvelopeError> {
         let first = clock.start_s();
         let times: Vec<f64> = clock.times_s.iter().map(|time| time - first).collect();
         let step = self.interpolation_step_s;
@@ -116,6 +125,34 @@ impl PaperPipeline {
                 most: MOST_POINTS,
             });
         }
-        savitzky_golay(&resample(&times, record.values(), step), self.smoothing_window, self.smoothing_order)
+        let grid = resample(&times, record.values(), step);
+        let parts = match record.empty_rows() {
+            0 => Vec::new(),
+            _ => stretches(&times, 0.5 * self.peak_distance as f64 * step),
+        };
+        let smoothed = |values: &[f64]| savitzky_golay(values, self.smoothing_window, self.smoothing_order);
+        if parts.len() < 2 {
+            return Ok(vec![Piece { first: 0, values: smoothed(&grid)? }]);
+        }
+        let mut pieces = Vec::new();
+        for part in parts {
+            let Some((first, last)) = times.get(part).and_then(|own| own.first().zip(own.last())) else {
+                continue;
+            };
+            let (from, to) = ((first / step).ceil() as usize, (last / step).floor() as usize + 1);
+            let Some(values) = grid.get(from..to.min(grid.len())) else { continue };
+            // What is shorter than a window says nothing of its own.
+            if values.len() >= self.smoothing_window.max(1) {
+                pieces.push(Piece { first: from, values: smoothed(values)? });
+            }
+        }
+        Ok(pieces)
     }
+}
+
+/// Points of the grid without a gap between.
+struct Piece {
+    /// Number of the first among all points of the grid.
+    first: usize,
+    values: Vec<f64>,
 }

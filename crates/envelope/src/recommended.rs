@@ -4,6 +4,7 @@ use crate::envelope::{Envelope, Extraction, FEWEST_PEAKS, RatioDefinition, diffe
 use crate::error::EnvelopeError;
 use crate::noise::noise_level;
 use crate::peaks::{local_maxima, prominences};
+use crate::stretches::stretches;
 use nalgebra::{DMatrix, DVector};
 use record::{Clock, Record};
 use serde::{Deserialize, Serialize};
@@ -12,6 +13,9 @@ use std::f64::consts::TAU;
 /// The recommended pipeline: samples as taken, on a believed clock; both half-cycles; the position and
 /// height of each turning point from a polynomial fitted to the samples around it; the rest position
 /// from the turning points themselves; nothing below the sensor's noise.
+///
+/// A gap is a gap: no turning point is read off samples on both sides of a step in time longer than three usual ones and
+/// than half a stretch's half-width.
 ///
 /// The decay starts at the largest turning point: what lies before it is the release.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -35,6 +39,9 @@ const MOST_SWEEPS: usize = 1000;
 /// Prominence that noise alone does not reach, in its standard deviations.
 const NO_WIGGLE: f64 = 8.0;
 
+/// Step of the sensor, as a share of the values' range, below which it is none that hides the noise.
+const FINE: f64 = 1e-4;
+
 /// Half-width of the running median that is compared with the floor, in turning points.
 const NEIGHBORS: usize = 2;
 
@@ -49,6 +56,8 @@ struct Turn {
     lift: f64,
     /// Standard deviation of the samples about the polynomial; `None` where too few are left over to tell.
     scatter: Option<f64>,
+    /// Which of the stretches between gaps it lies in.
+    stretch: usize,
 }
 
 impl Turn {
@@ -73,14 +82,18 @@ impl RecommendedPipeline {
         let values = record.values();
         // Values on no lattice are not rounded.
         let quantum = record.lattice().map_or(0.0, |lattice| lattice.step);
-        let noise = noise_level(values).max(quantum / 12_f64.sqrt());
+        let noise = match noise_level(values) {
+            // A log that is filled up with zeros stands still in most of its samples, and moves with noise in the others.
+            0.0 if quantum < FINE * range(values) => noise_level(&moving(values)),
+            level => level,
+        };
+        let noise = noise.max(quantum / 12_f64.sqrt());
         let floor = self.floor_in_noise * noise;
 
         // Prominence is from valley to top: twice the amplitude. Tops well below the floor are found too, so that the cut is
         // where the decay reaches the floor and not where noise first does.
         let least = (2.0 * floor).min(floor.max(NO_WIGGLE * noise));
-        let upper = prominent(values.to_vec(), least);
-        let lower = prominent(values.iter().map(|value| -value).collect(), least);
+        let (upper, lower) = tops(values, least);
         let too_few = |found: usize| EnvelopeError::TooFewPeaks {
             pipeline: "recommended",
             found,
@@ -100,10 +113,7 @@ impl RecommendedPipeline {
         let coarse_period = median(periods).ok_or_else(|| too_few(upper.len() + lower.len()))?;
 
         let half_width = self.half_width_periods * coarse_period;
-        let mut indices = [upper, lower].concat();
-        indices.sort_unstable();
-        let turns: Vec<Turn> =
-            indices.iter().filter_map(|&at| turning_point(&clock.times_s, values, at, half_width)).collect();
+        let turns = turning_points(&clock.times_s, values, least, half_width);
 
         let offset = center(&turns).ok_or_else(|| too_few(turns.len()))?;
         let decay = free_decay(&turns, offset, floor, coarse_period);
@@ -115,8 +125,7 @@ impl RecommendedPipeline {
             median(decay.iter().filter_map(|turn| turn.scatter).collect()).unwrap_or(noise_level(values));
         let log_amplitudes = decay.iter().map(|turn| turn.log_amplitude(offset, noise)).collect();
         let errors = log_std_errors(&decay, offset, noise, quantum);
-        // Turning points on the same side are two apart.
-        let period_s = median(differences(&times, 2)).unwrap_or(coarse_period);
+        let period_s = median(two_apart(&decay)).unwrap_or(coarse_period);
         let first = decay.first().map(|turn| turn.time).ok_or_else(|| too_few(0))?;
         Ok(Extraction {
             first_peak_s: first - clock.start_s(),
@@ -128,6 +137,55 @@ impl RecommendedPipeline {
             samples: values.len(),
         })
     }
+}
+
+fn range(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    highest - values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The values without those that equal both neighbors.
+fn moving(values: &[f64]) -> Vec<f64> {
+    let inner = values.windows(3).filter(|part| part.iter().any(|value| Some(value) != part.first()));
+    inner.filter_map(|part| part.get(1).copied()).collect()
+}
+
+/// Tops and bottoms at least so prominent.
+fn tops(values: &[f64], least: f64) -> (Vec<usize>, Vec<usize>) {
+    (prominent(values.to_vec(), least), prominent(values.iter().map(|value| -value).collect(), least))
+}
+
+/// Part of the half-width of a turning point's stretch that has to be seen on the side of a gap.
+const SEEN: f64 = 0.5;
+
+/// Turning points in the order of their times, each from samples between the same gaps, and none where a gap cuts off
+/// one of its sides.
+fn turning_points(times: &[f64], values: &[f64], least: f64, half_width: f64) -> Vec<Turn> {
+    let margin = SEEN * half_width;
+    let mut turns = Vec::new();
+    for (stretch, range) in stretches(times, margin).into_iter().enumerate() {
+        let (Some(own), Some(seen)) = (times.get(range.clone()), values.get(range.clone())) else {
+            continue;
+        };
+        let bound = |is_gap: bool, end: Option<&f64>, inward: f64, open: f64| {
+            end.filter(|_| is_gap).map_or(open, |time| time + inward)
+        };
+        let from = bound(range.start > 0, own.first(), margin, f64::NEG_INFINITY);
+        let to = bound(range.end < times.len(), own.last(), -margin, f64::INFINITY);
+        let (upper, lower) = tops(seen, least);
+        let mut indices = [upper, lower].concat();
+        indices.sort_unstable();
+        let found = indices.iter().filter_map(|&at| turning_point(own, seen, at, half_width));
+        let found = found.filter(|turn| turn.time >= from && turn.time <= to);
+        turns.extend(found.map(|turn| Turn { stretch, ..turn }));
+    }
+    turns
+}
+
+/// Times between turning points on the same side, which are two apart where no gap lies between.
+fn two_apart(turns: &[Turn]) -> Vec<f64> {
+    let pairs = turns.iter().zip(turns.iter().skip(2));
+    pairs.filter(|(one, next)| one.stretch == next.stretch).map(|(one, next)| next.time - one.time).collect()
 }
 
 /// Indices of the tops at least so prominent, one for each: where noise makes samples of one top equally high, each of them
@@ -229,7 +287,7 @@ fn refine(times: &[f64], values: &[f64], at: usize, center: f64, half_width: f64
         variance(DVector::from_fn(order + 1, |power, _| power as f64 * u.powi((power as i32 - 1).max(0))))?;
     let (value, _, curvature) = evaluate(&coefficients, u);
     let lift = -slope / (2.0 * curvature);
-    Some(Turn { time: center + u * scale, value, leverage, lift, scatter })
+    Some(Turn { time: center + u * scale, value, leverage, lift, scatter, stretch: 0 })
 }
 
 /// Value, first and second derivative of a polynomial with rising powers.
@@ -246,7 +304,7 @@ fn center(turns: &[Turn]) -> Option<f64> {
         turns
             .windows(3)
             .filter_map(|part| match part {
-                [a, b, c] => Some(
+                [a, b, c] if a.stretch == c.stretch => Some(
                     b.value - (b.value - a.value) * (c.value - b.value) / (c.value - 2.0 * b.value + a.value),
                 ),
                 _ => None,
@@ -281,7 +339,8 @@ fn alternating(turns: &[Turn], center: f64, period: f64) -> Vec<Turn> {
     let mut found: Vec<Turn> = Vec::new();
     let (mut begun, mut latest) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
     for turn in turns {
-        let same = |last: &Turn| (last.value > center) == (turn.value > center);
+        let same =
+            |last: &Turn| last.stretch == turn.stretch && (last.value > center) == (turn.value > center);
         match found.last_mut().filter(|last| same(last) && turn.time - latest <= period) {
             Some(_) if turn.time - begun > period => break,
             Some(last) if (last.value - center).abs() < (turn.value - center).abs() => *last = *turn,
@@ -301,8 +360,14 @@ mod tests {
     use super::{Turn, alternating, prominent, refine};
 
     fn turns(points: &[(f64, f64)]) -> Vec<Turn> {
-        let turn =
-            |&(time, value): &(f64, f64)| Turn { time, value, leverage: 0.0, lift: 0.0, scatter: None };
+        let turn = |&(time, value): &(f64, f64)| Turn {
+            time,
+            value,
+            leverage: 0.0,
+            lift: 0.0,
+            scatter: None,
+            stretch: 0,
+        };
         points.iter().map(turn).collect()
     }
 

@@ -156,8 +156,8 @@ pub(crate) const DATA: &[Field] = &[
         key: "missing",
         kind: Kind::Choice(Missing::NAMES),
         default: Default::Text("segment"),
-        meaning: "csv: cells without a number leave a gap (segment), are closed up where there is no time column (drop), or \
-                  are refused.",
+        meaning: "csv: what cells without a number are: a gap, counted by clocks and bridged by nothing (segment), rows that \
+                  the file never had (drop), or an error (refuse).",
         ..PLAIN
     },
     Field {

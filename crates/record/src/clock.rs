@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 pub enum ClockChoice {
     /// The stamps as written.
     Host,
-    /// Even in the sample index, rate by regression.
+    /// Even in the sample index, rate by regression; rows without a value count.
     UniformIndex,
     /// Whichever the stamps and the values support.
     #[default]
@@ -77,7 +77,7 @@ impl Clock {
     /// Lays a clock over a record's stamps. Linear in the number of samples.
     ///
     /// The regression uses the last sample of each group of equal stamps only: it waited least for the
-    /// host, so its stamp is the least late.
+    /// host, so its stamp is the least late. Samples are numbered by their rows, so that rows without a value count.
     ///
     /// `Auto` decides in this order:
     /// 1. repeated stamps: two samples cannot be taken at once, so the stamps are receive times; even
@@ -99,14 +99,15 @@ impl Clock {
         let stamps = record.stamps_s();
         // A record has samples: checked when it was made.
         let first = stamps.first().copied().unwrap_or_default();
-        let ends = group_ends(stamps);
+        let rows = record.row_numbers();
+        let ends = group_ends(stamps, &rows);
         if ends.len() < 2 {
             return Err(Fault::NoTimePasses { stamp: first });
         }
         // Stamps that lie on no lattice are not rounded.
         let rounding = stamp_rounding(stamps).unwrap_or(0.0);
-        let numbers = Numbers::with_lost(&ends, record.values(), stamps, rounding)
-            .unwrap_or_else(|| Numbers::plain(&ends, stamps.len()));
+        let numbers = Numbers::with_lost(&ends, &rows, record.values(), rounding)
+            .unwrap_or_else(|| Numbers::plain(&ends, &rows));
         let line = Line::through(&numbers.ends);
         let statistics = statistics(stamps, record.values(), &ends, &numbers, &line);
         let rate = 1.0 / line.slope;
@@ -115,12 +116,17 @@ impl Clock {
             ClockChoice::UniformIndex => (ClockKind::UniformIndex, "set in the configuration".to_owned()),
             ClockChoice::Auto => decide(stamps, &statistics, &line),
         };
+        let reason = match record.empty_rows() {
+            0 => reason,
+            _ if kind == ClockKind::Host => reason,
+            empty => format!("{reason}; {} without a value counted in", counted(empty, "row")),
+        };
         let plain = || Line::through(&ends);
         let times_s = match kind {
             ClockKind::Host => stamps.to_vec(),
             ClockKind::UniformIndex => {
                 let line = plain();
-                (0..stamps.len()).map(|i| line.intercept + line.slope * i as f64).collect()
+                rows.iter().map(|row| line.intercept + line.slope * row).collect()
             }
             ClockKind::IndexWithGaps => {
                 numbers.of_samples.iter().map(|number| line.intercept + line.slope * number).collect()
@@ -229,16 +235,16 @@ const EVEN: f64 = 1e-6;
 /// Standard errors that a preference must have: 1 % of chance, one-sided.
 const SIGNIFICANT: f64 = 2.33;
 
-/// Index and stamp of the last sample of each group of equal stamps. The record's last group may be
+/// Row number and stamp of the last sample of each group of equal stamps. The record's last group may be
 /// cut off, so its last sample need not have been the least late; with many groups it does not matter.
-fn group_ends(stamps: &[f64]) -> Vec<(f64, f64)> {
+fn group_ends(stamps: &[f64], rows: &[f64]) -> Vec<(f64, f64)> {
     let following = stamps.iter().skip(1).map(Some).chain([None]);
     stamps
         .iter()
         .zip(following)
-        .enumerate()
-        .filter(|(_, (stamp, next))| *next != Some(*stamp))
-        .map(|(index, (&stamp, _))| (index as f64, stamp))
+        .zip(rows)
+        .filter(|((stamp, next), _)| *next != Some(*stamp))
+        .map(|((&stamp, _), &row)| (row, stamp))
         .collect()
 }
 

@@ -57,12 +57,12 @@ impl From<Filter> for String {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Missing {
-    /// A sample that is not there: the line is left out, and its place in time stays empty, also in a file that is laid
-    /// out at a rate.
+    /// A gap: the line is left out and its place in time stays empty. Clocks that are even in the index count it, and
+    /// samples on either side of it are no neighbors.
     #[default]
     Segment,
-    /// A line that is not there: in a file that is laid out at a rate, the following samples move up. With a time column
-    /// the stamps tell where samples lie, and this is the same as [`Missing::Segment`].
+    /// A line that is not there, as if the file had never had it: in a file that is laid out at a rate, and on a clock that
+    /// is even in the index, the following samples move up. Stamps stay as written.
     Drop,
     /// A fault.
     Refuse,

@@ -178,6 +178,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     findings.extend(note);
     let stated = [asked.unit, heading.unit()].map(|unit| unit.map(Unit::symbol));
     findings.extend(contradiction(heading, stated, "data.unit"));
+    findings.extend(unknown_unit(heading, assumed, unit.symbol(), "data.unit"));
     let (input_factor, input_reading) = input_scale(&table, input, unit, options, &mut findings);
     let reading = Reading {
         format: "csv".to_owned(),
@@ -206,13 +207,15 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         pushed.map_err(|fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault))?;
     }
     samples.input.iter().for_each(|value| parsed.push_input(value * input_factor));
-    findings.extend(assumed.then(|| like_degrees(&samples.values, unit)).flatten());
+    parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(samples.numbers);
+    let doubted = assumed && heading.unknown.is_none();
+    findings.extend(doubted.then(|| doubtful_unit(&samples.values, unit)).flatten());
     parsed.findings = findings;
     Ok(parsed)
 }
 
 fn heading<'a>(table: &'a Table<'_>, at: usize) -> &'a Heading {
-    const NONE: &Heading = &Heading { title: String::new(), words: Vec::new(), measure: None };
+    const NONE: &Heading = &Heading { title: String::new(), words: Vec::new(), measure: None, unknown: None };
     table.columns.get(at).map_or(NONE, |column| &column.heading)
 }
 
@@ -355,6 +358,16 @@ fn contradiction(heading: &Heading, [asked, written]: [Option<&str>; 2], key: &s
     ))
 }
 
+/// A sentence where the header states a unit that is none of those that are known.
+fn unknown_unit(heading: &Heading, assumed: bool, taken: &str, key: &str) -> Option<String> {
+    let unit = heading.unknown.as_ref().filter(|_| assumed)?;
+    Some(format!(
+        "the header `{}` states `{unit}`, which is no known unit: the numbers were taken to be in {taken}; set `{key}`, or \
+         convert them",
+        heading.title
+    ))
+}
+
 /// A sentence where stamps that are taken to be seconds make a rate that hardly any logger has.
 fn odd_rate(stamps: &[f64]) -> Option<String> {
     let mut steps: Vec<f64> =
@@ -391,7 +404,9 @@ fn input_scale(
     let commands =
         ["command", "cmd", "setpoint", "target", "desired", "action"].iter().any(|word| heading.has(word));
     let unit = stated.or(Some(observed).filter(|_| commands));
-    if stated.is_none() && observed.to_si() != 1.0 {
+    let taken = unit.map_or("its own unit", Unit::symbol);
+    findings.extend(unknown_unit(heading, stated.is_none(), taken, "data.input_unit"));
+    if stated.is_none() && heading.unknown.is_none() && observed.to_si() != 1.0 {
         let taken =
             unit.map_or("left as it is".to_owned(), |unit| format!("taken to be in {}", unit.symbol()));
         findings.push(format!(
@@ -414,16 +429,34 @@ fn input_scale(
     (unit.map_or(1.0, Unit::to_si), Some(reading))
 }
 
-/// A sentence where angles without a unit would be more than a turn to either side.
-fn like_degrees(values: &[f64], unit: Unit) -> Option<String> {
+/// A sentence where values without a unit are larger than those of the SI unit usually are, or center on the gravity of
+/// another unit: angles beyond a right angle, rates beyond the range of gyroscopes, accelerations about 1.
+fn doubtful_unit(values: &[f64], unit: Unit) -> Option<String> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    let half = 0.5 * (highest - lowest);
-    (unit == Unit::Radian && half > std::f64::consts::TAU).then(|| {
-        format!(
-            "the values state no unit and were taken to be in rad, {:.1} turns to either side; if they are degrees (a factor of \
-             57.3), set `data.unit` to deg",
+    let (half, middle) = (0.5 * (highest - lowest), 0.5 * (highest + lowest));
+    let taken = format!("the values state no unit and were taken to be in {}", unit.symbol());
+    match unit {
+        Unit::Radian if half > std::f64::consts::TAU => Some(format!(
+            "{taken}, {:.1} turns to either side; if they are degrees (a factor of 57.3), set `data.unit` to deg",
             half / std::f64::consts::TAU
-        )
-    })
+        )),
+        Unit::Radian if half > std::f64::consts::FRAC_PI_2 => Some(format!(
+            "{taken}, {:.0} degrees to either side; if they are degrees (a factor of 57.3), {half:.1} of them, set \
+             `data.unit` to deg",
+            half.to_degrees()
+        )),
+        Unit::RadianPerSecond if half > FASTEST => Some(format!(
+            "{taken}, {:.0} degrees a second; if they are degrees a second (a factor of 57.3), set `data.unit` to deg/s",
+            half.to_degrees()
+        )),
+        Unit::MeterPerSecondSquared if (middle.abs() - 1.0).abs() < 0.1 => Some(format!(
+            "{taken}, and they center on {middle:.2}, as at rest in units of gravity; if they are in g (a factor of 9.81), set \
+             `data.unit` to g"
+        )),
+        _ => None,
+    }
 }
+
+/// Rate in rad/s that gyroscopes end at: 2000 degrees a second.
+const FASTEST: f64 = 35.0;

@@ -74,7 +74,7 @@ pub enum Fault {
     },
     /// Neither a time column nor a rate.
     #[error(
-        "there is no column that is a time by its name or its unit; the header has {found}. Set `data.time` to the column's \
+        "no column is a time by its name or its unit; the header has {found}. Set `data.time` to the column's \
          name, or `data.sample_rate_hz` where the samples are even and have no stamps"
     )]
     NoTime {

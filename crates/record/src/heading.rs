@@ -18,12 +18,17 @@ pub(crate) struct Heading {
     pub(crate) words: Vec<String>,
     /// The unit that the title, or the line of units below it, states.
     pub(crate) measure: Option<Measure>,
+    /// What stands in brackets behind the name, or below the title, where a unit stands, and is none that is known.
+    pub(crate) unknown: Option<String>,
 }
 
 /// Endings that are units behind such a name only: `swing_a` is not in amperes.
 const DOUBTFUL: &[(&str, &[&str])] = &[
     ("a", &["current"]),
     ("n", &["force", "load"]),
+    ("kg_m", &["torque", "moment"]),
+    ("kg m", &["torque", "moment"]),
+    ("kgm", &["torque", "moment"]),
     ("g", &["acc", "accel", "acceleration"]),
     ("in", &["displacement", "position", "pos", "travel"]),
 ];
@@ -34,9 +39,12 @@ impl Heading {
     pub(crate) fn parse(title: &str, below: Option<&str>) -> Self {
         let title = title.trim();
         let (name, measure) = bracketed(title).unwrap_or_else(|| suffixed(title));
-        let measure =
-            measure.or_else(|| below.and_then(|unit| measure_of(unit.trim_matches(['[', ']', '(', ')']))));
-        Self { title: title.to_owned(), words: words(name), measure }
+        let below = below.map(|unit| unit.trim_matches(['[', ']', '(', ')']).trim());
+        let measure = measure.or_else(|| below.and_then(measure_of));
+        let stated = in_brackets(title).map(|(_, unit)| unit.trim()).or(below);
+        let unknown =
+            stated.filter(|unit| measure.is_none() && !unit.is_empty() && *unit != "-" && *unit != "1");
+        Self { title: title.to_owned(), words: words(name), measure, unknown: unknown.map(str::to_owned) }
     }
 
     pub(crate) fn unit(&self) -> Option<Unit> {
@@ -63,15 +71,19 @@ pub(crate) fn measure_of(text: &str) -> Option<Measure> {
     TimeUnit::parse(text).map(Measure::Time).or_else(|| Unit::parse(text).map(Measure::Value))
 }
 
+/// The name and what stands in brackets behind it.
+fn in_brackets(title: &str) -> Option<(&str, &str)> {
+    [('[', ']'), ('(', ')')].into_iter().find_map(|(open, close)| {
+        let (name, rest) = title.rsplit_once(open)?;
+        let (unit, _) = rest.split_once(close)?;
+        (!name.trim().is_empty()).then_some((name, unit))
+    })
+}
+
 /// `name [unit]`, `name (unit)`, `name / unit` or `name in unit`.
 fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
-    for (open, close) in [('[', ']'), ('(', ')')] {
-        if let Some((name, rest)) = title.rsplit_once(open)
-            && let Some((unit, _)) = rest.split_once(close)
-            && !name.trim().is_empty()
-        {
-            return Some((name, measure_of(unit)));
-        }
+    if let Some((name, unit)) = in_brackets(title) {
+        return Some((name, measure_of(unit)));
     }
     [" / ", " in ", ", "].iter().find_map(|between| {
         let (name, unit) = title.rsplit_once(between)?;

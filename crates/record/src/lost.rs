@@ -44,9 +44,9 @@ const NEARER: f64 = 3.0;
 const LATENESS: f64 = 1.2;
 
 impl Numbers {
-    /// Every sample counted, none lost.
-    pub(crate) fn plain(ends: &[(f64, f64)], samples: usize) -> Self {
-        Self { of_samples: (0..samples).map(|index| index as f64).collect(), ends: ends.to_vec(), lost: 0 }
+    /// Every row counted, none lost.
+    pub(crate) fn plain(ends: &[(f64, f64)], rows: &[f64]) -> Self {
+        Self { of_samples: rows.to_vec(), ends: ends.to_vec(), lost: 0 }
     }
 
     /// Counts lost samples from the stamps at the ends of groups; `None` where the stamps speak against any,
@@ -56,11 +56,12 @@ impl Numbers {
     /// later than it by whole intervals, so many samples are missing. The count stands if every group then
     /// lies as near to an even clock (which may drift) as groups without a loss do, and if that improves by
     /// more than the information criterion's price of two numbers, place and length, for each gap. Where in
-    /// its group a gap lies, the values tell: they run most smoothly.
+    /// its group a gap lies, the values tell: they run most smoothly. `rows` numbers the samples among the rows of their
+    /// file: rows without a value are not lost.
     pub(crate) fn with_lost(
         ends: &[(f64, f64)],
+        rows: &[f64],
         values: &[f64],
-        stamps: &[f64],
         rounding: f64,
     ) -> Option<Self> {
         let sizes: Vec<f64> =
@@ -92,7 +93,7 @@ impl Numbers {
         if !near || gain <= 2.0 * count.ln() * gaps.len() as f64 {
             return None;
         }
-        let of_samples = place(ends, &counted, values, stamps.len());
+        let of_samples = place(ends, &counted, rows, values);
         Some(Self { of_samples, ends: counted, lost: last as usize })
     }
 }
@@ -245,35 +246,38 @@ fn count(ends: &[(f64, f64)], interval: f64, gain: f64, takes_back: bool, whole:
 }
 
 /// Numbers of all samples: within a group with a loss, the gap lies where the values then run most smoothly.
-fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], values: &[f64], samples: usize) -> Vec<f64> {
-    let mut numbers: Vec<f64> = Vec::with_capacity(samples);
-    let mut before = (-1.0, -1.0);
+fn place(ends: &[(f64, f64)], counted: &[(f64, f64)], rows: &[f64], values: &[f64]) -> Vec<f64> {
+    let mut numbers: Vec<f64> = Vec::with_capacity(rows.len());
+    let mut lost_before = 0.0;
     for (end, number) in ends.iter().zip(counted) {
-        let size = (end.0 - before.0) as usize;
-        let lost = number.0 - before.1 - size as f64;
+        // Samples of the group and those that follow it.
+        let left = rows.get(numbers.len()..).unwrap_or_default();
+        let (group, following) = left.split_at(left.partition_point(|row| *row <= end.0));
+        let lost_here = number.0 - end.0;
         let numbered = |early: usize| {
-            (0..size).map(move |at| before.1 + 1.0 + at as f64 + if at < early { 0.0 } else { lost })
+            let of = move |at| if at < early { lost_before } else { lost_here };
+            group.iter().enumerate().map(move |(at, row)| row + of(at))
         };
         let mut early = 0;
-        if lost > 0.5 && size > 1 {
+        if lost_here - lost_before > 0.5 && group.len() > 1 {
             let from = numbers.len().saturating_sub(4);
             let past: Vec<f64> = numbers.iter().skip(from).copied().collect();
-            let to = (numbers.len() + size + 4).min(values.len());
+            let to = (numbers.len() + group.len() + 4).min(values.len());
             // Beyond the last sample nothing is seen.
             let seen = values.get(from..to).unwrap_or_default();
             let roughness = |early: usize| {
-                let next = (1..=4).map(|at| number.0 + f64::from(at));
+                let next = following.iter().take(4).map(|row| row + lost_here);
                 let times: Vec<f64> = past.iter().copied().chain(numbered(early)).chain(next).collect();
                 times.windows(5).zip(seen.windows(5)).map(|(t, y)| off_cubic(t, y).powi(2)).sum::<f64>()
             };
-            early = (0..=size)
+            early = (0..=group.len())
                 .map(|early| (early, roughness(early)))
                 .min_by(|one, other| one.1.total_cmp(&other.1))
                 // There is always one: that all were lost before the group.
                 .map_or(0, |best| best.0);
         }
         numbers.extend(numbered(early));
-        before = (end.0, number.0);
+        lost_before = lost_here;
     }
     numbers
 }

@@ -13,6 +13,8 @@ pub(crate) struct Parsed {
     stamps_s: Vec<f64>,
     values: Vec<f64>,
     input: Vec<f64>,
+    /// Number of each sample's row, where rows hold no value and leave a gap.
+    pub(crate) rows: Option<Vec<usize>>,
     statements: Statements,
     pub(crate) findings: Vec<String>,
     pub(crate) reading: Reading,
@@ -25,6 +27,7 @@ impl Parsed {
             stamps_s: Vec::new(),
             values: Vec::new(),
             input: Vec::new(),
+            rows: None,
             statements,
             findings: Vec::new(),
             reading,
@@ -53,8 +56,12 @@ impl Parsed {
         let quantity = options.quantity.unwrap_or(self.reading.quantity);
         // Without samples no time passes.
         let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
-        let rate_hz = (self.stamps_s.len().max(1) - 1) as f64 / span;
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
+        let record = match self.rows {
+            Some(rows) => record.with_rows(rows),
+            None => record,
+        };
+        let rate_hz = (record.len() + record.empty_rows() - 1) as f64 / span;
         let coordinate = match self.unit.dimension() {
             Dimension::Angle => Coordinate::Angle,
             _ => Coordinate::Displacement,

@@ -2,6 +2,7 @@
 
 use crate::columns::Missing;
 use crate::record::Quantity;
+use crate::unit::TimeUnit;
 use crate::words::counted;
 use serde::{Deserialize, Serialize};
 
@@ -97,6 +98,12 @@ impl Reading {
     /// The same with its sentence.
     pub(crate) fn worded(self, rate_hz: f64) -> Self {
         let column = |role: &str, read: &ColumnReading| match &read.unit {
+            Some(unit) if unit == TimeUnit::Iso.name() => {
+                format!("{role} = \"{}\", dates or times of the day", read.column)
+            }
+            Some(unit) if read.because.contains("unit assumed") => {
+                format!("{role} = \"{}\" in {unit} (assumed)", read.column)
+            }
             Some(unit) => format!("{role} = \"{}\" in {unit}", read.column),
             None => format!("{role} = \"{}\" as it is", read.column),
         };

@@ -30,6 +30,8 @@ pub struct Record {
     input: Option<Vec<f64>>,
     quantity: Quantity,
     unit: &'static str,
+    /// Number of each sample among the rows of its file; none where every row holds a sample.
+    rows: Option<Vec<usize>>,
 }
 
 impl Record {
@@ -49,7 +51,7 @@ impl Record {
         unit: &'static str,
     ) -> Result<Self, Fault> {
         Self::check(&stamps_s, &values, input.as_deref())?;
-        Ok(Self { stamps_s, values, input, quantity, unit })
+        Ok(Self { stamps_s, values, input, quantity, unit, rows: None })
     }
 
     /// Checks columns as [`Record::new`] does, without taking them.
@@ -85,6 +87,38 @@ impl Record {
             }
         }
         Ok(())
+    }
+
+    /// The same with the number of each sample among the rows of its file, of which others hold no value: samples whose
+    /// rows are no neighbors are none either. Left out where there is not one number for each sample, or where they do
+    /// not increase.
+    #[must_use]
+    pub fn with_rows(self, rows: Vec<usize>) -> Self {
+        let increase = rows.iter().zip(rows.iter().skip(1)).all(|(one, next)| one < next);
+        let usable = rows.len() == self.len() && increase;
+        Self { rows: usable.then_some(rows), ..self }
+    }
+
+    /// Number of each sample among the rows of its file, where rows between them hold no value.
+    #[must_use]
+    pub fn rows(&self) -> Option<&[usize]> {
+        self.rows.as_deref()
+    }
+
+    /// Rows between the first sample and the last that hold no value.
+    #[must_use]
+    pub fn empty_rows(&self) -> usize {
+        let ends = self.rows().and_then(|rows| rows.first().zip(rows.last()));
+        // Where every row holds a sample none is empty.
+        ends.map_or(0, |(first, last)| last - first + 1 - self.len())
+    }
+
+    /// Number of each sample: that of its row, or its index where every row holds a sample.
+    pub(crate) fn row_numbers(&self) -> Vec<f64> {
+        match &self.rows {
+            Some(rows) => rows.iter().map(|row| *row as f64).collect(),
+            None => (0..self.len()).map(|index| index as f64).collect(),
+        }
     }
 
     /// Number of samples.

@@ -16,8 +16,8 @@ pub struct StampStatistics {
     /// Median time between groups, in seconds.
     pub group_interval_s: f64,
     /// Where no stamp is repeated: steps longer than 1.5 times the median step by more than the stamps
-    /// are rounded to. Samples are missing there. None where it is jitter that makes steps long: their neighbors
-    /// are then as much too short.
+    /// are rounded to, rows without a value counted in. Samples are missing there. None where it is jitter that makes
+    /// steps long: their neighbors are then as much too short.
     pub gaps: usize,
     /// The decimal step that stamps are rounded to, in seconds, where there is one.
     pub rounding_s: Option<f64>,
@@ -69,22 +69,19 @@ pub(crate) fn statistics(
     line: &Line,
 ) -> StampStatistics {
     let steps: Vec<f64> = ends.iter().zip(ends.iter().skip(1)).map(|(one, next)| next.1 - one.1).collect();
-    let mut ordered = steps.clone();
-    ordered.sort_by(f64::total_cmp);
-    // Two groups of stamps at least have a step between them.
-    let median = ordered.get(ordered.len() / 2).copied().unwrap_or_default();
-    let largest_group = ends
+    // Without what rows that hold no value account for.
+    let own: Vec<f64> = ends
         .iter()
-        .scan(-1.0, |previous, end| {
-            let size = end.0 - *previous;
-            *previous = end.0;
-            Some(size)
-        })
-        .fold(0.0, f64::max);
+        .zip(ends.iter().skip(1))
+        .zip(&steps)
+        .map(|((one, next), step)| step - (next.0 - one.0 - 1.0) * line.slope)
+        .collect();
+    let usual = middle(&own);
+    let largest_group = stamps.chunk_by(|one, next| one == next).map(<[f64]>::len).max();
     let repeated = stamps.len() - ends.len();
     let rounding_s = stamp_rounding(stamps);
     // Stamps that lie on no lattice are not rounded.
-    let long = 1.5 * median + rounding_s.unwrap_or_default().min(0.5 * median);
+    let long = 1.5 * usual + rounding_s.unwrap_or_default().min(0.5 * usual);
     debug_assert_eq!(numbers.ends.len(), ends.len(), "a number for the end of every group");
     // A record may end within a group, whose last sample is not there.
     let whole = numbers.ends.get(..ends.len() - usize::from(repeated > 0)).unwrap_or_default();
@@ -93,9 +90,10 @@ pub(crate) fn statistics(
     StampStatistics {
         repeated,
         groups: ends.len(),
-        largest_group: largest_group as usize,
-        group_interval_s: median,
-        gaps: if repeated == 0 { gaps(&steps, median, long) } else { 0 },
+        // A record has samples, so that there is a group.
+        largest_group: largest_group.unwrap_or_default(),
+        group_interval_s: middle(&steps),
+        gaps: if repeated == 0 { gaps(&own, usual, long) } else { 0 },
         rounding_s,
         lost: numbers.lost,
         deviation_s: (line.squares() / ends.len() as f64).sqrt(),
@@ -106,6 +104,14 @@ pub(crate) fn statistics(
         left_by_bend_s: bend.line.residuals.iter().fold(0.0, |most, r| f64::max(most, r.abs())),
         preference_for_even: if repeated == 0 { preference_for_even(stamps, values, &even) } else { 0.0 },
     }
+}
+
+/// The upper median of the steps between groups.
+fn middle(steps: &[f64]) -> f64 {
+    let mut ordered = steps.to_vec();
+    ordered.sort_by(f64::total_cmp);
+    // Two groups of stamps at least have a step between them.
+    ordered.get(ordered.len() / 2).copied().unwrap_or_default()
 }
 
 /// Standard deviation of independent errors, from second differences: their variance is six times that of an error.

@@ -1,6 +1,9 @@
 //! Files as other programs write them, of one swing.
 
-use crate::{CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit, look, read_text};
+use crate::{
+    Clock, ClockChoice, ClockKind, CsvColumns, Filter, Missing, ReadOptions, Record, Source, TimeUnit, Unit,
+    look, read_text,
+};
 
 /// Time in seconds and angle in radians of a sample.
 fn swing(index: usize) -> (f64, f64) {
@@ -88,7 +91,7 @@ fn what_was_decided_is_said_in_one_line() {
     assert_eq!(
         source.reading.sentence,
         "read as: semicolon-separated, decimal comma; time = \"Zeit [ms]\" in ms; value = \"Winkel [deg]\" in deg; no input; \
-         3 missing cells left as gaps; rate 98.5 Hz"
+         3 missing cells left as gaps; rate 100.0 Hz"
     );
     let options: Vec<String> =
         source.reading.options().iter().map(|(key, value)| format!("{key}={value}")).collect();
@@ -122,6 +125,72 @@ fn a_missing_cell_is_a_gap_or_closed_up_or_refused() {
         );
         assert!(refused.contains("data.missing"), "{refused}");
     }
+}
+
+/// 10 s at 100 samples a second with a third of a second of missing cells; the columns, and how a line is written.
+fn with_a_hole(header: &str, line: impl Fn(usize, f64, &str) -> String) -> String {
+    (0..1000).fold(format!("{header}\n"), |text, index| {
+        let time = index as f64 / 100.0;
+        let angle = 0.6 * (-0.1 * time).exp() * (8.0 * time).cos();
+        let cell = if (300..333).contains(&index) { "NaN".to_owned() } else { format!("{angle:.7}") };
+        text + &line(index, time, &cell) + "\n"
+    })
+}
+
+fn clock_with(text: &str, missing: Missing, rate: Option<f64>, choice: ClockChoice) -> (Record, Clock) {
+    let columns = CsvColumns { missing, sample_rate_hz: rate, ..CsvColumns::default() };
+    let (record, _) = read_with(text, columns);
+    let clock = Clock::new(&record, choice).unwrap();
+    (record, clock)
+}
+
+/// A clock that is even in the index counted samples and not rows: all after a gap came a third of a second early.
+#[test]
+fn a_uniform_index_counts_rows_without_a_value() {
+    let stamped = with_a_hole("time_s,angle_rad", |_, time, cell| format!("{time:.2},{cell}"));
+    let bare = with_a_hole("angle_rad", |_, _, cell| cell.to_owned());
+    for (text, rate) in [(&stamped, None), (&bare, Some(100.0))] {
+        for choice in [ClockChoice::UniformIndex, ClockChoice::Auto] {
+            let (record, clock) = clock_with(text, Missing::Segment, rate, choice);
+            assert_eq!((record.len(), record.empty_rows()), (967, 33));
+            let off = record.stamps_s().iter().zip(&clock.times_s).map(|(stamp, time)| (stamp - time).abs());
+            assert!(off.fold(0.0, f64::max) < 1e-9, "{choice:?} {}", clock.reason);
+            assert!((clock.sample_rate_hz - 100.0).abs() < 1e-9, "{}", clock.sample_rate_hz);
+            assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+            assert!(clock.reason.ends_with("; 33 rows without a value counted in"), "{}", clock.reason);
+            assert_eq!((clock.statistics.gaps, clock.statistics.lost), (0, 0));
+        }
+    }
+    let (record, clock) = clock_with(&stamped, Missing::Drop, None, ClockChoice::UniformIndex);
+    let even = clock.times_s[300] - clock.times_s[299];
+    assert!((even - (clock.times_s[1] - clock.times_s[0])).abs() < 1e-9, "dropped rows were never there");
+    assert!((record.stamps_s()[300] - 3.33).abs() < 1e-9, "stamps stay as written");
+}
+
+/// Two sensors that take turns in one file: every other row is empty in the column that is read.
+#[test]
+fn rows_of_another_sensor_are_no_loss() {
+    let text = (0..2000).fold("time_s,angle_rad,other\n".to_owned(), |text, index| {
+        let time = index as f64 / 200.0;
+        let angle = 0.6 * (-0.1 * time).exp() * (8.0 * time).cos();
+        let cells = if index % 2 == 0 { format!("{angle:.7},") } else { ",1".to_owned() };
+        text + &format!("{time:.3},{cells}\n")
+    });
+    let (record, clock) = clock_with(&text, Missing::Segment, None, ClockChoice::Auto);
+    assert_eq!((record.len(), clock.statistics.gaps, clock.statistics.lost), (1000, 0, 0));
+    assert!((clock.times_s[999] - clock.times_s[0] - 9.99).abs() < 1e-9, "{}", clock.reason);
+}
+
+/// Stamps of bursts with a hole: groups are numbered by rows, and nothing counts as lost beside these.
+#[test]
+fn bursts_with_missing_cells_have_lost_nothing() {
+    let text =
+        with_a_hole("time_s,angle_rad", |index, _, cell| format!("{:.3},{cell}", (index / 8) as f64 * 0.08));
+    let (_, clock) = clock_with(&text, Missing::Segment, None, ClockChoice::Auto);
+    assert_eq!(clock.kind, ClockKind::UniformIndex, "{}", clock.reason);
+    assert_eq!((clock.statistics.lost, clock.statistics.largest_group), (0, 8));
+    let step = clock.times_s[300] - clock.times_s[299];
+    assert!((step - 0.34).abs() < 1e-3, "{step}");
 }
 
 #[test]
@@ -210,6 +279,53 @@ fn odd_rates_and_angles_are_remarked() {
         },
     );
     assert!(source.findings.is_empty(), "{:?}", source.findings);
+}
+
+/// A bare column is taken to be in SI units, and that is said where its numbers are rather those of another unit.
+#[test]
+fn numbers_that_are_rather_in_another_unit_are_told() {
+    let told = |header: &str, value: &dyn Fn(f64) -> f64| {
+        let (_, source) = read(&file(header, |_, t, a| format!("{t:.2},{:.6}", value(a))));
+        assert!(source.reading.sentence.contains("(assumed)"), "{}", source.reading.sentence);
+        source.findings.join(" ")
+    };
+    let said = told("time_s,angle", &|a| 5.0 * a);
+    assert!(
+        said.contains("if they are degrees (a factor of 57.3), 2.9 of them, set `data.unit` to deg"),
+        "{said}"
+    );
+    assert_eq!(told("time_s,angle", &|a| a), "");
+    let said = told("time_s,gyro_z", &|a| 400.0 * a);
+    assert!(said.contains("degrees a second (a factor of 57.3), set `data.unit` to deg/s"), "{said}");
+    assert_eq!(told("time_s,gyro_z", &|a| 10.0 * a), "");
+    let said = told("time_s,acc_x", &|a| 1.0 + 0.2 * a);
+    assert!(said.contains("in g (a factor of 9.81), set `data.unit` to g"), "{said}");
+    assert_eq!(told("time_s,acc_x", &|a| 2.0 * a), "");
+}
+
+#[test]
+fn a_unit_that_is_not_known_is_told() {
+    let (_, source) =
+        read(&file("time_s,angle [grd],torque [lbf ft]", |_, t, a| format!("{t:.2},{a:.6},0.1")));
+    let said = source.findings.join(" ");
+    assert!(said.contains("the header `angle [grd]` states `grd`, which is no known unit"), "{said}");
+    assert!(said.contains("`lbf ft`") && said.contains("set `data.input_unit`"), "{said}");
+    let (_, source) = read(&file("time_s,angle (deg)", |_, t, a| format!("{t:.2},{a:.6}")));
+    assert!(source.findings.is_empty(), "{:?}", source.findings);
+}
+
+#[test]
+fn torques_in_kilogram_force_are_converted() {
+    for (header, factor) in [
+        ("t,angle_rad,torque [kgf m]", 9.806_65),
+        ("t,angle_rad,torque (kg cm)", 0.098_066_5),
+        ("t,angle_rad,torque_kgf_cm", 0.098_066_5),
+        ("t,angle_rad,force [kgf]", 9.806_65),
+    ] {
+        let (record, source) = read(&file(header, |_, t, a| format!("{t},{a},2")));
+        assert!((record.input().unwrap()[0] - 2.0 * factor).abs() < 1e-12, "{header}");
+        assert!(source.findings.is_empty(), "{header}: {:?}", source.findings);
+    }
 }
 
 #[test]

@@ -35,6 +35,9 @@ pub enum Unit {
     Ampere,
     Milliampere,
     Millivolt,
+    KilogramForce,
+    KilogramForceMeter,
+    KilogramForceCentimeter,
 }
 
 /// Dimension of a quantity: what an observed column can be and what an input is.
@@ -56,6 +59,8 @@ type Row = (Unit, &'static str, f64, &'static str, Dimension, usize, &'static [&
 
 const DEGREE: f64 = std::f64::consts::PI / 180.0;
 const TURN: f64 = std::f64::consts::TAU;
+/// Standard gravity, in m/s².
+const GRAVITY: f64 = 9.806_65;
 
 use Dimension::{Angle, Drive, Length, Voltage};
 
@@ -81,7 +86,7 @@ const TABLE: &[Row] = &[
     (Unit::RadianPerSecondSquared, "rad/s^2", 1.0, "rad/s^2", Angle, 2, &["rad_s2", "rad/s2", "rad/s²", "rad/s/s", "rad_per_s2"]),
     (Unit::DegreePerSecondSquared, "deg/s^2", DEGREE, "rad/s^2", Angle, 2, &["deg_s2", "deg/s2", "deg/s²", "°/s²", "°/s^2"]),
     (Unit::MeterPerSecondSquared, "m/s^2", 1.0, "m/s^2", Length, 2, &["m_s2", "m/s2", "m/s²", "m/s/s", "m/sec^2", "m/s**2", "m_per_s2"]),
-    (Unit::StandardGravity, "g", 9.806_65, "m/s^2", Length, 2, &["g0", "gn"]),
+    (Unit::StandardGravity, "g", GRAVITY, "m/s^2", Length, 2, &["g0", "gn"]),
     (Unit::NewtonMeter, "N m", 1.0, "N m", Drive, 0, &["nm", "n_m", "n*m", "n·m", "n-m", "newtonmeter", "newtonmeters"]),
     (Unit::MillinewtonMeter, "mN m", 1e-3, "N m", Drive, 0, &["mnm", "mn_m", "mn*m", "mn·m"]),
     (Unit::Newton, "N", 1.0, "N", Drive, 0, &["newton", "newtons"]),
@@ -90,6 +95,9 @@ const TABLE: &[Row] = &[
     (Unit::Ampere, "A", 1.0, "A", Drive, 0, &["amp", "amps", "ampere", "amperes"]),
     (Unit::Milliampere, "mA", 1e-3, "A", Drive, 0, &["milliamp", "milliamps"]),
     (Unit::Millivolt, "mV", 1e-3, "V", Voltage, 0, &["millivolt", "millivolts"]),
+    (Unit::KilogramForce, "kgf", GRAVITY, "N", Drive, 0, &["kp", "kilopond", "kg_f"]),
+    (Unit::KilogramForceMeter, "kgf m", GRAVITY, "N m", Drive, 0, &["kgf_m", "kgf*m", "kgf·m", "kgf-m", "kgm", "kg_m", "kg*m", "kg·m", "kg-m"]),
+    (Unit::KilogramForceCentimeter, "kgf cm", 1e-2 * GRAVITY, "N m", Drive, 0, &["kgf_cm", "kgf*cm", "kgf·cm", "kgf-cm", "kgcm", "kg_cm", "kg*cm", "kg·cm", "kg-cm"]),
 ];
 
 impl Unit {
@@ -101,8 +109,8 @@ impl Unit {
 
     /// Symbol of every unit that an input can have, as configurations write it.
     pub const INPUT_NAMES: &'static [&'static str] = &[
-        "N m", "mN m", "N", "mN", "kN", "V", "mV", "A", "mA", "rad", "deg", "mrad", "turn", "m", "cm", "mm",
-        "um", "in", "rad/s", "deg/s", "rpm", "m/s", "cm/s", "mm/s",
+        "N m", "mN m", "kgf m", "kgf cm", "N", "mN", "kN", "kgf", "V", "mV", "A", "mA", "rad", "deg", "mrad",
+        "turn", "m", "cm", "mm", "um", "in", "rad/s", "deg/s", "rpm", "m/s", "cm/s", "mm/s",
     ];
 
     /// The unit with a symbol or another spelling, such as `deg`, `degrees` or `°`.

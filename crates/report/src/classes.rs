@@ -2,6 +2,7 @@
 
 use results::{ClassRow, DiagnosisResult, EffectRow, KindRow, VerdictStatus};
 
+use crate::factors;
 use crate::format::{
     self, UNDETERMINED, estimate, plain_spaces, quantity, share_with_interval, significant, unit,
 };
@@ -333,7 +334,8 @@ pub fn is_calibrated_already(result: &DiagnosisResult) -> bool {
         && result.gap.nominal <= OF_NO_SIZE * result.gap.recalibrated
 }
 
-/// The verdict in one or two sentences: what is certain, what is likely, what is open, and how much of the gap has no name.
+/// The verdict in a few sentences: what is certain, what is likely, what is open, how much of the gap has no name, and whether
+/// a unit seems mistaken.
 #[must_use]
 pub fn verdict_sentence(result: &DiagnosisResult) -> String {
     let floor = floor(result);
@@ -366,7 +368,8 @@ pub fn verdict_sentence(result: &DiagnosisResult) -> String {
             remaining(result),
         ),
     };
-    plain_spaces(&text)
+    let units = factors::of_units(&result.calibration).map_or_else(String::new, |said| format!(" {said}"));
+    plain_spaces(&(text + &units))
 }
 
 /// The sentence where effects are named.

@@ -62,13 +62,17 @@ pub fn count(value: u64) -> String {
     typeset(&value.to_string())
 }
 
+/// Standard error relative to its value below which it is left out.
+const NO_ERROR: f64 = 1e-9;
+
 /// Value and standard error, in the same unit: `0.008753 ± 0.000021`, `(3.12 ± 0.05) × 10⁻⁷`.
 ///
 /// Without a standard error that says anything (zero, negative, not finite), the value to seven
 /// significant digits.
 #[must_use]
 pub fn with_uncertainty(value: f64, std_error: f64) -> String {
-    if !value.is_finite() || !std_error.is_finite() || std_error <= 0.0 {
+    // An error of rounding alone would ask for digits that nobody reads.
+    if !value.is_finite() || !std_error.is_finite() || std_error <= NO_ERROR * value.abs() {
         return significant(value, 7);
     }
     let exponent = exponent_after_rounding(value.abs().max(std_error), 1);
@@ -359,6 +363,7 @@ mod tests {
     fn an_uncertainty_below_a_double_invents_no_digits() {
         let text = with_uncertainty(0.190_961, 1e-30);
         assert!(text.len() < 50, "{text}");
+        assert_eq!(with_uncertainty(200.0, 1e-14), "200.0000");
     }
 
     #[test]

@@ -16,6 +16,7 @@ mod classes;
 mod comparison;
 mod diagnosis;
 mod error;
+mod factors;
 mod figures;
 mod fleet;
 pub mod format;

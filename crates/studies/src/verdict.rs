@@ -1,7 +1,7 @@
 //! What the scores of a problem come to, in sentences that claim no more than they carry.
 
 use report::format;
-use results::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
+use results::{HeldOutScore, NOT_BEGUN, PredictionOutcome, PredictionRow, ProblemStudy};
 
 /// Names in one list, beyond which the rest is counted.
 const MOST_NAMES: usize = 6;
@@ -10,6 +10,10 @@ const MOST_NAMES: usize = 6;
 /// who worse, and who cannot be told from it. The last stretch of a record is one trial, of which no test
 /// can be made.
 pub(crate) fn verdict(study: &ProblemStudy, significance: f64) -> Vec<String> {
+    let waits = |row: &PredictionRow| matches!(&row.outcome, PredictionOutcome::Failed { reason } if reason == NOT_BEGUN);
+    if !study.methods.is_empty() && study.methods.iter().all(waits) {
+        return vec!["Interrupted before a method was fitted: nothing is compared.".to_owned()];
+    }
     let mut sentences = vec![match study.comparisons {
         0 => "No method differs from the best exponential on any held-out peak.".to_owned(),
         count => format!(

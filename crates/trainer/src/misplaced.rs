@@ -8,10 +8,15 @@ use std::path::Path;
 pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     let (first, rest) = words.split_first()?;
     if first.starts_with('-') {
-        return None;
+        return of_a_diagnosis(words);
     }
     if first == "diagnose" {
-        return configuration_among_records(rest);
+        return configuration_among_records(rest)
+            .or_else(|| record_as_nominal(rest))
+            .or_else(|| absent(rest));
+    }
+    if first == "init" {
+        return toml_as_log(rest).or_else(|| absent(rest));
     }
     if commands.contains(first) {
         return None;
@@ -19,7 +24,7 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     let path = Path::new(first);
     if !path.exists() && path.extension().is_none() && !first.contains(['/', '\\']) {
         let known = nearest(first, commands)?;
-        return Some(format!("`{first}` is no command and no file; did you mean `trainer {known}`?"));
+        return Some(format!("`{first}` is neither a command nor a file; did you mean `trainer {known}`?"));
     }
     if path.is_dir() {
         return folder(path, first);
@@ -52,12 +57,8 @@ fn folder(path: &Path, shown: &str) -> Option<String> {
 
 /// A TOML file among the records of a diagnosis.
 fn configuration_among_records(words: &[String]) -> Option<String> {
-    let mut previous = "";
-    for word in words {
-        let is_value = previous.starts_with("--") && !previous.contains('=');
-        previous = word;
-        let path = Path::new(word);
-        if is_value || word.starts_with('-') || path.extension().is_none_or(|extension| extension != "toml") {
+    for (word, path) in positional(words) {
+        if path.extension().is_none_or(|extension| extension != "toml") {
             continue;
         }
         return Some(if is_nominal(path) {
@@ -72,6 +73,63 @@ fn configuration_among_records(words: &[String]) -> Option<String> {
         });
     }
     None
+}
+
+/// An option of `trainer diagnose` without that word in front.
+fn of_a_diagnosis(words: &[String]) -> Option<String> {
+    let option = words.iter().find(|word| ["--nominal", "--batch", "--rigs"].contains(&word.as_str()))?;
+    Some(format!(
+        "{option} is an option of `trainer diagnose`; write `trainer diagnose RECORD --nominal FILE`"
+    ))
+}
+
+/// A record in the place of the nominal simulator.
+fn record_as_nominal(words: &[String]) -> Option<String> {
+    let after = words.iter().zip(words.iter().skip(1)).find(|(option, _)| *option == "--nominal");
+    let joined = words.iter().find_map(|word| word.strip_prefix("--nominal="));
+    let file = after.map(|(_, file)| file.as_str()).or(joined)?;
+    is_record(Path::new(file)).then(|| {
+        format!(
+            "{file} is a record, not a nominal simulator; --nominal takes a TOML file with inertia, damping, stiffness and \
+             rest_angle: `trainer init {file}` writes one"
+        )
+    })
+}
+
+/// A TOML file in the place of a log.
+fn toml_as_log(words: &[String]) -> Option<String> {
+    let (word, path) =
+        positional(words).find(|(_, path)| path.extension().is_some_and(|end| end == "toml"))?;
+    let (what, call) = match is_nominal(path) {
+        true => ("describes a nominal simulator", format!("trainer diagnose RECORD --nominal {word}")),
+        false => ("is a configuration", format!("trainer {word}")),
+    };
+    Some(format!("{word} {what}, not a log; `trainer init LOG` looks at a log, `{call}` uses this file"))
+}
+
+/// A record that is not there, with the nearest name in its folder.
+fn absent(words: &[String]) -> Option<String> {
+    let (word, path) = positional(words).find(|(_, path)| !path.exists())?;
+    let own = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let entries = std::fs::read_dir(own).ok()?;
+    let mut known: Vec<String> = entries
+        .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
+        .filter(|name| is_record(&own.join(name)))
+        .collect();
+    known.sort();
+    let shown = own.join(nearest(&path.file_name()?.to_string_lossy(), &known)?);
+    let shown = shown.strip_prefix(".").unwrap_or(&shown).display();
+    Some(format!("{word}: there is no such file; did you mean {shown}?"))
+}
+
+/// Words that are no options and follow none: an option without a value hides the word behind it, and nothing is said of that.
+fn positional(words: &[String]) -> impl Iterator<Item = (&str, &Path)> {
+    let before = std::iter::once("").chain(words.iter().map(String::as_str));
+    let follows_none = |(before, word): &(&str, &String)| {
+        let is_value = before.starts_with("--") && !before.contains('=');
+        !is_value && !word.starts_with('-')
+    };
+    before.zip(words).filter(follows_none).map(|(_, word)| (word.as_str(), Path::new(word)))
 }
 
 /// Whether a file is TOML with the keys of a nominal simulator.

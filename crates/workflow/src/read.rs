@@ -6,6 +6,7 @@ use dynamics::Coordinate;
 use dynamics::chain::Observed;
 use experiment::StatedNominal;
 use record::{Clock, ClockChoice, Fault, Origin, Quantity, ReadOptions, Record, Source, Statements, Unit};
+use report::format::{quantity, significant};
 use results::{DataSummary, RecordRow};
 use std::path::Path;
 
@@ -171,7 +172,12 @@ impl Loaded {
                 duration_s: first.zip(last).map_or(0.0, |(first, last)| last - first),
                 clock: summary.clock,
                 clock_reason: summary.clock_reason,
-                findings: summary.findings.iter().map(|finding| in_options(finding)).collect(),
+                findings: summary
+                    .findings
+                    .iter()
+                    .map(|finding| in_options(finding))
+                    .chain(bias(record))
+                    .collect(),
                 reading: summary.reading,
             },
             quantity: record.quantity(),
@@ -230,13 +236,51 @@ pub fn centered(record: &Record) -> Result<Record, Fault> {
         let mean = values.iter().sum::<f64>() / values.len() as f64;
         values.iter().map(|value| value - mean).collect()
     };
-    Record::new(
+    let centered = Record::new(
         record.stamps_s().to_vec(),
         center(record.values()),
         record.input().map(center),
         record.quantity(),
         record.unit(),
-    )
+    )?;
+    Ok(match record.rows() {
+        Some(rows) => centered.with_rows(rows.to_vec()),
+        None => centered,
+    })
+}
+
+/// Part of half their range that values have to pass, to either side, for a half swing to count.
+const HALF_SWING: f64 = 0.1;
+
+/// A sentence where a velocity or an acceleration has a mean that no free swing has, as of a sensor's bias or of gravity; none
+/// with an input, which may push to one side.
+///
+/// The mean of a rate is what the swing changes by over the time: 2A/T at most. Of n half swings of amplitude A it is at most 2/(πn)
+/// of the rate's own amplitude.
+#[must_use]
+pub fn bias(record: &Record) -> Option<String> {
+    if record.quantity() == Quantity::Position || record.input().is_some() {
+        return None;
+    }
+    let values = record.values();
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let half = 0.5 * (highest - lowest);
+    let (mut swings, mut side) = (0, 0.0);
+    for off in values.iter().map(|value| value - mean).filter(|off| off.abs() > HALF_SWING * half) {
+        swings += usize::from(off.signum() != side);
+        side = off.signum();
+    }
+    let most = 2.0 / (std::f64::consts::PI * swings.saturating_sub(1).max(1) as f64) * half;
+    (mean.abs() > most).then(|| {
+        let what = if record.quantity() == Quantity::Velocity { "velocity" } else { "acceleration" };
+        format!(
+            "the values average {}, which the {what} of a free swing does not: a sensor's bias, or gravity, for which an effect \
+             would be named; subtract it with --remove-mean",
+            quantity(&significant(mean, 3), record.unit())
+        )
+    })
 }
 
 /// The simulator's name for what the sensor observes.

@@ -3,6 +3,7 @@
 pub(crate) mod knots;
 pub(crate) mod observations;
 pub(crate) mod period;
+pub(crate) mod pieces;
 pub(crate) mod release;
 pub(crate) mod scales;
 pub(crate) mod segments;

@@ -20,6 +20,22 @@ pub struct Observations {
     pub(crate) stamps: StampStatistics,
     /// The sensor's step, where the values lie on a lattice.
     pub(crate) resolution: Option<f64>,
+    /// Samples that come after rows without a value.
+    pub(crate) after_gaps: Vec<usize>,
+}
+
+/// Usual steps in rows that a gap is longer than: a row or two leave the samples beside them near enough.
+const STEPS: usize = 3;
+
+/// Samples that come after a gap in the rows.
+fn after_gaps(record: &Record) -> Vec<usize> {
+    let rows = record.rows().unwrap_or_default();
+    let steps: Vec<usize> = rows.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
+    let mut ordered = steps.clone();
+    ordered.sort_unstable();
+    // Without rows there is no step.
+    let usual = ordered.get(ordered.len() / 2).copied().unwrap_or(1);
+    steps.iter().enumerate().filter(|(_, step)| **step > STEPS * usual).map(|(at, _)| at + 1).collect()
 }
 
 impl Observations {
@@ -43,6 +59,7 @@ impl Observations {
             },
             stamps: clock.statistics.clone(),
             resolution: record.lattice().map(|lattice| lattice.step),
+            after_gaps: after_gaps(record),
         }
     }
 

@@ -5,6 +5,7 @@
 
 use crate::data::observations::Observations;
 use crate::data::period::swing;
+use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
 use crate::model::matrices::element;
@@ -45,8 +46,8 @@ const FEW_STEPS: f64 = 2.5;
 const VISIBLE: f64 = 0.02;
 
 /// Factor between measured and nominal period from which on they are not the same system: a spring that misses a weight
-/// swings several times slower, and a unit that is wrong makes a factor of 2π at least.
-const ANOTHER_SYSTEM: f64 = 5.0;
+/// swings more than twice as slowly, and a unit that is wrong makes a factor of √9.81 at least.
+const ANOTHER_SYSTEM: f64 = 3.0;
 
 /// A stretch of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,6 +64,8 @@ pub(crate) struct Segment {
     pub(crate) parts: Vec<usize>,
     /// A start state to begin a fit from: position and velocity.
     pub(crate) guess: [f64; 2],
+    /// Which of the stretches between gaps of the input it lies in: segments of two stretches are never joined.
+    pub(crate) stretch: usize,
 }
 
 /// All segments, and what is common to them.
@@ -201,15 +204,9 @@ pub(crate) fn cut(
         let times: Vec<f64> = only(&record.times_s, kept);
         let values: Vec<f64> = only(&record.values, kept);
         let (count, length, end) = cuts(record, simulator, period_s, &times, &values);
-        let mut own: Vec<(Vec<f64>, Vec<f64>)> = vec![(Vec::new(), Vec::new()); count];
-        for (&time, &value) in times.iter().zip(&values).take_while(|(time, _)| **time <= end) {
-            let at = ((time / length) as usize).min(count - 1);
-            if let Some((times, values)) = own.get_mut(at) {
-                times.push(time);
-                values.push(value);
-            }
-        }
-        for (at, (times, values)) in own.into_iter().enumerate() {
+        let samples = times.iter().copied().zip(values.iter().copied());
+        let samples = samples.take_while(|(time, _)| *time <= end);
+        for Piece { at, stretch, times, values } in pieces(record, (count, length), samples) {
             // Dropouts may empty a segment; what is left of it says nothing against two free start values.
             if times.len() < FEWEST_PER_SEGMENT / 2 {
                 continue;
@@ -219,8 +216,9 @@ pub(crate) fn cut(
             }
             let guess = guess(&times, &values, record.quantity, &facts, period_s, simulator);
             let still = values.iter().zip(values.iter().skip(1)).all(|(before, after)| before == after);
-            let first = at == 0 && kept.first() == Some(&true);
-            segments.push(Segment { record: number, first, times, values, still, parts: vec![0], guess });
+            let first = at == 0 && stretch == 0 && kept.first() == Some(&true);
+            let (record, parts) = (number, vec![0]);
+            segments.push(Segment { record, first, times, values, still, parts, guess, stretch });
         }
     }
     if segments.is_empty() {

@@ -33,7 +33,9 @@ impl Data {
         let mut members = 0;
         for segment in &self.segments {
             match segments.last_mut() {
-                Some(last) if last.record == segment.record && members < by => {
+                Some(last)
+                    if (last.record, last.stretch) == (segment.record, segment.stretch) && members < by =>
+                {
                     last.parts.extend(segment.parts.iter().map(|part| part + last.times.len()));
                     last.times.extend(&segment.times);
                     last.values.extend(&segment.values);

@@ -104,6 +104,7 @@ fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), Dyn
                 times,
                 parts: segment.parts.clone(),
                 guess: [0.0; 2],
+                stretch: 0,
             };
             let predicted = then.predict(&fresh, &state)?.residual;
             fresh.values = predicted.iter().map(|residual| -residual).collect();

@@ -168,7 +168,8 @@ impl Hypothesis {
         let plain = |which: Calibrated| Parameter {
             name: which.name(),
             lower: match which {
-                Calibrated::Inertia => 1e-3 * facts.inertia,
+                // Units mistaken for one another put it a thousand times off.
+                Calibrated::Inertia => 1e-6 * facts.inertia,
                 Calibrated::Damping | Calibrated::Stiffness => 0.0,
                 Calibrated::RestAngle | Calibrated::Effect { .. } => f64::NEG_INFINITY,
             },

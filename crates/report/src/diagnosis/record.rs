@@ -1,10 +1,11 @@
 //! The record against the simulators, and what each leaves over.
 
-use results::{DiagnosisResult, SeriesRow};
+use results::{DiagnosisResult, RecordRow, SeriesRow};
 
 use super::figures::{Simulator, framed, recorded};
+use crate::classes::listed;
 use crate::figures::{Figure, csv, number};
-use crate::format;
+use crate::format::{self, quantity, significant};
 use crate::plot::{Axis, BREAK, Hue, Mark, Plot, Series};
 
 /// Samples of the worst stretch that are shown: a few periods of an ordinary record.
@@ -111,14 +112,36 @@ fn overview(result: &DiagnosisResult, rows: &[SeriesRow], worst: &Worst<'_>) -> 
     let series = by_record(result, rows, "recorded", |row| row.observed);
     let plot = Plot { x: time(), y: observed_axis(result), series, shaded: vec![worst.span()] };
     let drawing = plot.draw("What was recorded, over time.")?;
-    let explanation =
+    let explanation = format!(
         "What was recorded, on the clock that is believed. Shaded: the stretch in which the recalibrated \
-                       simulator is farthest off, enlarged below."
-            .to_owned();
+         simulator is farthest off, enlarged below.{}",
+        left_out(result, rows).map_or_else(String::new, |said| format!(" {said}"))
+    );
     let table = csv(&["record", "time_s", "observed"], rows, |row: &SeriesRow| {
         vec![row.record.to_string(), number(row.time_s), number(row.observed)]
     });
     Some(framed("record", "The record".to_owned(), explanation, drawing, table))
+}
+
+/// Part of a record from which on it is said that its end is not shown.
+const LEFT_OUT: f64 = 0.02;
+
+/// A sentence on the end of a record that no plot shows, since nothing moves there.
+fn left_out(result: &DiagnosisResult, rows: &[SeriesRow]) -> Option<String> {
+    let still = |(index, record): (usize, &RecordRow)| {
+        let number = index + 1;
+        let own = rows.iter().filter(|row| row.record == number);
+        let last = own.map(|row| row.time_s).fold(f64::NEG_INFINITY, f64::max);
+        let left = record.duration_s - last;
+        (last.is_finite() && left > LEFT_OUT * record.duration_s).then(|| {
+            let which = if result.records.len() > 1 { format!(" of record {number}") } else { String::new() };
+            format!("the last {}{which}", quantity(&significant(left, 3), "s"))
+        })
+    };
+    let ends: Vec<String> = result.records.iter().enumerate().filter_map(still).collect();
+    // A long record is thinned by whole stretches, of which the last may be one.
+    let why = if result.samples_used < 0.9999 { "" } else { ", in which nothing moves visibly" };
+    (!ends.is_empty()).then(|| format!("Not shown and not fitted: {}{why}.", listed(&ends, "and")))
 }
 
 /// Steps between samples, in units of the usual one, beyond which samples are missing.

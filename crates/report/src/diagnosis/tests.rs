@@ -229,6 +229,23 @@ fn a_status_that_there_is_not_is_refused_with_those_that_there_are() {
     assert!(refused.contains("unknown variant `asleep`, expected one of `none`, `calibration`"), "{refused}");
 }
 
+/// The plots had ended where the swing does, and nothing said that the record goes on.
+#[test]
+fn a_still_end_that_no_plot_shows_is_told() {
+    let rows: Vec<SeriesRow> = (0..50).map(|index| row(1, 1, 0.1 * f64::from(index), 0.2)).collect();
+    let of = |duration: f64, used: f64| {
+        let mut result = small();
+        result["samples_used"] = json!(used);
+        result["records"] = json!([{ "path": "a.csv", "digest": "", "origin": "unstated", "samples": 50,
+            "duration_s": duration, "clock": "host", "clock_reason": "", "findings": [] }]);
+        crate::format::plain_spaces(&page(&result, &table(&rows)))
+    };
+    let still = "Not shown and not fitted: the last 15.1 s, in which nothing moves visibly.";
+    assert!(of(20.0, 1.0).contains(still));
+    assert!(of(20.0, 0.5).contains("Not shown and not fitted: the last 15.1 s."));
+    assert!(!of(4.9, 1.0).contains("Not shown"));
+}
+
 #[test]
 fn what_comes_from_files_is_escaped() {
     const EVIL: &str = "<script>alert(1)</script>\"'&$x$";

@@ -120,7 +120,7 @@ pub(crate) struct Reading {
     /// Lines to read, where a file holds several series: --where joint=elbow
     #[arg(long = "where", value_name = "COLUMN=VALUE", value_parser = filter)]
     pub(crate) filter: Option<String>,
-    /// Cells without a number: leave a gap (segment), close the gap in a file without a time column (drop), or refuse the file
+    /// What cells without a number are: a gap (segment), rows that the file never had (drop), or an error (refuse)
     #[arg(long, value_name = "CHOICE", default_value = "segment",
           value_parser = PossibleValuesParser::new(Missing::NAMES))]
     pub(crate) missing: String,

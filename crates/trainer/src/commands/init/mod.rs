@@ -4,6 +4,7 @@ use crate::commands::diagnose::arguments::Reading;
 use crate::error::TrainerError;
 use crate::options::Output;
 use crate::outcome::Outcome;
+use crate::own_program::own_program;
 use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
@@ -13,7 +14,7 @@ use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
 use workflow::guess as files;
-use workflow::read::{centered, coordinate_of};
+use workflow::read::{bias, centered, coordinate_of};
 use workflow::{WorkflowError, in_options};
 
 /// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
@@ -87,7 +88,13 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let nominal = folder.join("nominal.toml");
     let mut next = vec![(
         "what a linear oscillator with these numbers lacks",
-        format!("trainer diagnose {} --nominal {}{}", word(&name), path_word(&nominal), given(reading)),
+        format!(
+            "trainer diagnose {} --nominal {}{}{}",
+            word(&name),
+            path_word(&nominal),
+            given(reading),
+            bias(&look.record).map_or("", |_| " --remove-mean")
+        ),
     )];
     // Only a free decay has an envelope to estimate a damping ratio from.
     if oscillator.input_gain.is_none() {
@@ -164,10 +171,11 @@ impl Found {
         let next: Vec<String> =
             self.next.iter().map(|(what, command)| format!("  {command}\n      {what}")).collect();
         format!(
-            "{}\n\n{}\n\nwrote {}\n\nnext:\n{}",
+            "{}\n\n{}\n\nwrote {}\n\nnext{}:\n{}",
             self.look.source.path,
             table(&[], rows),
             written.collect::<Vec<_>>().join(" and "),
+            if is_built_here() { " (for trainer, type cargo run -p trainer --)" } else { "" },
             next.join("\n")
         )
     }
@@ -178,8 +186,15 @@ impl Found {
     }
 
     fn findings(&self) -> Vec<String> {
-        self.look.source.findings.iter().map(|finding| in_options(finding)).collect()
+        let read = self.look.source.findings.iter().map(|finding| in_options(finding));
+        read.chain(bias(&self.look.record)).collect()
     }
+}
+
+/// Whether the program runs from the folder that cargo builds into, where no shell finds it by its name.
+fn is_built_here() -> bool {
+    let program = own_program().unwrap_or_default();
+    program.ancestors().skip(1).take(2).any(|folder| folder.ends_with("target"))
 }
 
 fn uncertain(estimated: Estimated) -> String {
