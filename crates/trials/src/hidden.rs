@@ -1,5 +1,6 @@
 //! What a case hides.
 
+use dynamics::Active;
 use serde::{Deserialize, Serialize};
 
 /// The `schema` of a hidden truth's text.
@@ -51,6 +52,24 @@ pub(crate) enum Asked {
 }
 
 impl Hidden {
+    /// The truth of a case in which nothing acts; struct update adds what does.
+    pub(crate) fn nothing(bank: Bank, noise: f64, made: String) -> Self {
+        Self {
+            schema: HIDDEN_SCHEMA.to_owned(),
+            bank,
+            effects: Vec::new(),
+            foreign: None,
+            unlisted: Vec::new(),
+            allowed: Vec::new(),
+            nuisances: Vec::new(),
+            miscalibrated: false,
+            without: None,
+            noise,
+            records: Vec::new(),
+            made,
+        }
+    }
+
     /// What the case asks of an answer.
     pub(crate) fn asked(&self) -> Asked {
         match self {
@@ -159,4 +178,20 @@ pub struct HiddenEffect {
     /// The same as a root mean square in place of the root of the sum: × noise. Only where several effects act.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floors: Option<f64>,
+}
+
+impl HiddenEffect {
+    /// Effects that act by the vocabulary's law, each with its detectability, the most detectable first.
+    pub(crate) fn by_the_vocabulary(hidden: &[(Active, f64)]) -> Vec<Self> {
+        let effect = |(active, detectability): &(Active, f64)| Self {
+            id: active.id().to_owned(),
+            parameters: active.values().to_vec(),
+            law: "vocabulary".to_owned(),
+            detectability: *detectability,
+            floors: None,
+        };
+        let mut effects: Vec<Self> = hidden.iter().map(effect).collect();
+        effects.sort_by(|one, other| other.detectability.total_cmp(&one.detectability));
+        effects
+    }
 }

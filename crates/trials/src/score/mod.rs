@@ -2,7 +2,6 @@
 
 pub(crate) mod accuracy;
 mod bars;
-mod class;
 mod classes;
 #[cfg(test)]
 mod classes_tests;
@@ -178,6 +177,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
     TrialCaseRow {
         id: judgment.case.id.clone(),
         bank: judgment.bank().name().to_owned(),
+        // Where nothing acts the cell is empty.
         hidden: if ids.is_empty() { judgment.foreign_law().unwrap_or_default() } else { ids.join("+") },
         size: sizes.join("+"),
         status: judgment.said.name().to_owned(),
