@@ -31,6 +31,14 @@ pub struct BaselineRecord {
     pub input: Option<Vec<f64>>,
 }
 
+impl BaselineRecord {
+    /// Returns whether every time has its value, and its input where there is one.
+    fn is_whole(&self) -> bool {
+        let count = self.times_s.len();
+        self.values.len() == count && self.input.as_ref().is_none_or(|input| input.len() == count)
+    }
+}
+
 /// Always the effect that most cases of a single effect hide: what knowing the frequencies alone is worth.
 #[must_use]
 pub fn most_common(cases: &[AnsweredCase]) -> Baseline {
