@@ -5,7 +5,8 @@ use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// A Modelica model that starts where the first record does.
+/// Writes a Modelica model, `Repaired`, that starts where the first record does. Parameters are in SI units, or per inertia where
+/// the inertia is 1; `u` is the input of a driven system, and what Modelica cannot hold stands in a comment.
 #[must_use]
 pub fn modelica(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);

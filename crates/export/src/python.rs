@@ -5,8 +5,8 @@ use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// A Python module: `rhs` for `scipy.integrate.solve_ivp`, the start state of the first record, and a simulation of it
-/// when it is run.
+/// Writes a Python module: `rhs(time, state)` for `scipy.integrate.solve_ivp`, where the state is position, velocity and what
+/// hidden states the effects have; the start state of the first record; and a simulation of it when the module is run.
 #[must_use]
 pub fn python(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);

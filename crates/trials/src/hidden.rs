@@ -103,7 +103,7 @@ impl Bank {
     }
 }
 
-/// What a case hides, and whatever else its records follow from.
+/// Hidden truth of a case: effects, and whatever else its records follow from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hidden {
@@ -113,7 +113,7 @@ pub struct Hidden {
     pub bank: Bank,
     /// The hidden effects of the vocabulary, the most detectable first; empty where none is.
     pub effects: Vec<HiddenEffect>,
-    /// What acts from outside the vocabulary.
+    /// Law from outside the vocabulary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foreign: Option<Foreign>,
     /// Smooth laws outside the vocabulary that act beside the hidden effects, or alone where they are too small to ask
@@ -126,7 +126,7 @@ pub struct Hidden {
     /// Ids of effects of the measurement chain that come with records of every bank alike. They count neither for nor
     /// against an answer.
     pub nuisances: Vec<String>,
-    /// Whether the nominal coefficients are off.
+    /// True if the nominal coefficients are off.
     pub miscalibrated: bool,
     /// The effect that the diagnosis is told not to consider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -136,7 +136,7 @@ pub struct Hidden {
     /// The system as it is, where it can be said in the vocabulary: a repaired simulator is laid beside its motion.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<truth::Truth>,
-    /// How the records were made, in words; for whoever repeats one.
+    /// Origin of the records, in words; for whoever repeats one.
     pub made: String,
 }
 
@@ -144,7 +144,7 @@ pub struct Hidden {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
-    /// What it is, in words.
+    /// Law, in words.
     pub law: String,
     /// Its size in noise units: what neither a recalibration nor the vocabulary nearest to it can absorb.
     pub detectability: f64,
@@ -153,7 +153,7 @@ pub struct Foreign {
 /// A smooth law outside the vocabulary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unlisted {
-    /// What it is, in words.
+    /// Law, in words.
     pub law: String,
     /// Root mean square of what no recalibration can absorb of it, over the noise's standard deviation.
     pub floors: f64,
@@ -175,7 +175,7 @@ pub struct HiddenEffect {
     /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration
     /// can absorb of it, over the noise's standard deviation.
     pub detectability: f64,
-    /// The same as a root mean square in place of the root of the sum: × noise. Only where several effects act.
+    /// Size as a root mean square in place of the root of the sum: × noise. Only where several effects act.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floors: Option<f64>,
 }

@@ -9,12 +9,12 @@ use crate::score::{AnsweredCase, Judgment, accuracy, proportion};
 use results::{BaselineRow, SizeRow};
 use std::collections::BTreeMap;
 
-/// What a simpler diagnoser said of every case.
+/// Answers of a simpler diagnoser to every case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
     /// Its id.
     pub id: String,
-    /// What it does, in a sentence.
+    /// Method, in a sentence.
     pub method: String,
     /// The effect that it names, `None` for nothing; case by case.
     pub answers: Vec<Option<String>>,

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Id of this baseline.
 pub const WEAK_FORM: &str = "weak-form";
 
-/// What it does, in a sentence.
+/// Method, in a sentence.
 pub const WEAK_FORM_METHOD: &str = "weak-form sparse regression with one term for each of ten effects, the one that explains \
     most is named; it has no term for forcing, a second body, delays or the measurement chain";
 
@@ -142,7 +142,7 @@ impl<'a> Motion<'a> {
         Self { record, velocity, amplitude, speed, bristle }
     }
 
-    /// Whether the body moves all through a window: at rest dry friction is whatever holds it, and no term says that.
+    /// Returns whether the body moves all through a window: at rest dry friction is whatever holds it, and no term says that.
     fn swings(&self, center: f64, half: f64) -> bool {
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);

@@ -13,6 +13,6 @@ pub struct Case {
     pub records: Vec<String>,
     /// The text of `nominal.toml`: what is believed of the system.
     pub nominal: String,
-    /// What is hidden; whoever diagnoses must not see it.
+    /// Hidden truth; whoever diagnoses must not see it.
     pub hidden: Hidden,
 }

@@ -22,7 +22,7 @@ pub enum TrialError {
     /// A record could not be generated.
     #[error(transparent)]
     Generation(#[from] GenerationError),
-    /// What the measurement chain leaves is no record.
+    /// Remainder of the measurement chain that is no record.
     #[error("what is left is no record: {0}")]
     Fault(#[from] Fault),
     /// A file of a bank from outside cannot be read.

@@ -32,7 +32,7 @@ pub(crate) fn file_name(path: &Path) -> String {
     path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Whether a file is named `PREFIX*.csv`.
+/// Returns whether a file is named `PREFIX*.csv`.
 fn is_table(path: &Path, prefix: &str) -> bool {
     let name = file_name(path);
     name.starts_with(prefix) && name.ends_with(".csv")

@@ -41,7 +41,7 @@ pub struct TrialPlan {
 pub struct LeftOutBank {
     /// The bank.
     pub bank: Bank,
-    /// How many cases were asked for.
+    /// Number of cases that were asked for.
     pub cases: usize,
     /// Why it is left out, and what to do.
     pub reason: String,
@@ -168,7 +168,7 @@ impl TrialPlan {
         self.jobs.len()
     }
 
-    /// Whether there are no cases.
+    /// Returns whether there are no cases.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.jobs.is_empty()
@@ -198,7 +198,7 @@ impl TrialPlan {
         kind.zip(size).ok_or(TrialError::NothingInTurn { kinds, sizes })
     }
 
-    /// How many different things a bank hides, each at every detectability in turn.
+    /// Number of different things that a bank hides, each at every detectability in turn.
     #[must_use]
     pub fn variety(bank: Bank) -> usize {
         match bank {

@@ -22,7 +22,7 @@ fn probability(answer: &DiagnosisResult, class: &str, nuisances: &[String]) -> f
     own.map(|row| row.probability).sum::<f64>().min(1.0)
 }
 
-/// Whether a class can be said to act or not: not where a nuisance or a law outside the vocabulary is of it.
+/// Returns whether a class can be said to act or not: not where a nuisance or a law outside the vocabulary is of it.
 fn is_open(judgment: &Judgment<'_>, class: &str) -> bool {
     let hidden = &judgment.case.hidden;
     hidden.nuisances.iter().any(|id| class_of(id) == class)

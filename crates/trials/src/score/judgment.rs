@@ -10,7 +10,7 @@ use results::{DiagnosisResult, VerdictStatus};
 pub struct AnsweredCase {
     /// The case.
     pub id: String,
-    /// What it hid.
+    /// Hidden truth.
     pub hidden: Hidden,
     /// The answer, or why there is none.
     pub answer: Result<DiagnosisResult, String>,

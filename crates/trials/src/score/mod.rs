@@ -34,7 +34,7 @@ use results::{
 };
 use seed::Seed;
 
-/// What a score stands under.
+/// Trials that were answered, with all that a score depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// Name of the trials.
@@ -43,7 +43,7 @@ pub struct Trials {
     pub seed: u64,
     /// Banks that were not made, and why.
     pub left_out: Vec<LeftOutBank>,
-    /// What the scores have to reach.
+    /// Values that the scores have to reach.
     pub gate: Gate,
     /// Wall time so far in seconds.
     pub seconds: f64,
@@ -101,7 +101,7 @@ pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) ->
     }
 }
 
-/// Whether some bar is missed with its whole interval.
+/// Returns whether some bar is missed with its whole interval.
 #[must_use]
 pub fn misses_a_bar(result: &TrialsResult) -> bool {
     result.bars.iter().any(|bar| bar.missed_beyond_chance)

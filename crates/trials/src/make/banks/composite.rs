@@ -199,7 +199,7 @@ fn shuffled<T>(mut items: Vec<T>, draws: &mut Draws) -> Vec<T> {
     items
 }
 
-/// Whether a motion is one about the rest angle.
+/// Returns whether a motion is one about the rest angle.
 fn is_sensible(situation: &Situation, motion: &Motion) -> bool {
     let rest = situation.nominal.rest_angle();
     let near = |position: &f64| (position - rest).abs() <= LARGEST_SWING * situation.amplitude;
