@@ -53,8 +53,6 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("diagnosis", "model::predictor::predict", "not divided yet"),
     ("diagnosis", "search::refine::refine", "not divided yet"),
     ("envelope-matching", "fit::minimize", "one iteration of a published method, in its order"),
-    ("export", "modelica::modelica", "one text from its first line to its last"),
-    ("export", "python::python", "one text from its first line to its last"),
     ("gaussian-process", "fit::train", "one loop over the steps of a training"),
     ("gaussian-process", "likelihood::slope", "one derivative in closed form, term by term"),
     ("neural", "amortized::training::train", "one loop over the steps of a training"),
