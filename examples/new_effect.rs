@@ -2,8 +2,9 @@
 //!
 //! An effect is a line of the registry and cannot be added from outside of the workspace. This example makes a record of a
 //! system that has one before the program knows it, shows what the diagnosis says of such a record, and then prints
-//! the steps with the files that teach it the effect. The test `recipe::a_new_effect_takes_two_files_and_is_diagnosed` follows
-//! the same steps with the same files in a copy of the workspace.
+//! the steps with the files that teach it the effect. The test
+//! `recipe::a_new_effect_takes_three_files_and_is_diagnosed_and_hidden` follows the same steps with the same files in a copy of
+//! the workspace.
 //!
 //!     cargo run -p ringdown-lab --example new_effect
 
@@ -47,7 +48,7 @@ fn record(arm: &Nominal) -> Result<Record, Error> {
 
 // ANCHOR: main
 /// The steps of CONTRIBUTING.md: where, and what goes there.
-const STEPS: [(&str, &str); 5] = [
+const STEPS: [(&str, &str); 7] = [
     ("crates/dynamics/src/effects/sine_drag.rs", include_str!("../tests/recipe/law.rs")),
     ("crates/dynamics/src/effects/mod.rs", "mod sine_drag;\npub use sine_drag::SineDrag;\n"),
     ("crates/dynamics/src/registry.rs, under `system`", "    SineDrag,\n"),
@@ -56,6 +57,8 @@ const STEPS: [(&str, &str); 5] = [
         "crates/diagnosis/src/model/candidates/mod.rs",
         "pub(crate) mod sine_drag;\n    Candidate::new(&sine_drag::SineDrag),\n",
     ),
+    ("crates/trials/src/effects/sine_drag.rs", include_str!("../tests/recipe/trial.rs")),
+    ("crates/trials/src/effects/mod.rs", "mod sine_drag;\n    sine_drag::EFFECT,\n"),
 ];
 
 fn main() -> Result<(), Error> {

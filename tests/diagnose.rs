@@ -1,20 +1,13 @@
 //! `trainer diagnose`: what it leaves, what scripts may rely on, and that bad input gets one message and no name.
 
-use crate::support::{number, result, trainer};
+use crate::support::{self, NOMINAL, number, result, trainer};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// An oscillator of 3.5 Hz; per unit of inertia.
-pub(crate) const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
-
 /// A configuration of a short decay with dry friction that the nominal simulator lacks.
 const FRICTION: &str = r#"
 name = "friction"
-inertia = 1.0
-damping = 0.3
-stiffness = 484.0
-rest_angle = 0.0
 [record]
 rate_hz = 130.0
 seconds = 8.0
@@ -37,16 +30,8 @@ pub(crate) fn write(folder: &Path, name: &str, text: &str) -> String {
 /// A simulated record with its nominal simulator, in a scratch folder.
 fn simulated(overrides: &[&str]) -> (TempDir, String, String) {
     let scratch = tempfile::tempdir().unwrap();
-    let config = write(scratch.path(), "friction.toml", FRICTION);
-    let out = scratch.path().join("made");
-    let mut arguments = vec!["simulate", config.as_str()];
-    arguments.extend(overrides);
-    arguments.extend(["--quiet", "--out", out.to_str().unwrap()]);
-    let output = trainer(&arguments);
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    let file = |name: &str| out.join("records").join(name).to_str().unwrap().to_owned();
-    let (record, nominal) = (file("record-000.csv"), file("nominal.toml"));
-    (scratch, record, nominal)
+    let file = support::simulated(scratch.path(), FRICTION, overrides);
+    (scratch, file("record-000.csv"), file("nominal.toml"))
 }
 
 fn is_interval(value: &Value) -> bool {

@@ -1,16 +1,12 @@
 //! Nominal simulators with effects, and numbers that a record does not determine: what the whole program makes of them.
 
-use crate::support::{measured, result, trainer};
+use crate::support::{measured, result, simulated, trainer};
 use serde_json::Value;
 use std::path::Path;
 
 /// A decay with drag, and an encoder of 4096 steps a turn.
 const CONFIG: &str = r#"
 name = "drag"
-inertia = 1.0
-damping = 0.3
-stiffness = 484.0
-rest_angle = 0.0
 [record]
 rate_hz = 130.0
 seconds = 12.0
@@ -30,21 +26,12 @@ fn text(folder: &Path, name: &str) -> String {
     std::fs::read_to_string(folder.join(name)).unwrap()
 }
 
-fn simulated(folder: &Path) -> String {
-    let at = |name: &str| folder.join(name).to_str().unwrap().to_owned();
-    std::fs::write(at("drag.toml"), CONFIG).unwrap();
-    let made = trainer(&["simulate", &at("drag.toml"), "--quiet", "--out", &at("made")]);
-    assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-    at("made/records")
-}
-
 #[test]
 fn a_repaired_simulator_is_a_nominal_one_that_lacks_nothing() {
     let scratch = tempfile::tempdir().unwrap();
-    let records = simulated(scratch.path());
-    let record = format!("{records}/record-000.csv");
-    let (code, first, folder) =
-        result(&["diagnose", &record, "--nominal", &format!("{records}/nominal.toml")]);
+    let file = simulated(scratch.path(), CONFIG, &[]);
+    let record = file("record-000.csv");
+    let (code, first, folder) = result(&["diagnose", &record, "--nominal", &file("nominal.toml")]);
     assert_eq!(code, 0, "{first}");
     assert_eq!(first["verdict"]["effects"], serde_json::json!(["quadratic_drag", "sensor_quantization"]));
     let repaired = folder.path().join("repaired.toml");

@@ -146,49 +146,51 @@ fn a_new_estimator_takes_four_files_and_passes_the_battery() {
     assert!(!rough.status.success(), "{}", String::from_utf8_lossy(&rough.stdout));
 }
 
-/// A damping of one's own, from its law to the answer of a diagnosis: a file and its lines in `dynamics`, a file and its
-/// lines in `diagnosis`, and nothing else.
+/// A damping of one's own, from its law to the answer of a diagnosis and to trials that hide it: a file and its lines in each
+/// of `dynamics`, `diagnosis` and `trials`, and nothing else.
 #[test]
-fn a_new_effect_takes_two_files_and_is_diagnosed() {
+fn a_new_effect_takes_three_files_and_is_diagnosed_and_hidden() {
     let scratch = workspace();
     let home = scratch.path();
     let file = |name: &str| root().join("tests/recipe").join(name);
 
     let steps = steps("Adding an effect", "sine_drag");
     let places: Vec<_> = steps.iter().map(|step| home.join(&step[0])).collect();
-    let [law, laws, registry, candidate, candidates] = &places[..] else { panic!("{steps:?}") };
+    let [law, laws, registry, candidate, candidates, trial, trials] = &places[..] else {
+        panic!("{steps:?}")
+    };
+    // A line for the new effect below one that there is.
+    let below = |path: &Path, line: &str, new: &str| edit(path, line, &format!("{line}\n{new}"));
     fs::copy(file("law.rs"), law).unwrap();
-    edit(laws, "mod quadratic_drag;", "mod quadratic_drag;\nmod sine_drag;");
-    edit(
-        laws,
-        "pub use quadratic_drag::QuadraticDrag;",
-        "pub use quadratic_drag::QuadraticDrag;\npub use sine_drag::SineDrag;",
-    );
-    edit(registry, "    QuadraticDrag,\n", "    QuadraticDrag,\n    SineDrag,\n");
+    below(laws, "mod quadratic_drag;", "mod sine_drag;");
+    below(laws, "pub use quadratic_drag::QuadraticDrag;", "pub use sine_drag::SineDrag;");
+    below(registry, "    QuadraticDrag,", "    SineDrag,");
 
     fs::copy(file("candidate.rs"), candidate).unwrap();
-    edit(
-        candidates,
-        "pub(crate) mod quadratic_drag;",
-        "pub(crate) mod quadratic_drag;\npub(crate) mod sine_drag;",
-    );
-    edit(
+    below(candidates, "pub(crate) mod quadratic_drag;", "pub(crate) mod sine_drag;");
+    below(
         candidates,
         "    Candidate::new(&quadratic_drag::QuadraticDrag),",
-        "    Candidate::new(&quadratic_drag::QuadraticDrag),\n    Candidate::new(&sine_drag::SineDrag),",
+        "    Candidate::new(&sine_drag::SineDrag),",
     );
 
+    fs::copy(file("trial.rs"), trial).unwrap();
+    below(trials, "mod quadratic_drag;", "mod sine_drag;");
+    below(trials, "    quadratic_drag::EFFECT,", "    sine_drag::EFFECT,");
+
     let (new, longer) = added(home);
-    assert_eq!(new, [steps[3][0].as_str(), steps[0][0].as_str()]);
+    assert_eq!(new, [3, 0, 5].map(|step: usize| steps[step][0].as_str()));
     let lines: Vec<usize> = longer.iter().map(|(_, lines)| *lines).collect();
-    assert_eq!((longer.len(), lines), (3, vec![2, 2, 1]), "{longer:?}");
-    let tests = home.join("crates/diagnosis/tests");
-    fs::create_dir(&tests).unwrap();
-    fs::copy(file("diagnosed.rs"), tests.join("sine_drag.rs")).unwrap();
-    let diagnosed = test_in(home, "sine_drag", "");
-    let text = String::from_utf8_lossy(&diagnosed.stdout).into_owned();
-    assert!(diagnosed.status.success(), "{text}{}", String::from_utf8_lossy(&diagnosed.stderr));
-    assert!(text.contains("1 passed"), "{text}");
+    assert_eq!((longer.len(), lines), (4, vec![2, 2, 1, 2]), "{longer:?}");
+    for (owner, test) in [("diagnosis", "diagnosed"), ("trials", "hidden")] {
+        let tests = home.join("crates").join(owner).join("tests");
+        fs::create_dir(&tests).unwrap();
+        fs::copy(file(&format!("{test}.rs")), tests.join(format!("sine_drag_{test}.rs"))).unwrap();
+        let output = test_in(home, &format!("sine_drag_{test}"), "");
+        let text = String::from_utf8_lossy(&output.stdout).into_owned();
+        assert!(output.status.success(), "{text}{}", String::from_utf8_lossy(&output.stderr));
+        assert!(text.contains("1 passed"), "{text}");
+    }
 }
 
 /// Learners of one's own, one of each kind, written by `trainer new`: they compile, train, come back from their files and

@@ -1,16 +1,12 @@
 //! `trainer diagnose --rigs`: classes that rigs of one build share, and where their coefficients agree.
 
-use crate::support::{number, trainer};
+use crate::support::{number, simulated, trainer};
 use serde_json::Value;
 use std::path::Path;
 
 /// A rig with dry friction and a pendulum's weight, which the nominal simulator lacks.
 const RIG: &str = r#"
 name = "rig"
-inertia = 1.0
-damping = 0.3
-stiffness = 484.0
-rest_angle = 0.0
 [record]
 rate_hz = 130.0
 seconds = 8.0
@@ -29,27 +25,18 @@ parameters.angle = 1.0
 
 /// Folders of rigs `A`, `B`, … whose weights exert these torques.
 pub(crate) fn rigs(scratch: &Path, torques: &[f64]) -> Vec<String> {
-    let config = scratch.join("rig.toml");
-    std::fs::write(&config, RIG).unwrap();
-    ["A", "B", "C"]
-        .iter()
-        .zip(torques)
-        .enumerate()
-        .map(|(index, (name, torque))| {
-            let made = scratch.join("made").join(name);
-            let (torque, seed) = (format!("effects.2.parameters.torque={torque}"), format!("seed={index}"));
-            let config = config.to_str().unwrap();
-            let output =
-                trainer(&["simulate", config, &torque, &seed, "--quiet", "--out", made.to_str().unwrap()]);
-            assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-            let rig = scratch.join(name);
-            std::fs::create_dir(&rig).unwrap();
-            for file in ["record-000.csv", "nominal.toml"] {
-                std::fs::copy(made.join("records").join(file), rig.join(file)).unwrap();
-            }
-            rig.to_str().unwrap().to_owned()
-        })
-        .collect()
+    let rig = |(index, (name, torque)): (usize, (&&str, &f64))| {
+        let folder = scratch.join(name);
+        std::fs::create_dir(&folder).unwrap();
+        let (torque, seed) = (format!("effects.2.parameters.torque={torque}"), format!("seed={index}"));
+        let made = tempfile::tempdir().unwrap();
+        let from = simulated(made.path(), RIG, &[&torque, &seed]);
+        for file in ["record-000.csv", "nominal.toml"] {
+            std::fs::copy(from(file), folder.join(file)).unwrap();
+        }
+        folder.to_str().unwrap().to_owned()
+    };
+    ["A", "B", "C"].iter().zip(torques).enumerate().map(rig).collect()
 }
 
 fn class<'a>(found: &'a Value, id: &str) -> &'a Value {

@@ -1,8 +1,8 @@
 //! Several programs on one folder: they share the work, whoever is killed leaves it to the others, and the page on a fleet
 //! is made of what is there.
 
-use crate::diagnose::{NOMINAL, decay, refusal, write};
-use crate::support::{root, trainer};
+use crate::diagnose::{decay, refusal, write};
+use crate::support::{NOMINAL, root, trainer};
 use crate::sweep::{SLOW, code, ends, events, json, results, said, scratch, start, states, sweep, wait_for};
 use serde_json::Value;
 use std::fs::File;

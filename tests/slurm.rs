@@ -1,6 +1,6 @@
 //! Job arrays on a Slurm, which `tests/slurm/single_node.sh` sets up; without it these tests say loudly that they were left out.
 
-use crate::support::{root, trainer};
+use crate::support::{NOMINAL, root, trainer};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -288,11 +288,7 @@ fn a_batch_and_trials_run_as_arrays() {
         };
         let record = "time_s,angle_rad\n".to_owned() + &(0..500).map(row).collect::<String>();
         std::fs::write(case.join("record-000.csv"), record).unwrap();
-        std::fs::write(
-            case.join("nominal.toml"),
-            "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n",
-        )
-        .unwrap();
+        std::fs::write(case.join("nominal.toml"), NOMINAL).unwrap();
     }
     through(&launch(&["diagnose", "--batch", cases.to_str().unwrap()], &out, &["--shards", "3"]));
     for number in 0..5 {

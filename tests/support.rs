@@ -17,6 +17,22 @@ pub(crate) fn trainer(arguments: &[&str]) -> Output {
     Command::new(env!("CARGO_BIN_EXE_trainer")).args(arguments).current_dir(root()).output().unwrap()
 }
 
+/// An oscillator of 3.5 Hz, per unit of inertia, as a nominal simulator.
+pub(crate) const NOMINAL: &str = "inertia = 1.0\ndamping = 0.3\nstiffness = 484.0\nrest_angle = 0.0\n";
+
+/// Simulates [`NOMINAL`] with what a configuration has more, into `made` below a folder, and gives the place of a file
+/// of the records.
+pub(crate) fn simulated(folder: &Path, more: &str, overrides: &[&str]) -> impl Fn(&str) -> String + use<> {
+    let (config, made) = (folder.join("simulated.toml"), folder.join("made"));
+    std::fs::write(&config, format!("{NOMINAL}{more}")).unwrap();
+    let mut arguments = vec!["simulate", config.to_str().unwrap()];
+    arguments.extend(overrides);
+    arguments.extend(["--quiet", "--out", made.to_str().unwrap()]);
+    let output = trainer(&arguments);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    move |name| made.join("records").join(name).to_str().unwrap().to_owned()
+}
+
 /// Runs an experiment into a scratch folder and gives its result, whatever the exit code.
 pub(crate) fn result(arguments: &[&str]) -> (i32, Value, TempDir) {
     let folder = tempfile::tempdir().unwrap();

@@ -1,6 +1,6 @@
 //! A torque along the position: what users read of it, and that the repaired simulator has it.
 
-use crate::support::{number, result, trainer};
+use crate::support::{number, result, simulated, trainer};
 use serde_json::Value;
 
 /// A decay with nothing missing but a torque that repeats 20 times in a turn, or every 2π/20 m.
@@ -8,10 +8,6 @@ fn config(coordinate: &str) -> String {
     format!(
         r#"
 name = "waves"
-inertia = 1.0
-damping = 0.3
-stiffness = 484.0
-rest_angle = 0.0
 coordinate = "{coordinate}"
 [record]
 rate_hz = 130.0
@@ -36,12 +32,9 @@ fn it_is_unknown_described_in_words_and_part_of_the_repaired_simulator() {
     {
         let scratch = tempfile::tempdir().unwrap();
         let at = |name: &str| scratch.path().join(name).to_str().unwrap().to_owned();
-        std::fs::write(at("waves.toml"), config(coordinate)).unwrap();
-        let made = trainer(&["simulate", &at("waves.toml"), "--quiet", "--out", &at("made")]);
-        assert!(made.status.success(), "{}", String::from_utf8_lossy(&made.stderr));
-        let nominal = at("made/records/nominal.toml");
+        let file = simulated(scratch.path(), &config(coordinate), &[]);
         let (code, found, folder) =
-            result(&["diagnose", &at("made/records/record-000.csv"), "--nominal", &nominal]);
+            result(&["diagnose", &file("record-000.csv"), "--nominal", &file("nominal.toml")]);
         assert_eq!(code, 0, "{found}");
         assert_eq!(found["verdict"]["status"], "unknown", "{found}");
         assert_eq!(found["verdict"]["effects"], Value::Array(Vec::new()));

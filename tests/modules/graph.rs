@@ -165,7 +165,9 @@ fn use_items(code: &str) -> Vec<(usize, usize, bool)> {
     for (at, _) in code.match_indices("use ") {
         let line = code[..at].rfind('\n').map_or(0, |line| line + 1);
         let before = code[line..at].trim();
-        if !(before.is_empty() || before.starts_with("pub")) {
+        let is_visibility = before == "pub" || before.starts_with("pub(") && before.ends_with(')');
+        let is_word = code[..at].chars().next_back().is_none_or(char::is_whitespace);
+        if !(is_word && (before.is_empty() || is_visibility)) {
             continue;
         }
         let end = code[at..].find(';').map_or(code.len(), |end| at + end + 1);

@@ -39,14 +39,6 @@ pub(super) const CIRCLES: &[(&str, &str)] = &[
     ("diagnosis", "model::predictor"),
     ("diagnosis", "noise::floor"),
     ("diagnosis", "noise::rounding"),
-    ("trials", "make::case"),
-    ("trials", "make::composite"),
-    ("trials", "make::foreign"),
-    ("trials", "make::outside"),
-    ("trials", "make::own_record"),
-    ("trials", "make::plan"),
-    ("trials", "make::rigs"),
-    ("trials", "make::stressed"),
 ];
 
 /// Functions of more than 60 lines, by crate, with the reason.
@@ -61,8 +53,6 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("diagnosis", "model::predictor::predict", "not divided yet"),
     ("diagnosis", "search::refine::refine", "not divided yet"),
     ("envelope-matching", "fit::minimize", "one iteration of a published method, in its order"),
-    ("export", "modelica::modelica", "one text from its first line to its last"),
-    ("export", "python::python", "one text from its first line to its last"),
     ("gaussian-process", "fit::train", "one loop over the steps of a training"),
     ("gaussian-process", "likelihood::slope", "one derivative in closed form, term by term"),
     ("neural", "amortized::training::train", "one loop over the steps of a training"),
@@ -76,9 +66,5 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("record", "clock::decide", "one question after another, each with its sentence"),
     ("record", "csv_file::parse", "one header, its columns and its rows"),
     ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
-    ("trials", "make::case::written", "one case, field by field"),
-    ("trials", "make::plan::resolve", "one configuration, section by section"),
-    ("trials", "make::shape::draw", "one drawing for each effect, side by side"),
-    ("trials", "make::stressed::draw", "one drawing for each effect, side by side"),
     ("workflow", "result::result", "one file, field by field"),
 ];

@@ -33,7 +33,7 @@ pub struct Range {
     pub minimum: f64,
     /// Upper end.
     pub maximum: f64,
-    /// Whether the ends themselves are admitted.
+    /// True if the ends themselves are admitted.
     pub closed: bool,
 }
 
@@ -48,7 +48,7 @@ impl Range {
     pub const TURN: Self =
         Self { minimum: -std::f64::consts::TAU, maximum: std::f64::consts::TAU, closed: true };
 
-    /// Whether a finite value lies inside.
+    /// Returns whether a finite value lies inside.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         let inside = if self.closed {
@@ -81,17 +81,17 @@ pub struct Parameter {
     pub name: &'static str,
     /// Symbol in equations, such as `τ_c`.
     pub symbol: &'static str,
-    /// What it measures; the unit follows from the system's units.
+    /// Physical quantity; its unit follows from the system's units.
     pub quantity: Quantity,
     /// Physically admissible values.
     pub range: Range,
-    /// What it means, a phrase.
+    /// Meaning, a phrase.
     pub meaning: &'static str,
     /// Its value where none is given; `None` where one has to be. Only the last parameters of an effect have one.
     pub default: Option<f64>,
 }
 
-/// What is known about an effect. The same for everybody: simulator, diagnosis, documents, listings.
+/// Description of an effect, which simulator, diagnosis, documents and listings read alike.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Description {
     /// The public id, such as `coulomb_friction`.
@@ -102,23 +102,23 @@ pub struct Description {
     pub kind: Kind,
     /// Its part of a gap budget.
     pub class: Class,
-    /// What it adds, as plain text.
+    /// Torque or change that it adds, as plain text.
     pub equation: &'static str,
-    /// The same in LaTeX.
+    /// Equation in LaTeX.
     pub latex: &'static str,
     /// Its parameters, in the order in which values are given; at most [`crate::MOST_PARAMETERS`].
     pub parameters: &'static [Parameter],
-    /// How it shows in a free decay (or under drive).
+    /// Signature in a free decay, or under drive.
     pub tell_tale: &'static str,
     /// Ids of effects that it is easily confused with when the data are poor.
     pub confused_with: &'static [&'static str],
     /// The literature.
     pub reference: &'static str,
-    /// Whether it acts only where there is an input.
+    /// True if it acts only where there is an input.
     pub driven_only: bool,
     /// Number of hidden state variables that it brings.
     pub hidden_states: usize,
-    /// Whether its law has a continuous derivative everywhere: no switching.
+    /// True if its law has a continuous derivative everywhere: no switching.
     pub smooth: bool,
 }
 

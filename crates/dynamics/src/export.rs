@@ -12,7 +12,7 @@ pub struct Export {
     pub torque: Option<&'static str>,
     /// Its hidden states.
     pub states: &'static [StateExport],
-    /// What it is to a joint of a robot's description.
+    /// Attribute of a joint in a robot's description.
     pub joint: Joint,
 }
 

@@ -3,7 +3,7 @@
 use crate::error::DynamicsError;
 use serde::{Deserialize, Serialize};
 
-/// What the input does between its samples.
+/// Behavior of an input between its samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Hold {
@@ -80,13 +80,13 @@ impl Input {
         &self.values
     }
 
-    /// What happens between samples.
+    /// Behavior between samples.
     #[must_use]
     pub fn hold(&self) -> Hold {
         self.hold
     }
 
-    /// The same input with one sample for every `count`, which keeps its integral where the samples are evenly spaced: the
+    /// Averages the input to one sample for every `count`, which keeps its integral where the samples are evenly spaced: the
     /// mean over so many where it is held, and, where it goes straight on, the mean weighted by the distance from the new
     /// sample, falling to none at the next. A `count` of 0 or 1 changes nothing.
     ///

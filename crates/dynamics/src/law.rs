@@ -18,7 +18,7 @@ pub type Values<S> = [S; MOST_PARAMETERS];
 /// Hidden state variables of one effect; the rest is unused.
 pub type Hidden<S> = [S; MOST_HIDDEN];
 
-/// What an effect sees at one moment.
+/// State of a system at one moment, as an effect gets it.
 #[derive(Debug, Clone, Copy)]
 pub struct Moment<S> {
     /// Time in seconds.
@@ -48,13 +48,13 @@ pub type Margins<S> = [Option<S>; 2];
 /// The law holds on one smooth piece at a time: [`Moment::direction`] and [`Moment::region`] are constant
 /// while an integrator makes a step, and change only at an event that it locates.
 pub trait Law {
-    /// What is known about it.
+    /// Returns the description: id, equation, parameters, signature and reference.
     const DESCRIPTION: &'static Description;
 
     /// What it looks like in other simulators.
     const EXPORT: Export;
 
-    /// Whether the law depends on the direction of motion: a reversal then ends its smooth piece.
+    /// True if the law depends on the direction of motion: a reversal then ends its smooth piece.
     const DIRECTED: bool = false;
 
     /// The generalized force that it adds to the right-hand side, in the system's unit of torque.

@@ -6,6 +6,27 @@
 //! [`sensitivity::Model`] gives it fast, with exact derivatives, for fitting. A [`chain::Chain`] makes of a motion
 //! what a file says of it.
 //!
+//! # Example
+//! The release of an oscillator of 3.5 Hz with dry friction:
+//!
+//! ```
+//! use dynamics::reference::{Tolerance, simulate};
+//! use dynamics::{Active, Nominal, Start, System};
+//!
+//! // Inertia, damping, stiffness, rest angle; all per unit of inertia.
+//! let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0)?;
+//! let friction = Active::named("coulomb_friction", &[("torque", 2.0)])?;
+//! let system = System::new(nominal, vec![friction])?;
+//!
+//! let times: Vec<f64> = (0..260).map(|sample| f64::from(sample) / 130.0).collect();
+//! let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default())?;
+//!
+//! assert_eq!(motion.position.len(), times.len());
+//! let late = motion.position[200..].iter().fold(0.0_f64, |most, position| most.max(position.abs()));
+//! assert!(late < 0.6, "friction and damping take amplitude: {late} rad");
+//! # Ok::<(), dynamics::DynamicsError>(())
+//! ```
+//!
 //! # Units
 //! SI: seconds, radians or meters, N m or N, kg m² or kg. Where only the motion is known everything is
 //! divided by the inertia, which is then exactly 1; torques are in rad/s² or m/s² then. [`Quantity::unit`]

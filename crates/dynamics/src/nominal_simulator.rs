@@ -12,7 +12,7 @@ use crate::system::System;
 pub struct KnownEffect {
     /// The effect with its stated parameters.
     pub active: Active,
-    /// Whether a recalibration may move its parameters; otherwise they are held as stated.
+    /// True if a recalibration may move its parameters; otherwise they are held as stated.
     pub recalibrate: bool,
 }
 

@@ -28,73 +28,73 @@ macro_rules! system_effects {
             /// Every effect that acts in the system.
             pub const ALL: &'static [Self] = &[$(Self::$name,)+];
 
-            /// What is known about it.
+            /// Returns the description: id, equation, parameters, signature and reference.
             #[must_use]
             pub const fn description(self) -> &'static Description {
                 match self { $(Self::$name => effects::$name::DESCRIPTION,)+ }
             }
 
-            /// As [`Law::EXPORT`].
+            /// Returns [`Law::EXPORT`] of the effect.
             #[must_use]
             pub const fn export(self) -> Export {
                 match self { $(Self::$name => effects::$name::EXPORT,)+ }
             }
 
-            /// As [`Law::DIRECTED`].
+            /// Returns [`Law::DIRECTED`] of the effect.
             #[must_use]
             pub const fn directed(self) -> bool {
                 match self { $(Self::$name => effects::$name::DIRECTED,)+ }
             }
 
-            /// As [`Law::torque`].
+            /// Calls [`Law::torque`] of the effect.
             #[inline]
             pub fn torque<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> S {
                 match self { $(Self::$name => effects::$name::torque(values, moment),)+ }
             }
 
-            /// As [`Law::hidden_rate`].
+            /// Calls [`Law::hidden_rate`] of the effect.
             #[inline]
             pub fn hidden_rate<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> Hidden<S> {
                 match self { $(Self::$name => effects::$name::hidden_rate(values, moment),)+ }
             }
 
-            /// As [`Law::relaxed`].
+            /// Calls [`Law::relaxed`] of the effect.
             pub fn relaxed<S: Scalar>(self, position: S, velocity: S) -> Hidden<S> {
                 match self { $(Self::$name => effects::$name::relaxed(position, velocity),)+ }
             }
 
-            /// As [`Law::holding_torque`].
+            /// Calls [`Law::holding_torque`] of the effect.
             pub fn holding_torque<S: Scalar>(self, values: &Values<S>) -> Option<S> {
                 match self { $(Self::$name => effects::$name::holding_torque(values),)+ }
             }
 
-            /// As [`Law::input_delay`].
+            /// Calls [`Law::input_delay`] of the effect.
             pub fn input_delay<S: Scalar>(self, values: &Values<S>) -> Option<S> {
                 match self { $(Self::$name => effects::$name::input_delay(values),)+ }
             }
 
-            /// As [`Law::region`].
+            /// Calls [`Law::region`] of the effect.
             pub fn region(self, values: &Values<f64>, moment: &Moment<f64>) -> i8 {
                 match self { $(Self::$name => effects::$name::region(values, moment),)+ }
             }
 
-            /// As [`Law::margins`].
+            /// Calls [`Law::margins`] of the effect.
             #[inline]
             pub fn margins<S: Scalar>(self, values: &Values<S>, moment: &Moment<S>) -> Margins<S> {
                 match self { $(Self::$name => effects::$name::margins(values, moment),)+ }
             }
 
-            /// As [`Law::beyond`].
+            /// Calls [`Law::beyond`] of the effect.
             pub fn beyond(self, region: i8, edge: usize) -> i8 {
                 match self { $(Self::$name => effects::$name::beyond(region, edge),)+ }
             }
 
-            /// As [`Law::settle`].
+            /// Calls [`Law::settle`] of the effect.
             pub fn settle(self, region: i8, direction: f64, hidden: Hidden<f64>) -> Hidden<f64> {
                 match self { $(Self::$name => effects::$name::settle(region, direction, hidden),)+ }
             }
 
-            /// As [`Law::check`].
+            /// Calls [`Law::check`] of the effect.
             ///
             /// # Errors
             /// As [`Law::check`].
@@ -118,19 +118,19 @@ macro_rules! chain_effects {
             /// Every effect in the measuring chain, in the order in which they act.
             pub const ALL: &'static [Self] = &[$(Self::$name,)+];
 
-            /// What is known about it.
+            /// Returns the description: id, equation, parameters, signature and reference.
             #[must_use]
             pub const fn description(self) -> &'static Description {
                 match self { $(Self::$name => chain::$name::DESCRIPTION,)+ }
             }
 
-            /// As [`Step::DIFFERENTIABLE`].
+            /// Returns [`Step::DIFFERENTIABLE`] of the effect.
             #[must_use]
             pub const fn is_differentiable(self) -> bool {
                 match self { $(Self::$name => chain::$name::DIFFERENTIABLE,)+ }
             }
 
-            /// As [`Step::transform`].
+            /// Calls [`Step::transform`] of the effect.
             pub fn transform<S: Sampled>(
                 self,
                 values: &Values<S>,
@@ -141,7 +141,7 @@ macro_rules! chain_effects {
                 match self { $(Self::$name => chain::$name::transform(values, motion, observed, samples),)+ }
             }
 
-            /// As [`Step::distort`].
+            /// Calls [`Step::distort`] of the effect.
             pub fn distort<R: Rng + ?Sized>(
                 self,
                 values: &Values<f64>,
@@ -151,7 +151,7 @@ macro_rules! chain_effects {
                 match self { $(Self::$name => chain::$name::distort(values, samples, generator),)+ }
             }
 
-            /// As [`Step::check`].
+            /// Calls [`Step::check`] of the effect.
             ///
             /// # Errors
             /// As [`Step::check`].
@@ -174,7 +174,7 @@ macro_rules! registry {
             $(Effect::MeasuringChain(ChainEffect::$chain),)+
         ];
 
-        /// What can act besides and is no effect of the vocabulary: a shape of torque whose cause is left open.
+        /// Shapes of torque that can act and are no effects of the vocabulary, since their cause is left open.
         pub static UNNAMED: &[Effect] = &[$(Effect::System(SystemEffect::$unnamed),)+];
     };
 }
@@ -227,7 +227,7 @@ pub enum Effect {
 }
 
 impl Effect {
-    /// What is known about it.
+    /// Returns the description: id, equation, parameters, signature and reference.
     #[must_use]
     pub const fn description(self) -> &'static Description {
         match self {

@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// What the coordinate of a system is.
+/// Coordinate of a system: an angle or a displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Coordinate {
@@ -13,7 +13,7 @@ pub enum Coordinate {
     Displacement,
 }
 
-/// What the sensor observes of the motion.
+/// Quantity that the sensor observes of the motion.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Observed {
@@ -74,7 +74,7 @@ pub enum Quantity {
     AngularFrequency,
     /// An angle, whatever the coordinate.
     Angle,
-    /// What the sensor observes: a position, or its first or second derivative.
+    /// Quantity that the sensor observes: a position, or its first or second derivative.
     Observed,
     /// Change of what the sensor observes, per second.
     ObservedPerTime,

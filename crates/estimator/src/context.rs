@@ -13,7 +13,7 @@ pub struct Step {
     pub step: u64,
     /// Most steps that this fit will take.
     pub planned: u64,
-    /// What the step is part of, such as `physics weight 100`.
+    /// Phase of the training, such as `physics weight 100`.
     pub phase: String,
     /// The loss that is minimized in this phase, in the method's own units.
     pub loss: f64,
@@ -60,7 +60,7 @@ impl Cancel {
         self.asked.store(true, Ordering::Relaxed);
     }
 
-    /// Whether somebody asked.
+    /// Returns whether somebody asked.
     #[must_use]
     pub fn is_requested(&self) -> bool {
         self.asked.load(Ordering::Relaxed) || self.above.is_some_and(Self::is_requested)
@@ -72,7 +72,7 @@ pub trait Checkpoints {
     /// The state kept last, where there is one.
     fn latest(&self) -> Option<Vec<u8>>;
 
-    /// Whether it is time to keep the state again.
+    /// Returns whether it is time to keep the state again.
     fn is_due(&self) -> bool;
 
     /// Keeps a state, that before `step` is observed, in place of the one before.
@@ -82,7 +82,7 @@ pub trait Checkpoints {
     fn keep(&self, step: u64, state: &[u8]) -> Result<(), String>;
 }
 
-/// What an estimator is given besides the envelope: seeds by name, a budget, whoever watches, the
+/// Context of a fit beside the envelope: seeds by name, a budget, whoever watches, the
 /// request to stop, and a place for its state.
 ///
 /// An estimator that takes more than a second keeps its state: it begins from [`resumed`](Self::resumed) where that has
@@ -107,14 +107,14 @@ impl<'a> FitContext<'a> {
         Self { seed, max_steps, observer, cancel, query_times: &[], checkpoints: None }
     }
 
-    /// The same context, asking for the fitted function at `times` as well: seconds after the envelope's
+    /// Asks for the fitted function at `times` as well: seconds after the envelope's
     /// first peak, finite, in any order, within the envelope or beyond it.
     #[must_use]
     pub fn predicting_at(self, times: &'a [f64]) -> Self {
         Self { query_times: times, ..self }
     }
 
-    /// The same context, with a place where the fit's state is kept.
+    /// Sets the place where the fit's state is kept.
     #[must_use]
     pub fn checkpointing_to(self, checkpoints: &'a dyn Checkpoints) -> Self {
         Self { checkpoints: Some(checkpoints), ..self }
@@ -173,7 +173,7 @@ impl<'a> FitContext<'a> {
         self.observer.observe(step);
     }
 
-    /// Whether the fit should stop after its current step.
+    /// Returns whether the fit should stop after its current step.
     #[must_use]
     pub fn is_canceled(&self) -> bool {
         self.cancel.is_requested()

@@ -6,7 +6,7 @@ use crate::estimate::Estimate;
 use envelope::Envelope;
 use settings::{Field, Resolved, SettingsError};
 
-/// What an estimator can do, or what it is: read by the test battery and the tables, so that nobody has
+/// Property of an estimator, read by the test battery and the tables, so that nobody has
 /// to ask for an estimator by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Tag {
@@ -56,9 +56,9 @@ pub struct Entry {
     pub paper_number: Option<u8>,
     /// Name in words.
     pub title: &'static str,
-    /// What it does, in a sentence.
+    /// Method, in a sentence.
     pub summary: &'static str,
-    /// What it can do.
+    /// Properties of the estimator.
     pub tags: &'static [Tag],
     /// The literature it follows.
     pub citations: &'static [&'static str],
@@ -69,7 +69,7 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// Whether the estimator carries a tag.
+    /// Returns whether the estimator carries a tag.
     #[must_use]
     pub fn has(&self, tag: Tag) -> bool {
         self.tags.contains(&tag)

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
-/// What a fit reached.
+/// State in which a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Reached {
     /// The method's own condition for a solution holds.
@@ -32,16 +32,16 @@ impl Reached {
     }
 }
 
-/// What a fit reached, and why it stopped there.
+/// State in which a fit ended, and the reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Stop {
-    /// What it reached.
+    /// State in which it ended.
     pub reached: Reached,
     /// A sentence with numbers; where the fit did not converge, with what to do.
     pub because: String,
 }
 
-/// How well a decay rate is known, as the method itself states it.
+/// Uncertainty of a decay rate, as the method itself states it.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Uncertainty {
     /// Standard error of λ, in 1/s.
@@ -65,7 +65,7 @@ impl Uncertainty {
     }
 }
 
-/// What a fitted estimator says of a peak it may not have seen. Only [`Prediction::new`] makes one.
+/// Prediction of a fitted estimator for a peak that it may not have seen. Only [`Prediction::new`] makes one.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[non_exhaustive]
 pub struct Prediction {
@@ -100,16 +100,16 @@ pub struct ModelFile {
     pub bytes: Vec<u8>,
 }
 
-/// What an estimator found.
+/// Estimate of an estimator.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Estimate {
     /// Decay rate λ, in 1/s: finite, of either sign (an envelope may grow).
     pub decay_rate: f64,
     /// ln A at the first peak, the amplitude in the record's unit: finite.
     pub log_amplitude: f64,
-    /// How well λ is known, where the method states it.
+    /// Uncertainty of λ, where the method states it.
     pub uncertainty: Option<Uncertainty>,
-    /// What the fit reached and why it stopped.
+    /// State in which the fit ended, and the reason.
     pub stop: Stop,
     /// Training steps taken.
     pub steps: u64,

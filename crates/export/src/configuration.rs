@@ -5,8 +5,9 @@ use dynamics::chain::Observed;
 use dynamics::{Coordinate, Quantity};
 use std::fmt::Write;
 
-/// The repaired simulator as a configuration that `trainer simulate` runs: the start, the sampling and the
-/// length of the first record, the effects one table each.
+/// Writes a configuration that `trainer simulate` runs: the oscillator's coefficients in SI units or per inertia, the start, the
+/// sampling and the length of the first record, the effects one table each. It cannot hold a measured input: the waveform of a
+/// driven system's is `none`, with a comment.
 #[must_use]
 pub fn configuration(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();

@@ -29,8 +29,8 @@ fn coefficients(repaired: &Repaired) -> Vec<(&'static str, &'static str, f64, &'
     all.into_iter().enumerate().filter(|(index, _)| shown(*index)).map(|(_, row)| row).collect()
 }
 
-/// The equation of motion as text; its numbers follow, one a line, what acts on the measurement, and what is
-/// not part of it.
+/// Writes the equation of motion as text, θ being the coordinate; its numbers follow, one a line with their units, then
+/// the effects of the measurement chain, and what is not part of the simulator.
 #[must_use]
 pub fn equation_text(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.text;
@@ -80,7 +80,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
     text
 }
 
-/// The same as LaTeX: an aligned display, then the numbers as a list.
+/// Writes the equation of motion as LaTeX: an aligned display, then the numbers as a list.
 #[must_use]
 pub fn equation_latex(repaired: &Repaired) -> String {
     let [x, v, a] = LETTERS.latex;

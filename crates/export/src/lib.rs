@@ -2,6 +2,33 @@
 //!
 //! What an effect looks like elsewhere is said in the effect's own file (`dynamics::Export`); here those pieces are
 //! put together. What a format cannot express is said in a comment inside it, never left out in silence.
+//!
+//! # Example
+//!
+//! ```
+//! use dynamics::chain::Observed;
+//! use dynamics::{Active, Nominal, Start, System};
+//! use export::{Repaired, equation_text, files};
+//!
+//! let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0)?;
+//! let friction = Active::named("coulomb_friction", &[("torque", 2.0)])?;
+//! let repaired = Repaired {
+//!     system: System::new(nominal, vec![friction])?,
+//!     units: nominal.units(),
+//!     chain: Vec::new(),
+//!     left_out: Vec::new(),
+//!     driven: false,
+//!     start: Start::release(0.7),
+//!     observed: Observed::Position,
+//!     noise: 5e-4,
+//!     rate_hz: 130.0,
+//!     seconds: 8.0,
+//! };
+//! assert!(equation_text(&repaired).contains("τ_c sign(θ′)"));
+//! let python = files(&repaired).into_iter().find(|(name, _)| *name == "repaired.py");
+//! assert!(python.is_some_and(|(_, text)| text.contains("def rhs(time, state")));
+//! # Ok::<(), dynamics::DynamicsError>(())
+//! ```
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
@@ -24,7 +51,9 @@ pub use python::python;
 pub use repaired::Repaired;
 pub use robot::{mjcf, urdf};
 
-/// Every form with the name of its file.
+/// Writes the simulator in every form, each as the name of its file and its text: `repaired.toml` for `trainer simulate`,
+/// `equation.txt` and `equation.tex` for people, `repaired.py` for SciPy, `repaired.mo` for Modelica, `repaired.mjcf.xml` for MuJoCo
+/// and `repaired.urdf.xml` for a robot's description.
 #[must_use]
 pub fn files(repaired: &Repaired) -> Vec<(&'static str, String)> {
     vec![

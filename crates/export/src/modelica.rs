@@ -5,10 +5,18 @@ use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// A Modelica model that starts where the first record does.
+/// Writes a Modelica model, `Repaired`, that starts where the first record does. Parameters are in SI units, or per inertia where
+/// the inertia is 1; `u` is the input of a driven system, and what Modelica cannot hold stands in a comment.
 #[must_use]
 pub fn modelica(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);
+    let mut text = declarations(repaired, &terms);
+    equations(&mut text, repaired, &terms);
+    text
+}
+
+/// Parameters, inputs and states.
+fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     let mut text = String::from("model Repaired \"The repaired simulator\"\n");
     text.push_str("  // Dry friction's sign is blurred over small_speed.\n");
     for sentence in &terms.left_out {
@@ -39,7 +47,13 @@ pub fn modelica(repaired: &Repaired) -> String {
         let start = state.start.replace("position", "start_position").replace("velocity", "start_velocity");
         let _ = writeln!(text, "  Real {}(start = {start}, fixed = true);", state.name);
     }
-    text.push_str("  Real direction;\n  Real drive;\nequation\n  der(position) = velocity;\n");
+    text.push_str("  Real direction;\n  Real drive;\n");
+    text
+}
+
+/// The equation of motion and the rates of hidden states.
+fn equations(text: &mut String, repaired: &Repaired, terms: &Terms) {
+    text.push_str("equation\n  der(position) = velocity;\n");
     text.push_str("  direction = tanh(velocity / small_speed);\n");
     let _ = writeln!(
         text,
@@ -66,5 +80,4 @@ pub fn modelica(repaired: &Repaired) -> String {
         "  annotation(experiment(StopTime = {:?}, Tolerance = 1e-8));\nend Repaired;",
         repaired.seconds
     );
-    text
 }

@@ -2,7 +2,8 @@
 
 use dynamics::{KnownEffect, NominalSimulator};
 
-/// A nominal simulator, with the effects that it has, as the text of a `nominal.toml`.
+/// Writes a nominal simulator, with the effects that it has, as the text of a `nominal.toml`: inertia, damping, stiffness and rest
+/// position, each with its unit in a comment. Read again, it is the same simulator to the bit.
 #[must_use]
 pub fn nominal_text(simulator: impl Into<NominalSimulator>) -> String {
     use dynamics::Quantity;

@@ -5,11 +5,19 @@ use crate::configuration::one_line;
 use crate::terms::Terms;
 use std::fmt::Write;
 
-/// A Python module: `rhs` for `scipy.integrate.solve_ivp`, the start state of the first record, and a simulation of it
-/// when it is run.
+/// Writes a Python module: `rhs(time, state)` for `scipy.integrate.solve_ivp`, where the state is position, velocity and what
+/// hidden states the effects have; the start state of the first record; and a simulation of it when the module is run.
 #[must_use]
 pub fn python(repaired: &Repaired) -> String {
     let terms = Terms::of(repaired);
+    let mut text = declarations(repaired, &terms);
+    derivative(&mut text, repaired, &terms);
+    simulation(&mut text, repaired, &terms);
+    text
+}
+
+/// What the module is, its constants and a helper.
+fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     let mut text = String::from(
         "\"\"\"The repaired simulator, for scipy.integrate.solve_ivp.\n\n\
          Run as a program it prints the motion of the first record as CSV.\n",
@@ -32,6 +40,11 @@ pub fn python(repaired: &Repaired) -> String {
         let _ = writeln!(text, "input_delay = {delay:?}  # s");
     }
     text.push_str("\n\ndef sign(x):\n    return (x > 0) - (x < 0)\n\n\n");
+    text
+}
+
+/// The right-hand side.
+fn derivative(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let names: String = terms.states.iter().map(|state| format!(", {}", state.name)).collect();
     let _ = write!(
         text,
@@ -51,6 +64,10 @@ pub fn python(repaired: &Repaired) -> String {
     );
     let rates: String = terms.states.iter().map(|state| format!(", {}", state.rate)).collect();
     let _ = write!(text, "    return [velocity, acceleration{rates}]\n\n\n");
+}
+
+/// The start, and the motion of the first record where the module is run.
+fn simulation(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let starts: String = terms.states.iter().map(|state| format!(", {}", state.start)).collect();
     let _ = write!(
         text,
@@ -77,7 +94,6 @@ pub fn python(repaired: &Repaired) -> String {
         repaired.rate_hz,
         repaired.seconds
     );
-    text
 }
 
 /// No step skips what happens within a thirtieth of a period, such as a touch of a stop.

@@ -3,7 +3,7 @@
 use dynamics::chain::Observed;
 use dynamics::{Active, Quantity, Start, System, Units};
 
-/// A nominal simulator with the effects it lacked, and what observes it.
+/// A nominal simulator with the effects that it lacked, and the sensor and sampling of the first record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Repaired {
     /// The oscillator with the effects in the system.
@@ -12,24 +12,24 @@ pub struct Repaired {
     pub units: Units,
     /// The effects in the measuring chain.
     pub chain: Vec<Active>,
-    /// What cannot be part of it, each in a sentence.
+    /// Parts of the diagnosis that cannot be part of the simulator, each in a sentence.
     pub left_out: Vec<String>,
-    /// Whether an input drives it.
+    /// True if an input drives it.
     pub driven: bool,
     /// Where the motion of the first record starts.
     pub start: Start,
-    /// What the sensor observes.
+    /// Quantity that the sensor observes.
     pub observed: Observed,
-    /// Standard deviation of the sensor's noise.
+    /// Standard deviation of the sensor's white noise, in the unit of [`observed`](Self::observed).
     pub noise: f64,
-    /// Samples per second.
+    /// Sampling rate in hertz.
     pub rate_hz: f64,
     /// Length of the first record in seconds.
     pub seconds: f64,
 }
 
 impl Repaired {
-    /// The unit of a quantity; of what the sensor observes, by what that is.
+    /// Returns the unit's symbol of a quantity; that of the observed one follows from [`observed`](Self::observed).
     #[must_use]
     pub fn unit(&self, quantity: Quantity) -> &'static str {
         quantity.unit_seen(self.units, self.observed)

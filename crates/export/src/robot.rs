@@ -9,8 +9,8 @@ use std::fmt::Write;
 /// Gravity of the model in m/s².
 const GRAVITY: f64 = 9.81;
 
-/// A MuJoCo model of one body on one joint: damping, stiffness, springref, frictionloss, and inertia as armature beside
-/// what a mass that hangs on the joint has.
+/// Writes a MuJoCo model of one body on one joint: damping, stiffness, springref, frictionloss, and inertia as armature beside
+/// what a mass that hangs on the joint has. Effects that are no attribute of a joint stand in a comment.
 #[must_use]
 pub fn mjcf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();
@@ -73,7 +73,8 @@ fn timestep(repaired: &Repaired) -> f64 {
 /// A limit beyond any motion, in whatever unit, that single precision still holds.
 const UNBOUNDED: &str = "1e9";
 
-/// The `<dynamics>` of a URDF joint; one that slides has a `<limit>`, too, which bounds nothing.
+/// Writes the `<dynamics>` of a URDF joint, which holds damping and friction only; a joint that slides has a `<limit>`, too, which
+/// bounds nothing. Everything else stands in a comment.
 #[must_use]
 pub fn urdf(repaired: &Repaired) -> String {
     let nominal = repaired.system.nominal();

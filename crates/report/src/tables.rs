@@ -14,6 +14,29 @@ pub(crate) fn fact(name: &'static str, value: impl Into<String>) -> Fact {
     Fact { name, value: value.into() }
 }
 
+/// Methods and their scores on records or peaks that they did not see.
+pub(crate) struct ScoreTable {
+    /// Titles of the columns, that of the methods first.
+    pub(crate) columns: Vec<&'static str>,
+    pub(crate) rows: Vec<ScoreRow>,
+}
+
+/// One method as it stands in such a table.
+pub(crate) struct ScoreRow {
+    pub(crate) title: String,
+    /// Whether the row stands out: a learner, or what the others are compared with.
+    pub(crate) is_marked: bool,
+    /// One cell for each column but the first; none where there is a reason instead.
+    pub(crate) cells: Vec<String>,
+    /// Why there are no scores; empty where there are.
+    pub(crate) reason: String,
+}
+
+/// A name as an anchor may have it.
+pub(crate) fn anchor(name: &str) -> String {
+    name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
+}
+
 /// One quantity as the oracle and as the estimator have it; `None` where it is not stated.
 pub(crate) struct ComparisonRow {
     pub(crate) quantity: &'static str,

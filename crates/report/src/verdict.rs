@@ -176,23 +176,19 @@ pub(crate) struct Origin {
     pub(crate) note: &'static str,
 }
 
-/// The origin that several records share; unstated where they have several.
-pub(crate) fn common_origin<'a>(mut stated: impl Iterator<Item = &'a str>) -> Origin {
-    match stated.next() {
-        Some(first) if stated.all(|other| other == first) => origin(first),
-        _ => origin("unstated"),
-    }
-}
-
-/// That of several records where all share it; `apart` says where each one's stands.
-pub(crate) fn origin_of_all<'a>(stated: impl Iterator<Item = &'a str>, apart: &'static str) -> Origin {
+/// That of several records where all share it. Where they differ it is said to, with `apart` on where each one's stands; where
+/// the page has no place for these, it is as good as unstated.
+pub(crate) fn origin_of_all<'a>(
+    stated: impl Iterator<Item = &'a str>,
+    apart: Option<&'static str>,
+) -> Origin {
     let mut stated: Vec<&str> = stated.collect();
     stated.sort_unstable();
     stated.dedup();
-    match stated[..] {
-        [one] => origin(one),
-        [] => origin("unstated"),
-        _ => Origin { class: "unstated", label: "Records of different origins", note: apart },
+    match (&stated[..], apart) {
+        ([one], _) => origin(one),
+        ([_, ..], Some(note)) => Origin { class: "unstated", label: "Records of different origins", note },
+        _ => origin("unstated"),
     }
 }
 

@@ -14,16 +14,16 @@ pub struct CaseFile {
     pub schema: String,
     /// All that the answer depends on: digests of records and simulator, options, version of the program.
     pub asked: Value,
-    /// What the case says of itself, such as `robot`, `joint` and `date`.
+    /// Labels that the case gives itself, such as `robot`, `joint` and `date`.
     pub labels: BTreeMap<String, String>,
 }
 
-/// What a batch came to.
+/// Outcome of a batch of diagnoses.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BatchResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"diagnose-batch"`.
+    /// Task that was asked for: `"diagnose-batch"`.
     pub task: String,
     /// Cases found; of a share, those in it.
     pub cases: usize,
@@ -33,7 +33,7 @@ pub struct BatchResult {
     pub skipped: usize,
     /// Cases that gave no answer.
     pub failed: Vec<FailedCase>,
-    /// Whether every case was looked at: an interrupted batch leaves some.
+    /// True if every case was looked at: an interrupted batch leaves some.
     pub complete: bool,
     /// Wall time in seconds.
     pub seconds: f64,

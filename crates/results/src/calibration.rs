@@ -43,7 +43,7 @@ impl Calibration {
 pub struct KnownEffectRow {
     /// Its id.
     pub id: String,
-    /// Whether recalibration may move its parameters; otherwise they are held.
+    /// True if recalibration may move its parameters; otherwise they are held.
     pub recalibrate: bool,
     /// Its parameters by name.
     pub parameters: BTreeMap<String, CalibratedRow>,
@@ -52,7 +52,7 @@ pub struct KnownEffectRow {
 /// A nominal coefficient before and after.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CalibratedRow {
-    /// As the nominal simulator has it.
+    /// Value in the nominal simulator.
     pub nominal: f64,
     /// Symbol of its unit.
     pub unit: String,
@@ -60,7 +60,7 @@ pub struct CalibratedRow {
     pub recalibrated: Option<WithInterval>,
     /// With the named effects; `null` where these data cannot tell it.
     pub repaired: Option<WithInterval>,
-    /// Whether these data determine what stands under `repaired`; absent where that is `null`.
+    /// True if these data determine what stands under `repaired`; absent where that is `null`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub determined: Option<bool>,
 }

@@ -4,12 +4,12 @@ use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow
 use super::interval::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
 
-/// What a comparison found: the content of `result.json` with `task = "compare"`.
+/// Result of a comparison of methods: the content of `result.json` with `task = "compare"`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ComparisonResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"compare"`.
+    /// Task that was asked for: `"compare"`.
     pub task: String,
     /// The first seed.
     pub seed: u64,
@@ -21,7 +21,7 @@ pub struct ComparisonResult {
     pub envelope: EnvelopeSummary,
     /// Certified least squares on that envelope.
     pub oracle: OracleSummary,
-    /// What follows from the oracle's numbers.
+    /// Physical quantities that follow from the reference's numbers.
     pub derived: Derived,
     /// One row for each method, in the paper's order.
     pub results: Vec<MethodRow>,
@@ -30,7 +30,7 @@ pub struct ComparisonResult {
     pub max_error_percent: f64,
     /// The largest error that passes, in percent.
     pub tolerance_percent: f64,
-    /// Whether every method gave an estimate within the tolerance.
+    /// True if every method gave an estimate within the tolerance.
     pub pass: bool,
     /// Wall time of all fits together, in seconds.
     pub seconds: f64,
@@ -42,11 +42,11 @@ pub struct ComparisonResult {
     /// Least squares beside the truth, where that is known.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub truth: Option<TruthComparison>,
-    /// What is commonly read off such a table and does not follow from it.
+    /// Statements commonly read off such a table that do not follow from it.
     pub cautions: Vec<Caution>,
 }
 
-/// What follows from frequency, decay rate and the rig's moment of inertia.
+/// Physical quantities that follow from frequency, decay rate and the rig's moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Derived {
     /// Period, in seconds.
@@ -55,7 +55,7 @@ pub struct Derived {
     pub frequency_hz: f64,
     /// Moment of inertia I as configured, in kg·m²; 1 where none is.
     pub inertia_kg_m2: f64,
-    /// Whether no inertia is configured: stiffness and damping are then per unit of inertia, in 1/s² and 1/s.
+    /// True if no inertia is configured: stiffness and damping are then per unit of inertia, in 1/s² and 1/s.
     #[serde(default)]
     pub per_unit_of_inertia: bool,
     /// Stiffness k = I·ω², in N·m/rad.
@@ -85,11 +85,11 @@ pub struct MethodRow {
     pub title: String,
     /// `"classical"` or `"learned"`.
     pub family: String,
-    /// What it found, or why it found nothing.
+    /// Estimate, or the reason why there is none.
     pub outcome: MethodOutcome,
 }
 
-/// What a method found.
+/// Outcome of one method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum MethodOutcome {
@@ -132,9 +132,9 @@ pub struct MethodEstimate {
     pub seconds: f64,
     /// `"converged"`, `"budget_spent"`, `"diverged"`, `"interrupted"` or `"stalled"`.
     pub reached: String,
-    /// What stopped the first seed's fit, in a sentence.
+    /// Reason, in a sentence, why the first seed's fit stopped.
     pub stopped_because: String,
-    /// Whether every seed is within the tolerance.
+    /// True if every seed is within the tolerance.
     pub pass: bool,
 }
 
@@ -143,6 +143,6 @@ pub struct MethodEstimate {
 pub struct Caution {
     /// The statement, as it is commonly made.
     pub statement: String,
-    /// What the numbers say: a sentence.
+    /// Finding that the numbers support: a sentence.
     pub finding: String,
 }

@@ -26,19 +26,19 @@ pub struct DiagnosisResult {
     /// Classes of effects that explain alike, the most probable first. Empty in files of older versions.
     #[serde(default)]
     pub classes: Vec<ClassRow>,
-    /// What the named effects leave. Absent from files of older versions.
+    /// Remainder that the named effects leave. Absent from files of older versions.
     #[serde(default)]
     pub left_over: Option<LeftOverRow>,
-    /// How far the gap shrinks.
+    /// Size of the gap before and after recalibration and repair.
     pub gap: GapSummary,
     /// Where it lies.
     #[serde(rename = "where")]
     pub place: GapMaps,
-    /// What stamps and values show directly.
+    /// Properties of stamps and values that show without a fit.
     pub measuring_chain: ChainSummary,
     /// The nominal coefficients before and after.
     pub calibration: Calibration,
-    /// What to record next.
+    /// Experiment to record next.
     pub next_experiment: NextExperiment,
     /// Wall time of the diagnosis, in seconds.
     pub seconds: f64,
@@ -53,13 +53,13 @@ pub struct DiagnosisResult {
     pub nominal_digest: String,
     /// Root of the random draws.
     pub seed: u64,
-    /// What was observed: `position`, `velocity` or `acceleration`.
+    /// Observed quantity: `position`, `velocity` or `acceleration`.
     pub quantity: String,
     /// Share of the samples that was used; below 1 for very long records.
     pub samples_used: f64,
-    /// What could stand in the place of a named effect, closest first.
+    /// Effects that could stand in the place of a named one, closest first.
     pub rivals: Vec<RivalRow>,
-    /// What leaving a named effect out costs.
+    /// Cost of leaving out each named effect.
     pub detectability: Vec<DetectabilityRow>,
     /// The sets of effects that were fitted, best first.
     pub sets: Vec<SetRow>,
@@ -89,7 +89,7 @@ impl DiagnosisResult {
     }
 }
 
-/// What a diagnosis comes to.
+/// Status of a diagnosis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum VerdictStatus {
@@ -167,7 +167,7 @@ pub struct ParameterRow {
     /// 95 % interval, widened for the residual's autocorrelation; an end that is not finite is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub interval_95: [f64; 2],
-    /// Whether these data determine it: `false`, or absent.
+    /// True if these data determine it: `false`, or absent.
     #[serde(default = "yes", skip_serializing_if = "bool::clone")]
     pub determined: bool,
 }
@@ -176,7 +176,7 @@ fn yes() -> bool {
     true
 }
 
-/// How far the gap shrinks: root mean squares on parts not fitted, in `unit`.
+/// Size of the gap before and after recalibration and repair: root mean squares on parts not fitted, in `unit`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GapSummary {
     /// Unit of the root mean squares.
@@ -213,7 +213,7 @@ pub struct GapSummary {
     /// Recalibrated and repaired on the last third, fitted to the first two thirds.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub last_third: [f64; 2],
-    /// How the parts not fitted were chosen.
+    /// Choice of the parts that were not fitted, in words.
     pub held_out: String,
 }
 
@@ -263,10 +263,10 @@ pub struct MapCell {
     /// The same with the named effects.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
-    /// What noise alone exceeds with 5 % probability in any cell of the map at all.
+    /// Value that noise alone exceeds with 5 % probability in any cell of the map at all.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub band: f64,
-    /// Whether the value lies above the band.
+    /// True if the value lies above the band.
     pub significant: bool,
     /// Samples in the cell.
     pub samples: usize,
@@ -286,7 +286,7 @@ pub struct ChainSummary {
     /// Standard deviation of the noise.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub noise: f64,
-    /// What was found.
+    /// Findings, one sentence each.
     pub findings: Vec<ChainFinding>,
 }
 
@@ -299,10 +299,10 @@ pub struct ChainFinding {
     pub text: String,
 }
 
-/// What to record next.
+/// Experiment to record next.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NextExperiment {
-    /// What to do, or that nothing is to be told apart.
+    /// Instruction, or the statement that nothing is left to be told apart.
     pub text: String,
     /// The explanations it separates; empty where there are none.
     pub separates: Vec<String>,
@@ -338,9 +338,9 @@ pub struct RecordRow {
     pub clock: String,
     /// Why, in a sentence.
     pub clock_reason: String,
-    /// What was noticed while reading: sentences.
+    /// Remarks from reading the file: sentences.
     pub findings: Vec<String>,
-    /// How the file was read; empty in answers of earlier versions.
+    /// Decisions made in reading the file; empty in answers of earlier versions.
     #[serde(default)]
     pub reading: record::Reading,
 }
@@ -350,19 +350,19 @@ pub struct RecordRow {
 pub struct RivalRow {
     /// An effect of the verdict.
     pub effect: String,
-    /// What could stand in its place.
+    /// Id of the effect that could stand in its place.
     pub rival: String,
     /// Distance of the two best fits in noise units; below [`DISTINCT_DISTANCE`] they are one class.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub distance: f64,
 }
 
-/// How detectable an effect of the verdict is on these data.
+/// Detectability of an effect of the verdict on these data.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DetectabilityRow {
     /// The effect.
     pub effect: String,
-    /// What leaving it out costs, in noise units.
+    /// Cost of leaving it out, in noise units.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub d: f64,
 }
@@ -378,7 +378,7 @@ pub struct ClassRow {
     pub gap_share: Option<WithInterval>,
     /// Its members, the most probable first.
     pub kinds: Vec<KindRow>,
-    /// Whether these data tell which of them it is.
+    /// True if these data tell which of them it is.
     pub kind_is_told: bool,
     /// Error on held-out parts of the best set without the class, and with it, in the observed quantity's unit.
     #[serde(deserialize_with = "null_is_not_a_number")]
@@ -388,7 +388,7 @@ pub struct ClassRow {
     pub error_with: f64,
     /// Part of the draws of segments in which the class is better supported than what takes its place.
     pub stability: f64,
-    /// What the probability follows from.
+    /// Evidence that the probability follows from.
     pub evidence: ClassEvidenceRow,
 }
 
@@ -411,7 +411,7 @@ pub struct ClassEvidenceRow {
     pub half_swings: Option<f64>,
 }
 
-/// What the named effects leave.
+/// Remainder that the named effects leave.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct LeftOverRow {
     /// Share of the gap, beyond the noise, that has no name.
@@ -440,9 +440,9 @@ pub struct SetRow {
 /// An equation of motion in two notations.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Equation {
-    /// As text, the numbers listed after it.
+    /// Equation as text, followed by a list of its numbers.
     pub text: String,
-    /// As LaTeX.
+    /// Equation as LaTeX.
     pub latex: String,
 }
 
@@ -478,7 +478,7 @@ pub struct SurfaceCell {
     /// Mean measured acceleration.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub measured: f64,
-    /// What of it the recalibrated simulator lacks.
+    /// Part of it that the recalibrated simulator lacks.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub missing: f64,
     /// Samples in the cell.
@@ -494,14 +494,14 @@ pub struct SeriesRow {
     pub segment: usize,
     /// Time after the record's first sample, in seconds.
     pub time_s: f64,
-    /// What was observed.
+    /// Observed value.
     pub observed: f64,
-    /// What the given simulator says.
+    /// Prediction of the given simulator.
     pub nominal: f64,
-    /// What the recalibrated simulator says, fitted elsewhere.
+    /// Prediction of the recalibrated simulator, fitted to other parts.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub recalibrated: f64,
-    /// What the repaired simulator says, fitted elsewhere.
+    /// Prediction of the repaired simulator, fitted to other parts.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub repaired: f64,
     /// Torque (force) of the input, in the third of [`DiagnosisResult::units`]; `None` where the record has no input.

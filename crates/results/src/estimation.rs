@@ -10,12 +10,12 @@ pub const RESULT_SCHEMA: &str = "ringdown.result/1";
 /// Reason of a method that has no outcome because the run was interrupted before its turn came.
 pub const NOT_BEGUN: &str = "interrupted before it began";
 
-/// What one estimation found: the content of `result.json`.
+/// Result of one estimation: the content of `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimationResult {
     /// Always [`RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"estimate"`.
+    /// Task that was asked for: `"estimate"`.
     pub task: String,
     /// Identifier of the estimator, such as `"pinn"`.
     pub estimator: String,
@@ -29,14 +29,14 @@ pub struct EstimationResult {
     pub envelope: EnvelopeSummary,
     /// Closed-form least squares on that envelope.
     pub oracle: OracleSummary,
-    /// What the estimator found on that envelope.
+    /// Estimate of the method on that envelope.
     pub estimate: EstimateSummary,
     /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
     /// The largest `error_percent` that passes.
     pub tolerance_percent: f64,
-    /// Whether every seed's error is within the tolerance.
+    /// True if every seed's error is within the tolerance.
     pub pass: bool,
     /// Wall time of the fit, in seconds.
     pub seconds: f64,
@@ -64,7 +64,7 @@ pub struct EstimationResult {
 pub struct TruthComparison {
     /// The file that states the truth.
     pub file: String,
-    /// What the true numbers are, in a sentence.
+    /// Meaning of the true numbers, in a sentence.
     pub meaning: String,
     /// True undamped angular frequency, in rad/s.
     pub omega_rad_s: Option<f64>,
@@ -107,9 +107,9 @@ pub struct DataSummary {
     pub resolution: Option<f64>,
     /// Unit of the observed quantity: `"rad"`, `"m"`, `"rad/s"`, …
     pub unit: String,
-    /// What was noticed about the file: sentences for the reader.
+    /// Remarks about the file: sentences for the reader.
     pub findings: Vec<String>,
-    /// How the file was read; empty in results of earlier versions.
+    /// Decisions made in reading the file; empty in results of earlier versions.
     #[serde(default)]
     pub reading: record::Reading,
 }
@@ -198,7 +198,7 @@ pub struct OracleSummary {
     pub residual_autocorrelation: f64,
 }
 
-/// What the estimator found.
+/// Estimate of a method.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimateSummary {
     /// λ, in 1/s.
@@ -218,7 +218,7 @@ pub struct EstimateSummary {
     pub zeta_interval_95: Option<[f64; 2]>,
     /// `"converged"`, `"budget_spent"`, `"diverged"`, `"stalled"` or `"interrupted"`.
     pub reached: String,
-    /// What stopped the training, in a sentence.
+    /// Reason, in a sentence, why the training stopped.
     pub stopped_because: String,
 }
 
@@ -234,7 +234,7 @@ pub struct SeedRow {
     /// |ζ − ζ_oracle| / ζ_oracle · 100; not finite, in JSON `null`, where the oracle's ζ is zero.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
-    /// As in [`EstimateSummary::reached`].
+    /// State in which this seed's fit ended, as in [`EstimateSummary::reached`].
     pub reached: String,
     /// Training steps taken.
     pub steps: u64,
@@ -249,13 +249,13 @@ pub struct PipelineRow {
     pub pipeline: String,
     /// `"host"`, `"uniform-index"` or `"index-with-gaps"`.
     pub clock: String,
-    /// Whether the fits of this run used this row's envelope.
+    /// True if the fits of this run used this row's envelope.
     pub in_force: bool,
-    /// What came out, or why nothing did.
+    /// Outcome, or the reason why there is none.
     pub outcome: PipelineOutcome,
 }
 
-/// What a pipeline gave.
+/// Outcome of one pipeline.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PipelineOutcome {
@@ -286,7 +286,7 @@ pub enum PipelineOutcome {
 pub struct TraceRow {
     /// Step, from 0 (untrained).
     pub step: u64,
-    /// What the step was part of, such as `"physics weight 100"`.
+    /// Phase of the training, such as `"physics weight 100"`.
     pub phase: String,
     /// The loss that the training minimizes, in the method's own scaled units.
     pub loss: f64,

@@ -8,12 +8,12 @@ use std::collections::BTreeMap;
 /// The `schema` field of a fleet.
 pub const FLEET_SCHEMA: &str = "ringdown.fleet/1";
 
-/// What the diagnoses of many systems say together.
+/// Summary of the diagnoses of many systems.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct FleetResult {
     /// Always [`FLEET_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"fleet"`.
+    /// Task that was asked for: `"fleet"`.
     pub task: String,
     /// Names of the labels that some case has: `robot`, `joint` and `date` first.
     pub labels: Vec<String>,
@@ -60,7 +60,7 @@ pub struct FleetGroup {
 pub struct FleetOutlier {
     /// The case.
     pub case: String,
-    /// What the number is, such as `coulomb_friction.torque`.
+    /// Name of the number, such as `coulomb_friction.torque`.
     pub name: String,
     /// Its unit; empty for a ratio.
     pub unit: String,
@@ -68,7 +68,7 @@ pub struct FleetOutlier {
     pub value: f64,
     /// Median of the cases it is compared with: those of the same joint, where cases are labeled by joint.
     pub median: f64,
-    /// How many these are.
+    /// Number of these cases.
     pub of: usize,
     /// 0.6745 times the distance from the median over the median absolute deviation (Iglewicz and Hoaglin 1993).
     pub score: f64,
@@ -79,7 +79,7 @@ pub struct FleetOutlier {
 pub struct FleetCase {
     /// Name of its folder.
     pub id: String,
-    /// What it says of itself.
+    /// Labels that it gives itself.
     pub labels: BTreeMap<String, String>,
     /// `measured`, `simulated` or `unstated`; `unstated` too where its records differ.
     pub origin: String,

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 pub struct LearnResult {
     /// Always [`crate::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"learn"`.
+    /// Task that was asked for: `"learn"`.
     pub task: String,
     /// Root of every random draw.
     pub seed: u64,
@@ -90,7 +90,7 @@ pub struct LearnRow {
     pub parameters: usize,
     /// Wall time of the training, in seconds.
     pub seconds: f64,
-    /// How its training ended.
+    /// End of its training.
     pub reached: LearnEnd,
     /// Why nothing was learned.
     pub failure: Option<String>,
@@ -131,7 +131,7 @@ impl LearnKind {
     }
 }
 
-/// How a training ended.
+/// End of a training.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LearnEnd {

@@ -4,16 +4,16 @@ use super::estimation::DataSummary;
 use super::interval::null_is_not_a_number;
 use serde::{Deserialize, Serialize};
 
-/// What a study of held-out prediction found: the content of `result.json` with `task = "predict"`.
+/// Result of a study of held-out prediction: the content of `result.json` with `task = "predict"`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PredictionResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"predict"`.
+    /// Task that was asked for: `"predict"`.
     pub task: String,
     /// The seed of the first draw and of its fits.
     pub seed: u64,
-    /// How peaks were held out.
+    /// Splits by which peaks were held out.
     pub splits: SplitSummary,
     /// One entry for each problem, in the order configured.
     pub problems: Vec<ProblemRow>,
@@ -21,7 +21,7 @@ pub struct PredictionResult {
     pub seconds: f64,
 }
 
-/// How peaks were held out.
+/// Splits by which peaks were held out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SplitSummary {
     /// Interpolation: successive peaks in a block.
@@ -43,11 +43,11 @@ pub struct ProblemRow {
     pub title: String,
     /// `"measured"`, `"simulated"` or `"unstated"`.
     pub origin: String,
-    /// What came out, or why nothing did.
+    /// Outcome, or the reason why there is none.
     pub outcome: ProblemOutcome,
 }
 
-/// What became of a problem.
+/// Outcome of one problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ProblemOutcome {
@@ -60,7 +60,7 @@ pub enum ProblemOutcome {
     },
 }
 
-/// What was found on one problem.
+/// Results on one problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ProblemStudy {
     /// Unit of the amplitude.
@@ -79,7 +79,7 @@ pub struct ProblemStudy {
     pub methods: Vec<PredictionRow>,
     /// Comparisons that the adjusted p-values of this problem answer for.
     pub comparisons: usize,
-    /// What follows, in sentences.
+    /// Conclusions, in sentences.
     pub verdict: Vec<String>,
 }
 
@@ -90,7 +90,7 @@ pub struct LawSummary {
     pub equation: String,
     /// Its parameters with units, in words.
     pub parameters: String,
-    /// How exact the closed form is, in words.
+    /// Exactness of the closed form, in words.
     pub exactness: String,
     /// λ of the viscous part, in 1/s.
     pub viscous_rate: f64,
@@ -123,11 +123,11 @@ pub struct PredictionRow {
     pub title: String,
     /// `"classical"` or `"learned"`.
     pub family: String,
-    /// What came out, or why nothing did.
+    /// Outcome, or the reason why there is none.
     pub outcome: PredictionOutcome,
 }
 
-/// What became of a method on a problem.
+/// Outcome of a method on a problem.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum PredictionOutcome {
@@ -157,14 +157,14 @@ pub struct MethodScores {
     pub interpolation: Option<HeldOutScore>,
     /// Peaks held out at the end; `None` where the method makes no prediction.
     pub extrapolation: Option<HeldOutScore>,
-    /// How often the stated 95 % interval of λ holds the projected slope: minus the least-squares slope of
+    /// Share of draws in which the stated 95 % interval of λ holds the projected slope: minus the least-squares slope of
     /// the noise-free ln A over the peaks of the interpolation fit.
     pub covers_projected_slope: Option<Coverage>,
-    /// How often it holds λ of the law's viscous part.
+    /// Share of draws in which it holds λ of the law's viscous part.
     pub covers_viscous_rate: Option<Coverage>,
     /// The law discovered by the first interpolation fit, where the method discovers laws.
     pub equation: Option<String>,
-    /// How many of the interpolation fits discovered a law of the commonest form, and that form with every
+    /// Number of interpolation fits that discovered a law of the commonest form, and that form with every
     /// number written as `c`.
     pub commonest_form: Option<(String, usize)>,
     /// Median wall time of a fit, in seconds.
@@ -195,13 +195,13 @@ pub struct HeldOutScore {
     /// Mean natural logarithm of the stated predictive density of ln A, where one is stated everywhere; not
     /// finite where a stated deviation is 0.
     pub mean_log_density: Option<f64>,
-    /// How many held-out peaks the stated 95 % predictive intervals hold.
+    /// Share of held-out peaks that the stated 95 % predictive intervals hold.
     pub coverage: Option<Coverage>,
     /// Against the best exponential on the same peaks.
     pub against_exponential: Option<PairedComparison>,
 }
 
-/// How often an interval holds what it is an interval of.
+/// Share of intervals that hold the number they are stated for.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Coverage {
     /// Intervals that do.
@@ -245,7 +245,7 @@ pub struct PredictionCsvRow {
     pub log_amplitude: f64,
     /// The noise-free ln A, where it is known.
     pub truth: Option<f64>,
-    /// Whether the peak was kept from the fit.
+    /// True if the peak was kept from the fit.
     pub held_out: bool,
     /// ln A as predicted; `inf`, `-inf` or `NaN` where it is not finite.
     pub predicted: f64,

@@ -17,11 +17,11 @@ pub struct RigsResult {
     pub rigs: Vec<RigRow>,
     /// Classes of effects by their probability over all rigs, the most probable first.
     pub classes: Vec<SharedClassRow>,
-    /// What the table says, in sentences.
+    /// Conclusions from the table, in sentences.
     pub sentences: Vec<String>,
     /// Rigs that gave no answer.
     pub failed: Vec<FailedCase>,
-    /// Whether every rig was looked at: an interrupted run leaves some.
+    /// True if every rig was looked at: an interrupted run leaves some.
     pub complete: bool,
     /// Wall time in seconds.
     pub seconds: f64,
@@ -81,7 +81,7 @@ pub struct SharedCoefficientRow {
     pub unit: String,
     /// Its values.
     pub values: Vec<RigValueRow>,
-    /// Whether the values agree within their errors; `None` where fewer than two can be compared.
+    /// True if the values agree within their errors; `None` where fewer than two can be compared.
     pub agree: Option<bool>,
     /// Cochran's Q: squared distances from the weighted mean over squared standard errors, summed.
     pub chi_squared: Option<f64>,

@@ -2,10 +2,10 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How a sweep searches: a part of its manifest.
+/// Search of a sweep: a part of its manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepSearch {
-    /// How points are chosen: `"grid"`, `"random"` or `"tpe"`.
+    /// Choice of points: `"grid"`, `"random"` or `"tpe"`.
     pub sampler: String,
     /// Points in all.
     pub trials: usize,
@@ -15,7 +15,7 @@ pub struct SweepSearch {
     pub seed: u64,
     /// Dotted path of a number in the runs' `result.json`.
     pub measure: String,
-    /// Whether more is better.
+    /// True if more is better.
     pub maximize: bool,
     /// Early stopping of the worse trials, where it was asked for.
     pub halving: Option<SweepHalving>,
@@ -41,7 +41,7 @@ pub struct SweepRung {
     pub values: Vec<SweepRungValue>,
 }
 
-/// What a trial had reached on a rung.
+/// Value that a trial had reached on a rung.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SweepRungValue {
     /// Number of the trial.
@@ -50,14 +50,14 @@ pub struct SweepRungValue {
     pub value: Option<f64>,
 }
 
-/// What a search found: a part of its table.
+/// Result of a search: a part of its table.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchOutcome {
-    /// As [`SweepSearch::sampler`].
+    /// Choice of points, as [`SweepSearch::sampler`].
     pub sampler: String,
-    /// As [`SweepSearch::measure`].
+    /// Measure that trials are judged by, as [`SweepSearch::measure`].
     pub measure: String,
-    /// As [`SweepSearch::maximize`].
+    /// Direction of the search, as [`SweepSearch::maximize`].
     pub maximize: bool,
     /// Points that were asked for.
     pub trials: usize,
@@ -69,7 +69,7 @@ pub struct SearchOutcome {
     pub failed: usize,
     /// The best of the measured.
     pub best: Option<SearchBest>,
-    /// What a reader should know of the choice.
+    /// Warning to the reader about the choice of measure.
     pub warning: Option<String>,
 }
 
@@ -82,7 +82,7 @@ pub struct SearchBest {
     pub run: String,
     /// Its measure.
     pub value: f64,
-    /// What it overrides.
+    /// Overrides of the configuration, as `key=value`.
     pub overrides: Vec<String>,
     /// Its configuration, from the sweep's folder, ready to be run.
     pub config: String,

@@ -10,7 +10,7 @@ pub const RECORDS_SCHEMA: &str = "ringdown.records/1";
 pub struct SimulationResult {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"simulate"`.
+    /// Task that was asked for: `"simulate"`.
     pub task: String,
     /// The configuration's name.
     pub name: String,
@@ -20,11 +20,11 @@ pub struct SimulationResult {
     pub systems: u64,
     /// Records written.
     pub records: u64,
-    /// Whether all that were asked for are there: an interrupted simulation has fewer.
+    /// True if all that were asked for are there: an interrupted simulation has fewer.
     pub complete: bool,
     /// Samples in all records together.
     pub samples: u64,
-    /// How many systems have each effect of the configuration.
+    /// Number of systems that have each effect of the configuration.
     pub effects: Vec<EffectCount>,
     /// Folder of the records, from the run's folder.
     pub records_folder: String,
@@ -36,7 +36,7 @@ pub struct SimulationResult {
     pub seconds: f64,
 }
 
-/// How many systems have an effect.
+/// Number of systems that have an effect.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct EffectCount {
     /// The effect's id.

@@ -18,11 +18,11 @@ pub struct SweepManifest {
     pub config: String,
     /// Version of the program that froze it.
     pub version: String,
-    /// What is varied; the first axis varies slowest.
+    /// Keys that are varied; the first axis varies slowest.
     pub axes: Vec<SweepAxis>,
     /// The records that the runs read, with their digests when the sweep was frozen.
     pub records: Vec<SweepRecord>,
-    /// How points are chosen and what they are judged by, where the sweep searches.
+    /// Choice of points and the measure that they are judged by, where the sweep searches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SweepSearch>,
     /// One line for each run, in the order of the combinations; of a search with `"tpe"`, those proposed so far.
@@ -57,19 +57,19 @@ pub struct SweepLine {
     pub number: usize,
     /// SHA-256 of every value in force: the run's identity.
     pub digest: String,
-    /// What the combination overrides.
+    /// Overrides of the configuration, as `key=value`.
     pub overrides: Vec<String>,
     /// The frozen configuration, from the sweep's folder.
     pub config: String,
-    /// What became of it. `sweep.json` is written again now and then; the files in `state/` are first to know.
+    /// State of the run. `sweep.json` is written again now and then; the files in `state/` are first to know.
     pub state: SweepState,
     /// The run's folder, from the sweep's; none before it began, or where it failed before it had one.
     pub run: Option<String>,
-    /// Why it failed.
+    /// Reason of a failure, or of having been stopped.
     pub message: Option<String>,
 }
 
-/// What became of a run of a sweep.
+/// State of a run of a sweep.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum SweepState {
@@ -86,7 +86,7 @@ pub enum SweepState {
 }
 
 impl SweepState {
-    /// As `sweep.json` writes it.
+    /// Returns the name as `sweep.json` writes it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -102,13 +102,13 @@ impl SweepState {
 /// The content of one file in a sweep's `state/`: a run that came to its end.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SweepEnd {
-    /// As [`SweepLine::digest`].
+    /// Digest of the run's values, as [`SweepLine::digest`].
     pub digest: String,
-    /// As [`SweepLine::state`]; never pending.
+    /// State of the run, as [`SweepLine::state`]; never pending.
     pub state: SweepState,
-    /// As [`SweepLine::run`].
+    /// Folder of the run, as [`SweepLine::run`].
     pub run: Option<String>,
-    /// As [`SweepLine::message`].
+    /// Reason of a failure, as [`SweepLine::message`].
     pub message: Option<String>,
 }
 
@@ -121,11 +121,11 @@ pub struct RunTable {
     pub task: String,
     /// Name of the sweep; empty for runs that were put together by hand.
     pub name: String,
-    /// What a sweep varies.
+    /// Keys that a sweep varies.
     pub axes: Vec<SweepAxis>,
     /// The configuration keys in which the runs differ, in the order of their columns; of a search, its measure last.
     pub columns: Vec<String>,
-    /// What a search found.
+    /// Result of the search, where the sweep searches.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub search: Option<SearchOutcome>,
     /// One row for each run; of a comparison of methods one for each method.
@@ -136,11 +136,11 @@ pub struct RunTable {
     pub failed: usize,
     /// Runs without a result that may still get one: pending, interrupted, unfinished.
     pub open: usize,
-    /// Whether no run failed and every result is within its stated tolerance.
+    /// True if no run failed and every result is within its stated tolerance.
     pub pass: bool,
 }
 
-/// What a run's row is about.
+/// State of a run in a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum RunState {
@@ -161,7 +161,7 @@ pub enum RunState {
 }
 
 impl RunState {
-    /// As tables and JSON write it.
+    /// Returns the name as tables and JSON write it.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -175,7 +175,7 @@ impl RunState {
         }
     }
 
-    /// Whether a reader has to look after it.
+    /// Returns whether a reader has to look after it.
     #[must_use]
     pub fn is_bad(self) -> bool {
         matches!(self, Self::Failed | Self::Corrupt)
@@ -187,11 +187,11 @@ impl RunState {
 pub struct RunTableRow {
     /// The run's folder; of a sweep's, from the sweep's folder.
     pub run: String,
-    /// What the row is about.
+    /// State of the run.
     pub state: RunState,
     /// Why there is no estimate; empty where there is one.
     pub reason: String,
-    /// What was asked for, such as `"estimate"`; empty where that is not known.
+    /// Task that was asked for, such as `"estimate"`; empty where that is not known.
     pub task: String,
     /// Identifier of the method; empty where there is none or many.
     pub estimator: String,
@@ -223,7 +223,7 @@ pub struct RunTableRow {
     pub parameters: Option<usize>,
     /// Wall time of a fit, in seconds.
     pub seconds: Option<f64>,
-    /// Whether every seed is within the tolerance.
+    /// True if every seed is within the tolerance.
     pub pass: Option<bool>,
 }
 

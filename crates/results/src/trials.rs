@@ -12,7 +12,7 @@ pub const TRIALS_SCHEMA: &str = "ringdown.trials/1";
 /// The `schema` field of the manifest of trials.
 pub const TRIALS_MANIFEST_SCHEMA: &str = "ringdown.trials-manifest/1";
 
-/// What was published before the first diagnosis: digests of records and truths.
+/// Digests of records and truths, published before the first diagnosis.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrialsManifest {
     /// Always [`TRIALS_MANIFEST_SCHEMA`].
@@ -47,7 +47,7 @@ pub struct TrialsManifestLine {
 pub struct TrialsShare {
     /// Always [`super::RESULT_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"trials-share"`.
+    /// Task that was asked for: `"trials-share"`.
     pub task: String,
     /// The share, as `2/8`.
     pub shard: String,
@@ -57,7 +57,7 @@ pub struct TrialsShare {
     pub open: usize,
 }
 
-/// How often something was so, of independent cases.
+/// Share of independent cases in which something was so.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Proportion {
     /// Cases where it was.
@@ -77,7 +77,7 @@ pub struct Proportion {
 pub struct TrialsResult {
     /// Always [`TRIALS_SCHEMA`].
     pub schema: String,
-    /// What was asked for: `"trials"`.
+    /// Task that was asked for: `"trials"`.
     pub task: String,
     /// Name of the trials.
     pub name: String,
@@ -89,11 +89,11 @@ pub struct TrialsResult {
     pub unanswered: u64,
     /// Banks that were not made, and why.
     pub left_out: Vec<LeftOutBank>,
-    /// What `right` means, by kind of case.
+    /// Meaning of `right`, by kind of case.
     pub right_means: String,
     /// The bars, in the order of their document.
     pub bars: Vec<BarRow>,
-    /// What the configuration's gate asks for; empty where it asks for nothing.
+    /// Values that the configuration's gate asks for; empty where it asks for none.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub gate: Vec<BarRow>,
     /// Scores by effect and by class where several effects act; empty without such banks.
@@ -109,19 +109,19 @@ pub struct TrialsResult {
     pub confusion: Confusion,
     /// Hidden kind against the kind of the answer.
     pub kinds: Confusion,
-    /// Whether probabilities hold what they say.
+    /// Reliability of stated probabilities.
     pub reliability: Vec<Reliability>,
-    /// What confidence should be taken for, by the even cases of the own banks.
+    /// Map from stated confidence to the share that was right, from the even cases of the own banks.
     pub map: ProbabilityMap,
     /// Telling what has no name from what has.
     pub unknown: UnknownStudy,
     /// Held-out error over noise floor, of right answers that name an effect.
     pub ratio_to_floor: Quantiles,
-    /// Whether intervals of closure hold the closure that the repaired simulator has on the clean motion.
+    /// Coverage of the intervals of closure: of the closure that the repaired simulator has on the clean motion.
     pub closure: ClosureStudy,
     /// Wall time of a diagnosis in seconds.
     pub seconds_per_case: Quantiles,
-    /// How often what comes with records of every bank was named.
+    /// Share of cases in which an effect that comes with records of every bank was named.
     pub nuisances: Vec<NuisanceRow>,
     /// Simpler diagnosers on the same records.
     pub baselines: Vec<BaselineRow>,
@@ -143,7 +143,7 @@ pub struct LeftOutBank {
 /// A bar and what was measured.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BarRow {
-    /// What is measured.
+    /// Name of the measure.
     pub metric: String,
     /// Smallest value that meets the bar, where there is one.
     pub at_least: Option<f64>,
@@ -151,7 +151,7 @@ pub struct BarRow {
     pub at_most: Option<f64>,
     /// Unit of the numbers; empty for a ratio, `%` for shares, which stand as shares here.
     pub unit: String,
-    /// What was measured.
+    /// Measured value.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub value: f64,
     /// Its 95 % interval.
@@ -161,7 +161,7 @@ pub struct BarRow {
     pub cases: u64,
     /// `met`, `not met` or `not measured here`.
     pub state: String,
-    /// Whether the whole interval lies on the wrong side.
+    /// True if the whole interval lies on the wrong side.
     pub missed_beyond_chance: bool,
 }
 
@@ -171,7 +171,7 @@ pub struct BarRow {
 pub struct ClassScores {
     /// The cases: a bank, or a part of one.
     pub banks: String,
-    /// How many there are.
+    /// Number of cases.
     pub cases: u64,
     /// The class of the largest hidden effect is named.
     pub leading_named: Proportion,
@@ -205,7 +205,7 @@ pub struct RecallRow {
     pub named: Proportion,
 }
 
-/// How an effect or a class fares.
+/// Recall and precision of an effect or a class.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct InclusionRow {
     /// Its id.
@@ -231,7 +231,7 @@ pub struct BankRow {
     pub right: Proportion,
     /// The first name is that of a hidden effect; without one, nothing named, or `unknown` where that is asked for.
     pub top_1: Proportion,
-    /// As `top_1`, or one that the answer says it cannot tell from it.
+    /// Share with the right name first, or one that the answer says it cannot tell from it.
     pub class: Proportion,
     /// Every hidden effect named; of cases with two.
     pub both: Proportion,
@@ -253,11 +253,11 @@ pub struct SizeRow {
     /// The range of sizes; the upper end of the last is `null`.
     #[serde(deserialize_with = "nulls_are_not_numbers")]
     pub range: [f64; 2],
-    /// As in [`BankRow::top_1`].
+    /// Share with the right name first, as in [`BankRow::top_1`].
     pub top_1: Proportion,
-    /// As in [`BankRow::class`].
+    /// Share with the right class first, as in [`BankRow::class`].
     pub class: Proportion,
-    /// As in [`BankRow::both`].
+    /// Share of pairs of which both are named, as in [`BankRow::both`].
     pub both: Proportion,
 }
 
@@ -272,7 +272,7 @@ pub struct Confusion {
     pub counts: Vec<Vec<u64>>,
 }
 
-/// Whether probabilities hold what they say.
+/// Reliability of stated probabilities.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Reliability {
     /// `confidence`, `confidence, mapped`, `effects` or `classes`.
@@ -283,7 +283,7 @@ pub struct Reliability {
     pub count: u64,
     /// Expected calibration error over bins of equal count, its 95 % interval by a bootstrap over cases.
     pub calibration_error: WithInterval,
-    /// What that error is on average for probabilities that are exactly right, as many as here.
+    /// Average of that error for probabilities that are exactly right, as many as here.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub calibration_error_by_chance: f64,
     /// Mean square of probability less outcome.
@@ -300,14 +300,14 @@ pub struct ReliabilityBin {
     pub range: [f64; 2],
     /// Their mean.
     pub stated: f64,
-    /// How often it was so.
+    /// Share that was so.
     pub found: Proportion,
 }
 
 /// A map from stated to found probabilities.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct ProbabilityMap {
-    /// How it was made.
+    /// Method by which the map was made.
     pub method: String,
     /// Stated and found, rising; linear between, constant beyond.
     pub knots: Vec<[f64; 2]>,
@@ -352,22 +352,22 @@ pub struct Quantiles {
     pub worst: f64,
 }
 
-/// Whether intervals of closure hold.
+/// Coverage of the intervals of closure.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ClosureStudy {
-    /// What the true closure is.
+    /// Definition of the true closure.
     pub means: String,
-    /// How often the interval holds it.
+    /// Share of intervals that hold it.
     pub coverage: Proportion,
-    /// How often it lies below the interval.
+    /// Number of cases in which it lies below the interval.
     pub below: u64,
-    /// How often it lies above.
+    /// Number of cases in which it lies above.
     pub above: u64,
     /// Cases left out, by reason.
     pub left_out: BTreeMap<String, u64>,
 }
 
-/// How often something that comes with all records was named.
+/// Share of cases in which an effect that comes with all records was named.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct NuisanceRow {
     /// Its id.
@@ -381,7 +381,7 @@ pub struct NuisanceRow {
 pub struct BaselineRow {
     /// Its id.
     pub id: String,
-    /// What it does.
+    /// Method, in a sentence.
     pub method: String,
     /// First name right, on the bank of single effects.
     pub top_1: Proportion,
@@ -400,14 +400,14 @@ pub struct FailureRow {
     pub id: String,
     /// Its bank.
     pub bank: String,
-    /// What was hidden.
+    /// Hidden effects, or the law that acts.
     pub hidden: String,
-    /// What was said, or why nothing was.
+    /// Answer, or the reason why there is none.
     pub said: String,
     /// Size in noise units of what was hidden; of a pair of the smaller one.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub size: f64,
-    /// Whether the answer says that it cannot tell what it named from what was hidden.
+    /// True if the answer says that it cannot tell what it named from what was hidden.
     pub same_class: bool,
     /// Diagnoses this case alone again.
     pub command: String,
@@ -426,7 +426,7 @@ pub struct TrialCaseRow {
     pub size: String,
     /// Status of the answer; `no answer` where there is none.
     pub status: String,
-    /// What was named beside nuisances, best first, joined by `+`.
+    /// Effects named beside nuisances, best first, joined by `+`.
     pub named: String,
     /// Stated probability of status and set.
     pub confidence: Option<f64>,

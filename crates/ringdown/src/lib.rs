@@ -73,7 +73,7 @@ pub mod contract {
     pub use seed::Seed;
 }
 
-/// What a learner of one's own is given and gives.
+/// Contract of a learner: data sets, models and scores.
 pub mod learning {
     pub use estimator::Reached;
     pub use learn::data::{DataSet, Trajectory};

@@ -97,7 +97,7 @@ impl Nominal {
         Ok(Self { stated: nominal::parse(name, text)?, name: name.to_owned() })
     }
 
-    /// The same simulator with an effect that it has already, so that no diagnosis names it. A recalibration may move its
+    /// Adds an effect that the simulator has already, so that no diagnosis names it. A recalibration may move its
     /// parameters.
     ///
     /// # Errors
@@ -118,7 +118,7 @@ impl Nominal {
         Ok(Self { stated: StatedNominal { simulator, ..self.stated }, ..self })
     }
 
-    /// The same simulator of a displacement in meters instead of an angle.
+    /// Reads the coordinate as a displacement in meters instead of an angle.
     ///
     /// # Errors
     /// [`Error::Config`] where an effect of it is for angles only.
@@ -129,7 +129,7 @@ impl Nominal {
         Ok(Self { name: self.name, ..made })
     }
 
-    /// The same simulator driven by an input: torque or force per unit of it.
+    /// Sets the gain of the input: torque or force per unit of it.
     ///
     /// # Errors
     /// [`Error::Config`] for a gain that is not finite.

@@ -65,7 +65,7 @@ impl Simulation {
         }
     }
 
-    /// The same with one more effect, in the system or in the measurement chain; [`effects`](crate::effects) lists them.
+    /// Adds an effect, in the system or in the measurement chain; [`effects`](crate::effects) lists them.
     ///
     /// # Errors
     /// [`Error::Config`] for an unknown effect or parameter, or a value out of range.
@@ -74,19 +74,19 @@ impl Simulation {
         Ok(self)
     }
 
-    /// The same, released from rest at a position in rad or m.
+    /// Sets the start: a release from rest at a position in rad or m.
     #[must_use]
     pub fn released_at(self, position: f64) -> Self {
         Self { start: Start::release(position), ..self }
     }
 
-    /// The same, starting at a position with a velocity.
+    /// Sets the start: a position in rad or m with a velocity in rad/s or m/s.
     #[must_use]
     pub fn starting(self, position: f64, velocity: f64) -> Self {
         Self { start: Start { position, velocity }, ..self }
     }
 
-    /// The same, driven by an input, which stands in the record too.
+    /// Sets an input that drives the system; it stands in the record too.
     ///
     /// ```
     /// use ringdown_lab::{Excitation, Nominal, Simulation, Waveform};
@@ -101,7 +101,7 @@ impl Simulation {
         Self { excitation: Some(excitation), ..self }
     }
 
-    /// The same, seen by a sensor of positions, velocities or accelerations.
+    /// Sets the quantity that the sensor observes: position, velocity or acceleration.
     #[must_use]
     pub fn observing(self, quantity: Quantity) -> Self {
         let observed = match quantity {
@@ -112,19 +112,19 @@ impl Simulation {
         Self { observed, ..self }
     }
 
-    /// The same, sampled at a rate in hertz for so many seconds.
+    /// Sets the sampling: a rate in hertz and a length in seconds.
     #[must_use]
     pub fn sampled(self, rate_hz: f64, seconds: f64) -> Self {
         Self { rate_hz, seconds, ..self }
     }
 
-    /// The same with white sensor noise of a standard deviation, in the observed unit.
+    /// Sets the standard deviation of the sensor's white noise, in the observed unit.
     #[must_use]
     pub fn noise(self, noise: f64) -> Self {
         Self { noise, ..self }
     }
 
-    /// The same with other random draws.
+    /// Sets the seed of every random draw.
     #[must_use]
     pub fn seed(self, seed: u64) -> Self {
         Self { seed, ..self }

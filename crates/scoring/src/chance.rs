@@ -50,8 +50,13 @@ pub fn clustered_interval(clusters: &[(usize, usize)]) -> Option<[f64; 2]> {
     Some(binomial_interval(share * effective, effective))
 }
 
-/// The two-sided p-value of the sign test: how often chance gives a split at least as uneven as `wins`
+/// Two-sided p-value of the sign test: how often chance gives a split at least as uneven as `wins`
 /// against `losses`. Ties are left out beforehand; 1 for no trials.
+///
+/// ```
+/// // Nine of ten: both tails of a binomial of one half, (1 + 10)/2¹⁰ each.
+/// assert!((scoring::sign_test(9, 1) - 22.0 / 1024.0).abs() < 1e-12);
+/// ```
 ///
 /// # Reference
 /// W. J. Dixon, A. M. Mood, J. Amer. Statist. Assoc. 41 (1946) 557–566.
@@ -66,8 +71,13 @@ pub fn sign_test(wins: usize, losses: usize) -> f64 {
 }
 
 /// p-values adjusted for their number by Holm's method: the chance that any of the true hypotheses among
-/// them is rejected stays below the level that the adjusted ones are held to. Of what is no number, none
-/// is made.
+/// them is rejected stays below the level that the adjusted ones are held to. One entry for each given, in their order; an
+/// entry that is not a number stays so and does not count.
+///
+/// ```
+/// let adjusted = scoring::holm(&[0.01, 0.04, 0.03]);
+/// assert!((adjusted[0] - 0.03).abs() < 1e-12 && (adjusted[2] - 0.06).abs() < 1e-12);
+/// ```
 ///
 /// # Reference
 /// S. Holm, Scand. J. Statist. 6 (1979) 65–70.

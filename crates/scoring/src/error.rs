@@ -9,7 +9,7 @@ pub fn error_percent(estimate: f64, oracle: f64) -> f64 {
     if distance == 0.0 { 0.0 } else { distance / oracle.abs() * 100.0 }
 }
 
-/// Whether an error in percent passes a tolerance in percent; what is not a number does not.
+/// Returns whether an error in percent passes a tolerance in percent; what is not a number does not.
 #[must_use]
 pub fn passes(error_percent: f64, tolerance_percent: f64) -> bool {
     error_percent <= tolerance_percent

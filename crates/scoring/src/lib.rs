@@ -1,5 +1,21 @@
 //! How far an estimate is from the oracle, whether that passes, what follows from a damping ratio, how well
 //! held-out peaks are predicted, and what chance alone would give.
+//!
+//! # Example
+//!
+//! ```
+//! use scoring::{agreement, error_percent, half_life, passes, quality_factor};
+//!
+//! // A damping ratio of 0.00874 by least squares, and another method's.
+//! assert!(passes(error_percent(0.008_741, 0.008_74), 0.1));
+//! assert!((quality_factor(0.008_74) - 57.2).abs() < 0.1);
+//! assert!((half_life(0.192) - 3.61).abs() < 0.01);
+//!
+//! // Decay rates of three records of one oscillator in 1/s, each with its standard error.
+//! let found = agreement(&[(0.190, 0.004), (0.194, 0.004), (0.188, 0.008)]).unwrap();
+//! assert_eq!(found.degrees, 2);
+//! assert!(found.p_value > 0.5, "{found:?}");
+//! ```
 
 mod agreement;
 mod chance;

@@ -17,7 +17,7 @@ pub struct HeldOutPeak {
 }
 
 impl HeldOutPeak {
-    /// Whether the stated 95 % interval, predicted ± 1.96 standard deviations, holds the peak; `None` where
+    /// Returns whether the stated 95 % interval, predicted ± 1.96 standard deviations, holds the peak; `None` where
     /// none is stated. About a prediction that is not finite there is no interval, and it holds nothing.
     #[must_use]
     pub fn is_within_95(&self) -> Option<bool> {
@@ -71,7 +71,7 @@ pub fn mean_log_density(peaks: &[HeldOutPeak]) -> Option<f64> {
     densities.filter(|all| !all.is_empty()).map(|all| all.iter().sum::<f64>() / all.len() as f64)
 }
 
-/// How many of the stated 95 % intervals hold their peak, and of how many; `None` where a peak has none
+/// Number of stated 95 % intervals that hold their peak, and their number; `None` where a peak has none
 /// stated, or for no peaks.
 #[must_use]
 pub fn held_within_95(peaks: &[HeldOutPeak]) -> Option<(usize, usize)> {

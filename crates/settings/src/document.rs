@@ -234,7 +234,7 @@ impl Document {
     }
 }
 
-/// Whether a dotted key belongs to a table or to one below it.
+/// Returns whether a dotted key belongs to a table or to one below it.
 fn lies_below(key: &str, table: &str) -> bool {
     key.strip_prefix(table).is_some_and(|rest| rest.starts_with('.'))
 }
@@ -269,7 +269,7 @@ fn plain(value: &DeValue<'_>) -> Result<Value, String> {
     })
 }
 
-/// Whether a name may be part of a dotted key.
+/// Returns whether a name may be part of a dotted key.
 fn is_name(part: &str) -> bool {
     !part.is_empty() && part.chars().all(|c| c.is_ascii_alphanumeric() || "_-".contains(c))
 }

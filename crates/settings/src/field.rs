@@ -2,7 +2,7 @@
 
 use toml::Value;
 
-/// What a value has to be.
+/// Kind of a value, with its range.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kind {
     /// `true` or `false`.
@@ -59,7 +59,7 @@ pub enum Kind {
     },
 }
 
-/// What holds where a configuration is silent.
+/// Default of a key that a configuration does not mention.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Default {
     /// There is none: the key has to be given.
@@ -110,13 +110,13 @@ impl Default {
 pub struct Field {
     /// The key within its section.
     pub key: &'static str,
-    /// What the value has to be.
+    /// Kind of the value.
     pub kind: Kind,
-    /// What holds where a configuration is silent.
+    /// Default of a key that a configuration does not mention.
     pub default: Default,
     /// The unit of the value; empty where it has none.
     pub unit: &'static str,
-    /// What the key means: one sentence.
+    /// Meaning of the key: one sentence.
     pub meaning: &'static str,
     /// Where the default comes from: a paper, a standard, a measurement.
     pub source: &'static str,
@@ -176,7 +176,7 @@ impl Kind {
         admitted.ok_or_else(|| self.expected())
     }
 
-    /// What the kind admits, in words.
+    /// Returns what the kind admits, in words.
     #[must_use]
     pub fn expected(&self) -> String {
         match self {
@@ -225,7 +225,7 @@ fn range<T: std::fmt::Display + Bound>(min: &T, max: &T) -> String {
 }
 
 trait Bound {
-    /// Whether it leaves out only what is not positive, and no whole number.
+    /// Returns whether it leaves out only what is not positive, and no whole number.
     fn is_least_positive(&self) -> bool;
     fn is_open(&self) -> bool;
 }

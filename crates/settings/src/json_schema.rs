@@ -45,7 +45,7 @@ pub fn insert(root: &mut Value, table: &str, key: &str, schema: Value) {
     }
 }
 
-/// What has to be given in these sections, as a schema of its own.
+/// Requirements of these sections, as a schema of its own.
 #[must_use]
 pub fn requirements(sections: &[Section<'_>]) -> Value {
     let mut root = json!({});

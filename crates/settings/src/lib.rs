@@ -6,6 +6,32 @@
 //!
 //! The way of a configuration: text → [`Document`] (leaves with their origin) → put on its bases → overrides applied →
 //! [`Resolved`] (every key known, typed, in range, defaults filled in) → a plain struct by serde.
+//!
+//! # Example
+//!
+//! ```
+//! use settings::{Default, Document, Field, Kind, Resolved, Section};
+//!
+//! const FIT: &[Field] = &[Field {
+//!     key: "max_steps",
+//!     kind: Kind::Integer { min: 1, max: 10_000 },
+//!     default: Default::Integer(100),
+//!     unit: "steps",
+//!     meaning: "Most steps of the fit.",
+//!     source: "",
+//! }];
+//! let sections = [Section { name: "fit", fields: FIT }];
+//!
+//! let mut document = Document::parse("fit.toml", "[fit]\nmax_steps = 20\n")?;
+//! let resolved = Resolved::new(&document, &sections)?;
+//! assert_eq!(resolved.values_text(), "fit.max_steps = 20\n");
+//!
+//! // A value out of range is refused, with the place where it stands and what is expected there.
+//! document.apply_override("fit.max_steps=0")?;
+//! let refusal = Resolved::new(&document, &sections).unwrap_err().to_string();
+//! assert!(refusal.contains("fit.max_steps"), "{refusal}");
+//! # Ok::<(), settings::SettingsError>(())
+//! ```
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

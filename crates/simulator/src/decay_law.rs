@@ -3,6 +3,15 @@
 use std::f64::consts::PI;
 
 /// A law of decay with a closed form at the turning points.
+///
+/// ```
+/// use simulator::DecayLaw;
+///
+/// let law = DecayLaw::Exponential { decay_rate: 0.2 };
+/// // Turning points half a period apart: the seventh lies one second after the first.
+/// let seventh = law.amplitude(0.7, 1.0 / 3.0, 6);
+/// assert!((seventh - 0.7 * (-0.2_f64).exp()).abs() < 1e-12);
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum DecayLaw {
     /// Viscous damping alone: A(t) = A₀·exp(−λt), exact.
@@ -102,7 +111,7 @@ impl DecayLaw {
         }
     }
 
-    /// How exact the closed form is, in words.
+    /// Returns how exact the closed form is, in words.
     #[must_use]
     pub fn exactness(&self) -> &'static str {
         match self {

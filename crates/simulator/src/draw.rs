@@ -14,10 +14,10 @@ use truth::{Draws, Sealed, TRUTH_SCHEMA, Truth};
 /// A drawn system: what is believed of it, and what generates each of its records.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DrawnSystem {
-    /// What a user of a simulator would believe: the nominal oscillator without the effects, off by the
+    /// Nominal oscillator that a user would believe in: without the effects, off by the
     /// calibration error.
     pub nominal: Nominal,
-    /// What is, one truth for each record; they differ in start and draws only.
+    /// Truths, one for each record; they differ in start and draws only.
     pub truths: Vec<Truth>,
 }
 

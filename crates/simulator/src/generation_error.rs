@@ -11,7 +11,7 @@ pub enum GenerationError {
     /// The system, its motion or its measuring chain is impossible.
     #[error(transparent)]
     Dynamics(#[from] DynamicsError),
-    /// What the chain leaves is no record.
+    /// Remainder of the measurement chain that is no record.
     #[error("what is left is no record: {0}")]
     Record(#[from] Fault),
     /// A sampling that is none.

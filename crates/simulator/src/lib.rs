@@ -7,6 +7,38 @@
 //! A [`DecayLaw`] gives the noise-free turning points of an oscillator ([`EnvelopeTruth`]); drawing scatter
 //! on them gives an [`Envelope`](envelope::Envelope), which is all that an estimator is handed. Nothing
 //! leads from an envelope back to its truth, and no estimator's crate may depend on this one.
+//!
+//! # Example
+//! A record of a decay with dry friction, as a configuration states it, and the same record from its truth:
+//!
+//! ```
+//! use settings::Document;
+//! use simulator::{Plan, generate};
+//!
+//! let text = r#"
+//!     inertia = 1.0
+//!     damping = 0.3
+//!     stiffness = 484.0
+//!     rest_angle = 0.0
+//!     [record]
+//!     rate_hz = 130.0
+//!     seconds = 4.0
+//!     [start]
+//!     position = 0.7
+//!     [sensor]
+//!     noise = 5e-4
+//!     [[effects]]
+//!     id = "coulomb_friction"
+//!     parameters.torque = 2.0
+//! "#;
+//! let plan = Plan::resolve(&Document::parse("friction.toml", text)?)?;
+//! let (record, _sealed) = plan.record(0, 0)?;
+//! assert_eq!(record.len(), 520);
+//!
+//! let truth = &plan.draw(0)?.truths[0];
+//! assert_eq!(generate(truth)?.values(), record.values());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 

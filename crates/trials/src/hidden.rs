@@ -1,5 +1,6 @@
 //! What a case hides.
 
+use dynamics::Active;
 use serde::{Deserialize, Serialize};
 
 /// The `schema` of a hidden truth's text.
@@ -51,6 +52,24 @@ pub(crate) enum Asked {
 }
 
 impl Hidden {
+    /// The truth of a case in which nothing acts; struct update adds what does.
+    pub(crate) fn nothing(bank: Bank, noise: f64, made: String) -> Self {
+        Self {
+            schema: HIDDEN_SCHEMA.to_owned(),
+            bank,
+            effects: Vec::new(),
+            foreign: None,
+            unlisted: Vec::new(),
+            allowed: Vec::new(),
+            nuisances: Vec::new(),
+            miscalibrated: false,
+            without: None,
+            noise,
+            records: Vec::new(),
+            made,
+        }
+    }
+
     /// What the case asks of an answer.
     pub(crate) fn asked(&self) -> Asked {
         match self {
@@ -84,7 +103,7 @@ impl Bank {
     }
 }
 
-/// What a case hides, and whatever else its records follow from.
+/// Hidden truth of a case: effects, and whatever else its records follow from.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Hidden {
@@ -94,7 +113,7 @@ pub struct Hidden {
     pub bank: Bank,
     /// The hidden effects of the vocabulary, the most detectable first; empty where none is.
     pub effects: Vec<HiddenEffect>,
-    /// What acts from outside the vocabulary.
+    /// Law from outside the vocabulary.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub foreign: Option<Foreign>,
     /// Smooth laws outside the vocabulary that act beside the hidden effects, or alone where they are too small to ask
@@ -107,7 +126,7 @@ pub struct Hidden {
     /// Ids of effects of the measurement chain that come with records of every bank alike. They count neither for nor
     /// against an answer.
     pub nuisances: Vec<String>,
-    /// Whether the nominal coefficients are off.
+    /// True if the nominal coefficients are off.
     pub miscalibrated: bool,
     /// The effect that the diagnosis is told not to consider.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -117,7 +136,7 @@ pub struct Hidden {
     /// The system as it is, where it can be said in the vocabulary: a repaired simulator is laid beside its motion.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub records: Vec<truth::Truth>,
-    /// How the records were made, in words; for whoever repeats one.
+    /// Origin of the records, in words; for whoever repeats one.
     pub made: String,
 }
 
@@ -125,7 +144,7 @@ pub struct Hidden {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Foreign {
-    /// What it is, in words.
+    /// Law, in words.
     pub law: String,
     /// Its size in noise units: what neither a recalibration nor the vocabulary nearest to it can absorb.
     pub detectability: f64,
@@ -134,7 +153,7 @@ pub struct Foreign {
 /// A smooth law outside the vocabulary.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unlisted {
-    /// What it is, in words.
+    /// Law, in words.
     pub law: String,
     /// Root mean square of what no recalibration can absorb of it, over the noise's standard deviation.
     pub floors: f64,
@@ -156,7 +175,23 @@ pub struct HiddenEffect {
     /// Its size in noise units: the root of the sum of squares, over all samples, of what no recalibration
     /// can absorb of it, over the noise's standard deviation.
     pub detectability: f64,
-    /// The same as a root mean square in place of the root of the sum: × noise. Only where several effects act.
+    /// Size as a root mean square in place of the root of the sum: × noise. Only where several effects act.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub floors: Option<f64>,
+}
+
+impl HiddenEffect {
+    /// Effects that act by the vocabulary's law, each with its detectability, the most detectable first.
+    pub(crate) fn by_the_vocabulary(hidden: &[(Active, f64)]) -> Vec<Self> {
+        let effect = |(active, detectability): &(Active, f64)| Self {
+            id: active.id().to_owned(),
+            parameters: active.values().to_vec(),
+            law: "vocabulary".to_owned(),
+            detectability: *detectability,
+            floors: None,
+        };
+        let mut effects: Vec<Self> = hidden.iter().map(effect).collect();
+        effects.sort_by(|one, other| other.detectability.total_cmp(&one.detectability));
+        effects
+    }
 }

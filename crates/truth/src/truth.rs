@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// The `schema` of a truth's text.
 pub const TRUTH_SCHEMA: &str = "ringdown.truth/1";
 
-/// What generated a record. Simulating it again gives the record to the bit.
+/// Truth of a record: everything that generated it. Simulating it again gives the record to the bit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Truth {
@@ -20,7 +20,7 @@ pub struct Truth {
     /// The input that drives it; absent for a free motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub excitation: Option<Excitation>,
-    /// What lies between the motion and the file.
+    /// Measurement chain between the motion and the file.
     pub chain: Chain,
     /// When and how exactly the file's samples are taken.
     pub sampling: Sampling,
@@ -36,7 +36,7 @@ pub struct Sampling {
     pub rate_hz: f64,
     /// Number of samples before any is lost.
     pub samples: usize,
-    /// What the recorder's clock shows at the first sample, in seconds.
+    /// Reading of the recorder's clock at the first sample, in seconds.
     pub first_stamp_s: f64,
     /// Decimals of a stamp in seconds.
     pub stamp_decimals: u8,

@@ -11,7 +11,7 @@ use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 use serde::{Deserialize, Serialize};
 
-/// What lies between a motion and a file: the sensor, its noise, and the effects of the measuring chain.
+/// Measurement chain between a motion and a file: the sensor, its noise, and the effects that act there.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Raw", into = "Raw")]
 pub struct Chain {
@@ -56,7 +56,7 @@ impl Chain {
         Ok(Self { observed, noise, steps })
     }
 
-    /// What the sensor observes.
+    /// Quantity that the sensor observes.
     #[must_use]
     pub fn observed(&self) -> Observed {
         self.observed
@@ -124,7 +124,7 @@ impl Chain {
     }
 }
 
-/// Whether a step acts on the signal itself, before the sensor's noise is added.
+/// Returns whether a step acts on the signal itself, before the sensor's noise is added.
 fn precedes_noise(effect: ChainEffect) -> bool {
     matches!(effect, ChainEffect::SensorLag | ChainEffect::SensorNonlinearity | ChainEffect::SensorDrift)
 }

@@ -56,13 +56,13 @@ pub struct Samples<S> {
     pub indices: Vec<usize>,
     /// When the sensor took it, in seconds. Nobody outside sees these.
     pub times_s: Vec<f64>,
-    /// What the file says was observed, in the observed quantity's unit.
+    /// Values of the file, in the observed quantity's unit.
     pub values: Vec<S>,
     /// When the file says it was, in seconds.
     pub stamps_s: Vec<S>,
 }
 
-/// What an impossible parameter is told from: the sampling and the values before the chain touches them.
+/// Sampling and values before the chain touches them, by which an impossible parameter is recognized.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     /// Time from the first sample to the last, in seconds.
@@ -73,18 +73,18 @@ pub struct Extent {
     pub smallest: f64,
     /// Largest observed value.
     pub largest: f64,
-    /// What is observed.
+    /// Observed quantity.
     pub observed: Observed,
-    /// Whether the coordinate is an angle or a displacement.
+    /// Coordinate of the motion: an angle or a displacement.
     pub coordinate: Coordinate,
 }
 
 /// An effect in the measuring chain.
 pub trait Step {
-    /// What is known about it.
+    /// Returns the description: id, equation, parameters, signature and reference.
     const DESCRIPTION: &'static Description;
 
-    /// Whether values and stamps are differentiable in its parameters: [`Step::transform`] then is the whole
+    /// True if values and stamps are differentiable in its parameters: [`Step::transform`] then is the whole
     /// step.
     const DIFFERENTIABLE: bool = false;
 

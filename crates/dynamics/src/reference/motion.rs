@@ -2,7 +2,7 @@
 
 use crate::chain::SampledMotion;
 
-/// What happened at an event.
+/// Kind of an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Happening {
     /// The velocity changed its sign.
@@ -31,7 +31,7 @@ pub struct Event {
     pub position: f64,
     /// Velocity there.
     pub velocity: f64,
-    /// What happened.
+    /// Kind of the event.
     pub happening: Happening,
 }
 

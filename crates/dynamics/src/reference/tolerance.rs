@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// How exact a motion has to be.
+/// Tolerance of a motion.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Tolerance {

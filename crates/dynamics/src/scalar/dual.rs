@@ -5,6 +5,14 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value with its partial derivatives with respect to `N` variables.
 ///
+/// ```
+/// use dynamics::scalar::{Dual, Scalar};
+///
+/// let angle = Dual::<1>::variable(0.5, 0);
+/// let torque = angle.sin() * Dual::from(3.0);
+/// assert_eq!(torque.partials, [3.0 * 0.5_f64.cos()]);
+/// ```
+///
 /// # Reference
 /// Griewank, Walther, Evaluating Derivatives, 2nd ed., SIAM 2008, section 3.1.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,7 +12,7 @@ use crate::scalar::Rounded;
 use crate::system::System;
 use serde::{Deserialize, Serialize};
 
-/// How a model is run.
+/// Settings of a run: what is computed, and how closely.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
@@ -20,11 +20,11 @@ pub struct Settings {
     pub tolerance: f64,
     /// Degree of the Taylor series, 2 to 19.
     pub degree: usize,
-    /// Whether velocities are wanted at the samples.
+    /// True if velocities are wanted at the samples.
     pub velocity: bool,
-    /// Whether accelerations are wanted at the samples.
+    /// True if accelerations are wanted at the samples.
     pub acceleration: bool,
-    /// Whether of the velocities and accelerations that are wanted the sensitivities are wanted too. Those of the
+    /// True if of the velocities and accelerations that are wanted the sensitivities are wanted too. Those of the
     /// position always are.
     pub rate_sensitivities: bool,
     /// Most steps before [`DynamicsError::TooManySteps`].

@@ -30,7 +30,7 @@ impl Model {
         March::new(self, start, input, times, response).run()
     }
 
-    /// As [`Self::run_into`], into new buffers.
+    /// Runs [`Self::run_into`] with new buffers.
     ///
     /// # Errors
     /// As [`Self::run_into`].

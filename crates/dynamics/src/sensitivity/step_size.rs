@@ -92,7 +92,7 @@ impl March<'_> {
         errors
     }
 
-    /// Whether the equation of motion fails in a time by more than the tolerance and rounding allow. Where torques
+    /// Returns whether the equation of motion fails in a time by more than the tolerance and rounding allow. Where torques
     /// cancel, what is left of them is rounding, and no step is short enough for it.
     fn fails(&self, series: &[Series; MOST_STATES], degree: usize, size: f64) -> bool {
         let end = self.reached(series, degree, size);

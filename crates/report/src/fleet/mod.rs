@@ -156,7 +156,7 @@ fn origin(result: &FleetResult) -> Origin {
     let stated = result.cases.iter().map(|case| case.origin.as_str());
     verdict::origin_of_all(
         stated,
-        "Some were measured, others simulated or not said to be either: the table of cases says which.",
+        Some("Some were measured, others simulated or not said to be either: the table of cases says which."),
     )
 }
 

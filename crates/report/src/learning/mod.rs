@@ -11,13 +11,22 @@ use crate::figures::Figure;
 use crate::format::{fixed, quantity, significant};
 use crate::frame::{Frame, finish};
 use crate::parse::Learning;
-use crate::tables::{Fact, fact, whole};
+use crate::tables::{Fact, ScoreRow, ScoreTable, anchor, fact, whole};
 use crate::verdict::{self, Origin, Tone, Verdict};
 use crate::{ReportError, RunTexts};
 
-/// Columns of a table of scores, beside the method's name.
-const COLUMNS: [&str; 8] =
-    ["Free run", "× noise", "Horizon (s)", "One step", "In 95 % band", "Torque off", "Numbers", "Time (s)"];
+/// Columns of a table of scores.
+const COLUMNS: [&str; 9] = [
+    "Method",
+    "Free run",
+    "× noise",
+    "Horizon (s)",
+    "One step",
+    "In 95 % band",
+    "Torque off",
+    "Numbers",
+    "Time (s)",
+];
 
 /// How to read the tables.
 const READING: &str = "Each method was given the start of a test record, its warm-up, and predicted the rest without seeing another \
@@ -25,14 +34,6 @@ const READING: &str = "Each method was given the start of a test record, its war
      noise; the horizon is the median time until the error, over a quarter of a period, passes three times the noise. One \
      step is the error a sample ahead of a moving past. The torque’s error is relative to what the nominal simulator lacks. \
      Baselines know nothing, or what a simulator knows; the true law fitted exactly is what nobody can do better.";
-
-/// A row of scores.
-struct RowView<'a> {
-    title: &'a str,
-    is_learner: bool,
-    cells: Vec<String>,
-    reason: String,
-}
 
 /// One coefficient of a law.
 struct CoefficientView<'a> {
@@ -47,7 +48,7 @@ struct ProblemView<'a> {
     origin: Origin,
     absent: &'a str,
     facts: Vec<Fact>,
-    rows: Vec<RowView<'a>>,
+    table: Option<ScoreTable>,
     laws: Vec<String>,
     coefficients: Vec<CoefficientView<'a>>,
     figures: Vec<Figure>,
@@ -58,7 +59,6 @@ struct ProblemView<'a> {
 struct LearningPage<'a> {
     frame: Frame<'a>,
     reading: &'static str,
-    columns: [&'static str; 8],
     problems: Vec<ProblemView<'a>>,
 }
 
@@ -70,7 +70,6 @@ pub(crate) fn render(texts: &RunTexts<'_>, learning: &Learning) -> Result<String
             ..Frame::bare(texts, "dynamics learned from records", headline(result), origin(result))
         },
         reading: READING,
-        columns: COLUMNS,
         problems: result.problems.iter().map(|problem| view(problem, learning)).collect(),
     };
     finish(&page)
@@ -79,9 +78,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, learning: &Learning) -> Result<String
 fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a> {
     let rows: Vec<&LearnRow> =
         learning.result.results.iter().filter(|row| row.problem == problem.id).collect();
-    let id: String =
-        problem.id.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect();
-    let id = format!("problem-{id}");
+    let id = format!("problem-{}", anchor(&problem.id));
     let law = |row: &&LearnRow| row.equation.as_ref().map(|equation| format!("{}: {equation}", row.title));
     ProblemView {
         title: &problem.title,
@@ -91,7 +88,10 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
         laws: rows.iter().filter_map(law).collect(),
         coefficients: rows.iter().flat_map(|row| coefficients(row)).collect(),
         figures: figures::figures(&id, problem, &rows, learning),
-        rows: rows.into_iter().map(row_view).collect(),
+        table: (!rows.is_empty()).then(|| ScoreTable {
+            columns: COLUMNS.to_vec(),
+            rows: rows.into_iter().map(score_row).collect(),
+        }),
         id,
     }
 }
@@ -116,7 +116,7 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
     ]
 }
 
-fn row_view(row: &LearnRow) -> RowView<'_> {
+fn score_row(row: &LearnRow) -> ScoreRow {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), |value| significant(value, 3));
     let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
         vec![
@@ -131,7 +131,7 @@ fn row_view(row: &LearnRow) -> RowView<'_> {
         ]
     });
     let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());
-    RowView { title: &row.title, is_learner: row.kind == LearnKind::Learner, cells, reason }
+    ScoreRow { title: row.title.clone(), is_marked: row.kind == LearnKind::Learner, cells, reason }
 }
 
 fn coefficients(row: &LearnRow) -> Vec<CoefficientView<'_>> {
@@ -182,5 +182,5 @@ fn headline(result: &LearnResult) -> Verdict {
 
 fn origin(result: &LearnResult) -> Origin {
     let origins = result.problems.iter().map(|problem| problem.origin.as_str());
-    verdict::origin_of_all(origins, "Each section says that of its data set.")
+    verdict::origin_of_all(origins, Some("Each section says that of its data set."))
 }

@@ -3,9 +3,10 @@
 use results::{PredictionResult, ProblemOutcome, ProblemRow};
 
 use super::scores;
-use super::scores::{READING, ScoreTable};
+use super::scores::READING;
 use super::study::{facts, headline, held_out, laws, origin};
 use crate::comparison::markdown::{escape, grid, list};
+use crate::tables::ScoreTable;
 use crate::verdict;
 
 pub(crate) fn markdown(result: &PredictionResult) -> String {
@@ -49,7 +50,7 @@ fn table(table: &ScoreTable) -> String {
         table.columns.iter().enumerate().map(|(index, title)| (*title, index > 0)).collect();
     let rows = table.rows.iter().map(|row| {
         let title = escape(&row.title);
-        let mut cells = vec![if row.is_reference { format!("**{title}**") } else { title }];
+        let mut cells = vec![if row.is_marked { format!("**{title}**") } else { title }];
         if row.cells.is_empty() {
             cells.push(escape(&row.reason));
         }

@@ -16,12 +16,11 @@ use results::{PredictionResult, ProblemOutcome, ProblemRow};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Prediction;
-use crate::tables::Fact;
+use crate::tables::{Fact, ScoreTable, anchor};
 use crate::verdict::{self, Origin};
 use crate::{ReportError, RunTexts};
 
 pub(crate) use markdown::markdown;
-use scores::ScoreTable;
 use study::{facts, headline, held_out, laws, origin};
 
 /// One problem as it stands on the page.
@@ -93,9 +92,4 @@ fn absences(result: &PredictionResult) -> Vec<String> {
         ProblemOutcome::Studied(_) => None,
     };
     result.problems.iter().filter_map(absence).collect()
-}
-
-/// A name as an anchor may have it.
-fn anchor(name: &str) -> String {
-    name.chars().map(|letter| if letter.is_ascii_alphanumeric() { letter } else { '-' }).collect()
 }

@@ -3,7 +3,7 @@
 use results::{Coverage, HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 use crate::format::{count, duration, fixed, significant};
-use crate::tables::whole;
+use crate::tables::{ScoreRow, ScoreTable, whole};
 
 /// How to read these tables.
 pub(super) const READING: [&str; 4] = [
@@ -26,23 +26,7 @@ pub(super) const READING: [&str; 4] = [
      independent.",
 ];
 
-/// The table of a problem.
-pub(super) struct ScoreTable {
-    pub(super) columns: Vec<&'static str>,
-    pub(super) rows: Vec<ScoreView>,
-}
-
-/// One method as it stands in the table.
-pub(super) struct ScoreView {
-    pub(super) title: String,
-    /// One cell for each column but the first; none where there is a reason instead.
-    pub(super) cells: Vec<String>,
-    /// Why there are no scores; empty where there are.
-    pub(super) reason: String,
-    /// Whether this is the best exponential, which the others are compared with.
-    pub(super) is_reference: bool,
-}
-
+/// The table of a problem; the row that stands out is the best exponential, which the others are compared with.
 pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let has_truth = study.law.is_some();
     let mut columns = vec!["method", "error inside", "error beyond", "Â/A beyond, %"];
@@ -64,9 +48,9 @@ pub(super) fn table(study: &ProblemStudy) -> ScoreTable {
     let mut cells = held_out(Some(&exponential.interpolation), Some(&exponential.extrapolation), has_truth);
     cells.resize(columns.len() - 1, String::new());
     let reference =
-        ScoreView { title: "Best exponential".to_owned(), cells, reason: String::new(), is_reference: true };
+        ScoreRow { title: "Best exponential".to_owned(), cells, reason: String::new(), is_marked: true };
     let place = study.methods.iter().position(|row| error(row) >= exponential.extrapolation.rms_log_error);
-    let mut rows: Vec<ScoreView> = study.methods.iter().map(|row| view(row, has_truth)).collect();
+    let mut rows: Vec<ScoreRow> = study.methods.iter().map(|row| view(row, has_truth)).collect();
     rows.insert(place.unwrap_or(rows.len()), reference);
     ScoreTable { columns, rows }
 }
@@ -78,12 +62,12 @@ pub(super) fn error(row: &PredictionRow) -> f64 {
     score.map(|score| score.rms_log_error).filter(|error| !error.is_nan()).unwrap_or(f64::INFINITY)
 }
 
-fn view(row: &PredictionRow, has_truth: bool) -> ScoreView {
+fn view(row: &PredictionRow, has_truth: bool) -> ScoreRow {
     let title = match row.number {
         Some(number) => format!("{number} {}", row.title),
         None => row.title.clone(),
     };
-    let silent = |title, reason| ScoreView { title, cells: Vec::new(), reason, is_reference: false };
+    let silent = |title, reason| ScoreRow { title, cells: Vec::new(), reason, is_marked: false };
     let scores = match &row.outcome {
         PredictionOutcome::Scored(scores) => scores,
         PredictionOutcome::Failed { reason } => return silent(title, format!("no fit: {reason}")),
@@ -108,7 +92,7 @@ fn view(row: &PredictionRow, has_truth: bool) -> ScoreView {
     let percent = 100.0 * scores.converged as f64 / scores.fits.max(1) as f64;
     cells.push(format!("{} %", fixed(percent, 0)));
     cells.push(duration(scores.seconds));
-    ScoreView { title, cells, reason: String::new(), is_reference: false }
+    ScoreRow { title, cells, reason: String::new(), is_marked: false }
 }
 
 fn held_out(inside: Option<&HeldOutScore>, beyond: Option<&HeldOutScore>, has_truth: bool) -> Vec<String> {

@@ -115,5 +115,5 @@ pub(super) fn headline(result: &PredictionResult) -> Verdict {
 
 pub(super) fn origin(result: &PredictionResult) -> Origin {
     let origins = studied(result).map(|row| row.origin.as_str());
-    verdict::origin_of_all(origins, "Each section says that of its problem.")
+    verdict::origin_of_all(origins, Some("Each section says that of its problem."))
 }

@@ -115,7 +115,7 @@ fn headline(result: &RigsResult) -> Verdict {
 }
 
 fn origin(result: &RigsResult) -> Origin {
-    verdict::common_origin(result.rigs.iter().map(|rig| rig.origin.as_str()))
+    verdict::origin_of_all(result.rigs.iter().map(|rig| rig.origin.as_str()), None)
 }
 
 fn warnings(result: &RigsResult) -> Vec<String> {

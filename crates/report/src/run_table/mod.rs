@@ -80,7 +80,7 @@ fn origin(table: &RunTable) -> Origin {
     let stated = table.rows.iter().map(|row| row.origin.as_str()).filter(|origin| !origin.is_empty());
     verdict::origin_of_all(
         stated,
-        "Some were measured, others simulated or not said to be either: table.csv says which.",
+        Some("Some were measured, others simulated or not said to be either: table.csv says which."),
     )
 }
 

@@ -1,7 +1,6 @@
 //! The table of a sweep: what became of each run of the frozen list.
 
-use crate::commands::sweep::measure::warning;
-use crate::commands::sweep::search::value_of;
+use crate::commands::sweep::measure::{value_of, warning};
 use crate::error::{SweepCommandError, TrainerError};
 use crate::run_table::build::{Entry, build};
 use results::{

@@ -9,12 +9,12 @@ use crate::score::{AnsweredCase, Judgment, accuracy, proportion};
 use results::{BaselineRow, SizeRow};
 use std::collections::BTreeMap;
 
-/// What a simpler diagnoser said of every case.
+/// Answers of a simpler diagnoser to every case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Baseline {
     /// Its id.
     pub id: String,
-    /// What it does, in a sentence.
+    /// Method, in a sentence.
     pub method: String,
     /// The effect that it names, `None` for nothing; case by case.
     pub answers: Vec<Option<String>>,
@@ -29,6 +29,14 @@ pub struct BaselineRecord {
     pub values: Vec<f64>,
     /// The input, where there is one.
     pub input: Option<Vec<f64>>,
+}
+
+impl BaselineRecord {
+    /// Returns whether every time has its value, and its input where there is one.
+    fn is_whole(&self) -> bool {
+        let count = self.times_s.len();
+        self.values.len() == count && self.input.as_ref().is_none_or(|input| input.len() == count)
+    }
 }
 
 /// Always the effect that most cases of a single effect hide: what knowing the frequencies alone is worth.

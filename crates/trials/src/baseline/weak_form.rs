@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 /// Id of this baseline.
 pub const WEAK_FORM: &str = "weak-form";
 
-/// What it does, in a sentence.
+/// Method, in a sentence.
 pub const WEAK_FORM_METHOD: &str = "weak-form sparse regression with one term for each of ten effects, the one that explains \
     most is named; it has no term for forcing, a second body, delays or the measurement chain";
 
@@ -60,9 +60,12 @@ struct Motion<'a> {
 }
 
 /// The effect that a weak-form sparse regression names; `None` for nothing, or for records that it cannot read: without
-/// a spring, or shorter than a few periods.
+/// a spring, shorter than a few periods, or with another number of values or inputs than of times.
 #[must_use]
 pub fn weak_form(records: &[BaselineRecord], nominal: &Nominal) -> Option<&'static str> {
+    if !records.iter().all(BaselineRecord::is_whole) {
+        return None;
+    }
     let omega = nominal.angular_frequency();
     let period = if omega > 0.0 { TAU / omega } else { return None };
     let mut rows: Vec<[f64; CALIBRATION + LIBRARY.len() + 1]> = Vec::new();
@@ -115,8 +118,8 @@ pub fn weak_form(records: &[BaselineRecord], nominal: &Nominal) -> Option<&'stat
         terms = without(&terms, least);
     }
     let (_, chosen) = best?;
-    let missed = |term: &usize| squares(&without(&chosen, *term)).unwrap_or(0.0);
-    let most = chosen.iter().map(|term| (*term, missed(term))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let missed = |term: &usize| Some((*term, squares(&without(&chosen, *term))?));
+    let most = chosen.iter().filter_map(missed).max_by(|a, b| a.1.total_cmp(&b.1))?;
     LIBRARY.get(most.0).copied()
 }
 
@@ -128,24 +131,23 @@ impl<'a> Motion<'a> {
         let speed = velocity.iter().map(|value| value.abs()).fold(0.0, f64::max);
         let mut state: f64 = 0.0;
         let mut bristle = Vec::with_capacity(record.values.len());
-        let mut before = record.values.first().copied().unwrap_or_default();
+        let mut before = None;
         for &value in &record.values {
             // Exact along a path: z → s − (s − z)·exp(−path/δ).
-            let step = value - before;
+            let step = value - before.replace(value).unwrap_or(value);
             let end = step.signum();
             state = end - (end - state) * (-step.abs() / (0.1 * amplitude)).exp();
             bristle.push(state);
-            before = value;
         }
         Self { record, velocity, amplitude, speed, bristle }
     }
 
-    /// Whether the body moves all through a window: at rest dry friction is whatever holds it, and no term says that.
+    /// Returns whether the body moves all through a window: at rest dry friction is whatever holds it, and no term says that.
     fn swings(&self, center: f64, half: f64) -> bool {
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
         let to = times.partition_point(|time| *time <= center + half);
-        let own = self.velocity.get(from..to).unwrap_or_default();
+        let Some(own) = self.velocity.get(from..to) else { return false };
         let quarter = own.len().div_ceil(4).max(1);
         own.chunks(quarter).all(|part| part.iter().any(|velocity| velocity.abs() > VISIBLE * self.speed))
     }
@@ -156,6 +158,7 @@ impl<'a> Motion<'a> {
         let times = &self.record.times_s;
         let from = times.partition_point(|time| *time < center - half);
         let to = times.partition_point(|time| *time <= center + half);
+        // All lists are as long as the times, or `weak_form` had not read the record: nothing is missing.
         let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or_default();
         let rest = nominal.rest_angle();
         for index in from..to {
@@ -163,16 +166,10 @@ impl<'a> Motion<'a> {
             let next = at(times, (index + 1).min(times.len() - 1));
             let before = at(times, index.saturating_sub(1));
             let width = 0.5 * (next - before);
-            let s = ((time - center) / half).clamp(-1.0, 1.0);
-            let p = f64::from(EXPONENT);
-            let bump = (1.0 - s * s).powi(EXPONENT) * width;
-            let curvature = (4.0 * p * (p - 1.0) * s * s * (1.0 - s * s).powi(EXPONENT - 2)
-                - 2.0 * p * (1.0 - s * s).powi(EXPONENT - 1))
-                / (half * half)
-                * width;
-            let slope = -2.0 * p * s * (1.0 - s * s).powi(EXPONENT - 1) / half * width;
+            let [bump, slope, curvature] = test_function(time - center, half).map(|value| value * width);
             let position = at(&self.record.values, index) - rest;
             let velocity = at(&self.velocity, index);
+            // Nothing drives a record without an input.
             let input = self.record.input.as_ref().map_or(0.0, |input| at(input, index));
             // The mean of a sign over the sample's share of time, where it changes there.
             let mean_sign = |value: f64, rate: f64| {
@@ -211,6 +208,18 @@ impl<'a> Motion<'a> {
         }
         row
     }
+}
+
+/// The test function (1 − s²)^p at s = `time`/`half`, its slope and its second derivative.
+fn test_function(time: f64, half: f64) -> [f64; 3] {
+    let s = (time / half).clamp(-1.0, 1.0);
+    let p = f64::from(EXPONENT);
+    let bump = (1.0 - s * s).powi(EXPONENT);
+    let slope = -2.0 * p * s * (1.0 - s * s).powi(EXPONENT - 1) / half;
+    let curvature = (4.0 * p * (p - 1.0) * s * s * (1.0 - s * s).powi(EXPONENT - 2)
+        - 2.0 * p * (1.0 - s * s).powi(EXPONENT - 1))
+        / (half * half);
+    [bump, slope, curvature]
 }
 
 /// Slopes of straight lines through the samples within half a window: even windows leave no error of second order.
@@ -261,5 +270,9 @@ mod tests {
         let nominal = Nominal::new(1.0, 0.3, 484.0, 0.0).unwrap();
         let short = BaselineRecord { times_s: vec![0.0, 0.1], values: vec![0.0, 0.1], input: None };
         assert_eq!(weak_form(&[short], &nominal), None);
+        let times: Vec<f64> = (0..1500).map(|i| f64::from(i) / 130.0).collect();
+        let values: Vec<f64> = times.iter().map(|time| 0.7 * (22.0 * time).cos()).collect();
+        let torn = BaselineRecord { times_s: times, input: Some(vec![0.0; 3]), values };
+        assert_eq!(weak_form(&[torn], &nominal), None);
     }
 }

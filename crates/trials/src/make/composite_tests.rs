@@ -1,9 +1,9 @@
 //! Of composite cases: their own and those of a folder.
 
+use super::banks::{RigTruth, hidden};
 use super::integrator::{Moment, TorqueLaw};
 use super::laws::SecondBody;
 use super::plan::TrialPlan;
-use super::rigs::{RigTruth, hidden};
 use crate::{Bank, Case};
 use record::{ReadOptions, read_text};
 use settings::Document;

@@ -22,7 +22,7 @@ pub enum TrialError {
     /// A record could not be generated.
     #[error(transparent)]
     Generation(#[from] GenerationError),
-    /// What the measurement chain leaves is no record.
+    /// Remainder of the measurement chain that is no record.
     #[error("what is left is no record: {0}")]
     Fault(#[from] Fault),
     /// A file of a bank from outside cannot be read.
@@ -40,11 +40,21 @@ pub enum TrialError {
         /// How many were drawn.
         attempts: usize,
     },
-    /// An effect without a size that could be solved for.
-    #[error("{effect} has no size to be solved for: it is random, or not of the vocabulary's list of shapes")]
-    NoShape {
-        /// The effect's id.
-        effect: String,
+    /// A pair of which one is no effect.
+    #[error("there is no effect {id}: a pair names it")]
+    NoEffect {
+        /// The id.
+        id: String,
+    },
+    /// Nothing to hide, or no size to hide it at.
+    #[error(
+        "{kinds} things to hide at {sizes} sizes: name a detectability (trials.detectabilities), or no case of this bank"
+    )]
+    NothingInTurn {
+        /// Number of things that take turns.
+        kinds: usize,
+        /// Number of detectabilities.
+        sizes: usize,
     },
     /// A recalibration without a unique answer: the record is too short for its period.
     #[error("the recalibration is singular: {samples} samples do not determine {unknowns} unknowns")]

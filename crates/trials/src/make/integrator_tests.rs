@@ -1,6 +1,7 @@
 use super::integrator::{TorqueLaw, motions};
-use super::laws::{DragPower, HertzStop, LuGre, Maxwell, SineSpring};
+use super::laws::{DragPower, HertzStop, LuGre, SineSpring};
 use super::situation::{Motion, Situation};
+use super::unlisted::Maxwell;
 use dynamics::reference::{Tolerance, simulate};
 use dynamics::{Active, Nominal, Start, System};
 use truth::{Excitation, Sampling, Waveform};

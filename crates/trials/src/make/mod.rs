@@ -14,26 +14,26 @@
 //! expectation of ‖Δ‖² is taken and nothing projected off; lost samples change no value and have a
 //! detectability of 0, bursts of a logger are as detectable as they are.
 
+mod banks;
 mod case;
-mod composite;
-mod draws;
+pub(crate) mod draws;
 mod error;
-mod foreign;
-mod hiding;
-mod integrator;
+mod folders;
+pub(crate) mod integrator;
+mod job;
 mod json_schema;
-mod laws;
-mod outside;
-mod own_record;
+pub(crate) mod laws;
+pub(crate) mod nuisances;
+pub(crate) mod open_law;
+mod pairs;
 mod plan;
 mod ranges;
 mod recalibration;
-mod rigs;
 mod schema;
-mod shape;
-mod situation;
+mod setup;
+pub(crate) mod situation;
 mod size;
-mod stressed;
+mod unlisted;
 
 #[cfg(test)]
 mod composite_tests;

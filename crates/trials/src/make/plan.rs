@@ -1,15 +1,15 @@
 //! What a configuration says of the trials, and which case has which number.
 
-use super::case::{Case, Job};
 use super::draws::Draws;
 use super::error::TrialError;
-use super::hiding::{INPUTS, PAIRS, RELEASES, RESIDUALS, SINGLE, UNNAMED};
-use super::outside::{self, EngineCase, ResidualFile};
+use super::folders::{OutsideCase, ResidualFile, engine_cases, residual_files, rig_cases};
+use super::job::Job;
+use super::pairs::PAIRS;
 use super::ranges::Ranges;
-use super::rigs::{self, RigCase};
 use super::schema::SECTIONS;
-use super::{foreign, stressed};
+use super::unlisted;
 use crate::Bank;
+use crate::effects::hidden_in;
 use seed::Seed;
 use serde::Deserialize;
 use settings::{Document, Resolved, SettingsError};
@@ -29,8 +29,8 @@ pub struct TrialPlan {
     pub(crate) sampling: Sampling,
     pub(crate) detectabilities: Vec<f64>,
     pub(crate) residuals: Vec<ResidualFile>,
-    pub(crate) engine: Vec<EngineCase>,
-    pub(crate) rigs: Vec<RigCase>,
+    pub(crate) engine: Vec<OutsideCase>,
+    pub(crate) rigs: Vec<OutsideCase>,
     /// Every case, in an order that tells nothing.
     jobs: Vec<Job>,
     left_out_banks: Vec<LeftOutBank>,
@@ -41,7 +41,7 @@ pub struct TrialPlan {
 pub struct LeftOutBank {
     /// The bank.
     pub bank: Bank,
-    /// How many cases were asked for.
+    /// Number of cases that were asked for.
     pub cases: usize,
     /// Why it is left out, and what to do.
     pub reason: String,
@@ -124,31 +124,12 @@ impl TrialPlan {
             value_decimals: VALUE_DECIMALS,
         };
         let mut left_out_banks = Vec::new();
-        let residuals = available(
-            Bank::Measured,
-            trials.measured_cases,
-            trials.measured.as_deref(),
-            "trials.measured",
-            outside::residual_files,
-            &mut left_out_banks,
-        );
-        let engine = available(
-            Bank::Engine,
-            trials.engine_cases,
-            trials.engine.as_deref(),
-            "trials.engine",
-            outside::engine_cases,
-            &mut left_out_banks,
-        );
-        let rigs = available(
-            Bank::Rigs,
-            trials.rigs_cases,
-            trials.rigs.as_deref(),
-            "trials.rigs",
-            rigs::rig_cases,
-            &mut left_out_banks,
-        );
-        let measured = if residuals.is_empty() { 0 } else { trials.measured_cases };
+        let measured = (Bank::Measured, trials.measured_cases, "trials.measured", &trials.measured);
+        let residuals = available(measured, residual_files, &mut left_out_banks);
+        let engine = (Bank::Engine, trials.engine_cases, "trials.engine", &trials.engine);
+        let engine = available(engine, engine_cases, &mut left_out_banks);
+        let rigs = (Bank::Rigs, trials.rigs_cases, "trials.rigs", &trials.rigs);
+        let rigs = available(rigs, rig_cases, &mut left_out_banks);
         let counts = [
             (Bank::None, trials.none),
             (Bank::Calibration, trials.calibration),
@@ -159,7 +140,7 @@ impl TrialPlan {
             (Bank::Releases, trials.releases),
             (Bank::Driven, trials.driven),
             (Bank::Stressed, trials.stressed),
-            (Bank::Measured, measured),
+            (Bank::Measured, if residuals.is_empty() { 0 } else { trials.measured_cases }),
             (Bank::Engine, trials.engine_cases.min(engine.len())),
             (Bank::Composite, trials.composite),
             (Bank::Rigs, trials.rigs_cases.min(rigs.len())),
@@ -187,7 +168,7 @@ impl TrialPlan {
         self.jobs.len()
     }
 
-    /// Whether there are no cases.
+    /// Returns whether there are no cases.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.jobs.is_empty()
@@ -200,42 +181,36 @@ impl TrialPlan {
         &self.left_out_banks
     }
 
-    /// The case with a number from 0. It depends on the seed and on its bank and number there alone, and on
-    /// no other case.
-    ///
-    /// # Errors
-    /// [`TrialError`]: a number beyond [`TrialPlan::len`]; systems, lengths and detectabilities that do not
-    /// go together; files from outside that cannot be read.
-    pub fn case(&self, index: usize) -> Result<Case, TrialError> {
-        let job = self.jobs.get(index).ok_or(TrialError::NoSuchCase { index, cases: self.len() })?;
-        job.make(self, id(index))
-    }
-
-    #[cfg(test)]
-    pub(crate) fn job(&self, index: usize) -> Option<Job> {
-        self.jobs.get(index).copied()
+    /// The job with a number from 0.
+    pub(crate) fn job(&self, index: usize) -> Result<Job, TrialError> {
+        self.jobs.get(index).copied().ok_or(TrialError::NoSuchCase { index, cases: self.len() })
     }
 
     /// What a bank's case of a number hides, in turn: so many rounds of everything, with a detectability each.
-    pub(crate) fn turn(&self, number: usize, among: usize) -> (usize, f64) {
-        let rounds = self.detectabilities.len().max(1);
-        let wanted = self.detectabilities.get(number / among.max(1) % rounds).copied().unwrap_or_default();
-        (number % among.max(1), wanted)
+    ///
+    /// # Errors
+    /// [`TrialError::NothingInTurn`] where there is nothing to take turns, or no detectability.
+    pub(crate) fn turn<T: Copy>(&self, number: usize, among: &[T]) -> Result<(T, f64), TrialError> {
+        let [kinds, sizes] = [among.len(), self.detectabilities.len()];
+        let (round, at) = (number.checked_div(kinds), number.checked_rem(kinds));
+        let kind = at.and_then(|at| among.get(at).copied());
+        let size = round.and_then(|round| self.detectabilities.get(round.checked_rem(sizes)?).copied());
+        kind.zip(size).ok_or(TrialError::NothingInTurn { kinds, sizes })
     }
 
-    /// How many different things a bank hides, each at every detectability in turn.
+    /// Number of different things that a bank hides, each at every detectability in turn.
     #[must_use]
     pub fn variety(bank: Bank) -> usize {
         match bank {
             Bank::None | Bank::Calibration | Bank::Engine | Bank::Composite | Bank::Rigs => 1,
-            Bank::Single => SINGLE.len(),
             Bank::Pair => PAIRS.len(),
-            Bank::LeftOut => UNNAMED.len(),
-            Bank::Foreign => foreign::KINDS.len(),
-            Bank::Releases => RELEASES.len(),
-            Bank::Measured => RESIDUALS.len(),
-            Bank::Driven => INPUTS.len(),
-            Bank::Stressed => stressed::EFFECTS.len(),
+            Bank::Foreign => unlisted::alone().len(),
+            Bank::Single
+            | Bank::LeftOut
+            | Bank::Releases
+            | Bank::Measured
+            | Bank::Driven
+            | Bank::Stressed => hidden_in(bank).len(),
         }
     }
 }
@@ -281,11 +256,6 @@ fn ranges(
     })
 }
 
-/// The name of a case's folder. Numbers are dealt to banks by a shuffle: they betray nothing.
-fn id(index: usize) -> String {
-    format!("{index:06}")
-}
-
 /// Fisher and Yates's shuffle.
 fn shuffled(mut jobs: Vec<Job>, seed: u64) -> Vec<Job> {
     let mut draws = Draws::new(&Seed::new(seed).child("trials").child("order"));
@@ -295,12 +265,10 @@ fn shuffled(mut jobs: Vec<Job>, seed: u64) -> Vec<Job> {
     jobs
 }
 
-/// What a folder named in the configuration holds; nothing, with the reason on the list, where there is none.
+/// What a folder named in the configuration holds; nothing, with the reason on the list, where there is none. The bank comes
+/// with the number of its cases, and with the key that names the folder and its value.
 fn available<T>(
-    bank: Bank,
-    cases: usize,
-    folder: Option<&str>,
-    key: &str,
+    (bank, cases, key, folder): (Bank, usize, &str, &Option<String>),
     list: impl Fn(&Path) -> Result<Vec<T>, String>,
     left_out: &mut Vec<LeftOutBank>,
 ) -> Vec<T> {

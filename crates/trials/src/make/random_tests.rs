@@ -1,9 +1,16 @@
 use super::draws::Draws;
 use super::integrator_tests::situation;
-use super::shape::random_effect;
-use dynamics::Coordinate;
+use crate::effects::{Size, Wanted, find};
 use dynamics::chain::{Chain, Observed};
+use dynamics::{Active, Coordinate};
 use seed::Seed;
+
+fn random_effect(id: &str, wanted: &Wanted<'_>, draws: &mut Draws) -> (Active, f64) {
+    let effect = find(id).unwrap();
+    let Size::Expected(of) = effect.size else { panic!("{id} is not random") };
+    let found = of(wanted, draws);
+    (Active::of(effect.effect, &found.values).unwrap(), found.detectability)
+}
 
 /// ‖Δ‖² of what a chain's only effect does to values and stamps, over the square of the detectability stated,
 /// on average over draws. A stamp that is off by dt is a value that is off by θ̇·dt; what all stamps are off
@@ -16,8 +23,9 @@ fn ratio(id: &str, wanted: f64, draws: u64) -> f64 {
     let total: f64 = (0..draws)
         .map(|number| {
             let seed = Seed::new(number);
-            let (active, detectability) =
-                random_effect(id, &situation, velocities, white, wanted, &mut Draws::new(&seed)).unwrap();
+            let wanted =
+                Wanted { situation: &situation, square_velocities: velocities, white, detectability: wanted };
+            let (active, detectability) = random_effect(id, &wanted, &mut Draws::new(&seed));
             let chain = Chain::new(Observed::Position, 0.0, vec![active]).unwrap();
             let seen =
                 chain.observe(&motion.sampled(), Coordinate::Angle, |id| seed.child(id).generator()).unwrap();
@@ -53,8 +61,9 @@ fn dropouts_lose_the_share_that_stands_for_their_size() {
     let situation = situation(false);
     for (wanted, share) in [(3.0, 0.006), (25.0, 0.05), (100.0, 0.2), (1000.0, 0.3)] {
         let mut draws = Draws::new(&Seed::new(1));
-        let (active, detectability) =
-            random_effect("dropouts", &situation, 1.0, 1e-3, wanted, &mut draws).unwrap();
+        let wanted =
+            Wanted { situation: &situation, square_velocities: 1.0, white: 1e-3, detectability: wanted };
+        let (active, detectability) = random_effect("dropouts", &wanted, &mut draws);
         assert!((active.values()[0] - share).abs() < 1e-12 && detectability == 0.0);
     }
 }

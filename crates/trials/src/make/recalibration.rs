@@ -10,7 +10,7 @@ use super::error::TrialError;
 use super::situation::Situation;
 use dynamics::chain::Samples;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
-use dynamics::{Active, Effect, Hold, Input, System};
+use dynamics::{Active, Effect, Hold, Input, System, SystemEffect};
 use nalgebra::{DMatrix, DVector};
 
 /// What is taken away of a record beside damping, stiffness and the starts.
@@ -21,7 +21,7 @@ pub(crate) struct Absorbed {
     pub(crate) rest_angle: bool,
     /// Effects of the vocabulary in the system that have one parameter, at any size of either sign: those
     /// that could stand in for something outside the vocabulary.
-    pub(crate) stand_ins: &'static [&'static str],
+    pub(crate) stand_ins: &'static [SystemEffect],
     /// A linear drift of the sensor.
     pub(crate) sensor_drift: bool,
 }
@@ -45,6 +45,9 @@ const NOTHING: f64 = 1e-3;
 /// goes over ever longer parts of the record, so that it does not end in a minimum with the wrong number of
 /// turns.
 const TRUSTED_PHASE: f64 = 0.5;
+
+/// Place of the stiffness among the unknowns.
+const STIFFNESS: usize = 1;
 
 /// The parts.
 const PARTS: [f64; 5] = [0.0625, 0.125, 0.25, 0.5, 1.0];
@@ -96,8 +99,7 @@ impl<'a> Recalibration<'a> {
         }
         let inertia = free.iter().position(|(name, _)| *name == Free::Inertia);
         let mut effects = Vec::new();
-        for id in absorbed.stand_ins {
-            let effect = Effect::find(id)?;
+        for effect in absorbed.stand_ins.iter().copied().map(Effect::System) {
             if let [parameter] = effect.description().parameters {
                 effects.push(Active::of(effect, &[0.0])?);
                 free.push((Free::Effect { id: effect.id(), parameter: parameter.name }, 0.0));
@@ -127,12 +129,10 @@ impl<'a> Recalibration<'a> {
     /// By how much a step moves the phase at the end of a record, from what it does to stiffness and inertia.
     fn phase_moved(&self, round: &Round) -> f64 {
         let nominal = &self.situation.nominal;
-        let stiffness = round.step.get(1).copied().unwrap_or_default();
-        let inertia = match self.inertia {
-            Some(at) => round.step.get(at).copied().unwrap_or_default(),
-            None => 0.0,
-        };
-        let relative = stiffness / nominal.stiffness() - inertia / nominal.inertia();
+        let at = |place: usize| round.step.get(place).copied();
+        // What is no unknown does not move.
+        let moved = |place: Option<usize>| place.and_then(at).unwrap_or_default();
+        let relative = moved(Some(STIFFNESS)) / nominal.stiffness() - moved(self.inertia) / nominal.inertia();
         0.5 * relative.abs() * self.situation.omega() * self.situation.duration()
     }
 
@@ -177,6 +177,7 @@ impl<'a> Recalibration<'a> {
         let unknowns = self.unknowns.clone();
         let (coefficients, rest) = unknowns.split_at(self.coefficients);
         let (drift, starts) = rest.split_at(usize::from(self.drift));
+        // A sensor whose drift is no unknown does not drift.
         let slope = drift.first().copied().unwrap_or_default();
         self.model.set(coefficients)?;
         let mut row: Vec<(usize, f64)> = Vec::with_capacity(count);
@@ -186,7 +187,7 @@ impl<'a> Recalibration<'a> {
         for (record, (seen, start)) in self.seen.iter().zip(starts.chunks_exact(2)).enumerate() {
             let &[position, velocity] = start else { continue };
             // The first sample may bear a later stamp than its time: the motion starts at the first sample's time.
-            let start_time = seen.times_s.first().copied().unwrap_or_default().min(0.0);
+            let start_time = seen.times_s.iter().take(1).fold(0.0, |start: f64, time| start.min(*time));
             let used = (part * seen.values.len() as f64).ceil() as usize;
             let stamps = seen.stamps_s.iter().take(used).copied();
             let times: Vec<f64> = std::iter::once(start_time).chain(stamps).collect();
@@ -195,8 +196,9 @@ impl<'a> Recalibration<'a> {
             self.model.run_into(state, input.as_ref(), &times, &mut response)?;
             let before = drift.len() + 2 * record;
             let place = |own: usize| if own < self.coefficients { own } else { own + before };
-            for (index, (value, stamp)) in seen.values.iter().zip(&seen.stamps_s).enumerate().take(used) {
-                let predicted = response.position.get(index + 1).copied().unwrap_or_default();
+            let predictions = response.position.iter().skip(1);
+            let samples_seen = seen.values.iter().zip(&seen.stamps_s).zip(predictions);
+            for (index, ((value, stamp), predicted)) in samples_seen.enumerate().take(used) {
                 let residual = value - predicted - slope * stamp;
                 squares += residual * residual;
                 row.clear();

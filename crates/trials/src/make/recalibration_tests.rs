@@ -1,10 +1,11 @@
 use super::integrator::motions;
 use super::integrator_tests::situation;
-use super::laws::{DragPower, Maxwell};
+use super::laws::DragPower;
 use super::recalibration::{Absorbed, left_over};
 use super::situation::{Motion, Situation};
+use super::unlisted::Maxwell;
 use dynamics::chain::Samples;
-use dynamics::{Coefficients, Start};
+use dynamics::{Coefficients, Start, SystemEffect};
 
 fn left(situation: &Situation, seen: Vec<Samples<f64>>, absorbed: Absorbed) -> f64 {
     left_over(situation, &seen, absorbed).unwrap()
@@ -44,10 +45,10 @@ fn stand_ins_absorb_their_own_law_and_no_other() {
     let situation = situation(false);
     let drag = DragPower { coefficient: 0.02, exponent: 2.0, velocity: 3.0 };
     let drag = || seen(motions(&situation, &[&drag], &|_| Vec::new()).unwrap());
-    let with = |stand_ins: &'static [&'static str]| Absorbed { stand_ins, ..Absorbed::BY_RECALIBRATION };
+    let with = |stand_ins: &'static [SystemEffect]| Absorbed { stand_ins, ..Absorbed::BY_RECALIBRATION };
     let alone = left(&situation, drag(), Absorbed::BY_RECALIBRATION);
-    let near = left(&situation, drag(), with(&["damping_drift"]));
-    let same = left(&situation, drag(), with(&["quadratic_drag"]));
+    let near = left(&situation, drag(), with(&[SystemEffect::DampingDrift]));
+    let same = left(&situation, drag(), with(&[SystemEffect::QuadraticDrag]));
     assert!(alone > 1.1 * near && near > 1000.0 * same, "{alone:e} {near:e} {same:e}");
 }
 

@@ -1,4 +1,4 @@
-//! What every bank draws alike: the system, its start, its input, its sensor, and what is believed of it.
+//! What every bank draws alike: the system, its start, its input, its sensor's noise, and what is believed of it.
 
 use super::draws::Draws;
 use super::error::TrialError;
@@ -8,9 +8,6 @@ use dynamics::sensitivity::{FullState, Model, Settings};
 use dynamics::{Active, Coefficients, Hold, Input, Nominal, Start, System};
 use seed::Seed;
 use truth::{Excitation, Sampling, Waveform};
-
-/// Steps of an encoder with 12 or 13 bits a turn, in rad.
-const ENCODER_STEPS: [f64; 2] = [std::f64::consts::TAU / 4096.0, std::f64::consts::TAU / 8192.0];
 
 /// How the motions of a case come about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -152,6 +149,27 @@ impl Situation {
         self.nominal.angular_frequency()
     }
 
+    /// Torque of the spring at the largest swing.
+    pub(crate) fn largest_torque(&self) -> f64 {
+        self.nominal.stiffness() * self.amplitude
+    }
+
+    /// Velocity with which the largest swing passes the rest angle, in rad/s.
+    pub(crate) fn largest_speed(&self) -> f64 {
+        self.omega() * self.amplitude
+    }
+
+    /// Amplitude of the input; without one 0, as nothing drives the system.
+    pub(crate) fn largest_input(&self) -> f64 {
+        // No input is one of no size.
+        self.excitation.map_or(0.0, |excitation| excitation.amplitude)
+    }
+
+    /// The side of the rest angle, 1 or −1, away from where the first record starts.
+    pub(crate) fn far_side(&self) -> f64 {
+        self.starts.first().map_or(1.0, |start| -(start.position - self.nominal.rest_angle()).signum())
+    }
+
     /// True sampling times in seconds.
     pub(crate) fn times(&self) -> Vec<f64> {
         (0..self.sampling.samples).map(|index| index as f64 / self.sampling.rate_hz).collect()
@@ -204,98 +222,4 @@ pub(crate) fn believed(nominal: &Nominal, off: Option<f64>, seed: &Seed) -> Resu
         stiffness: is.stiffness * (1.0 + draws.uniform(-off, off)),
         ..is
     })?)
-}
-
-/// What the measurement chain does in every bank with the same probabilities.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Nuisances {
-    /// The encoder's step, where the sensor has one; `nominal.toml` states it.
-    pub(crate) encoder_step: Option<f64>,
-    /// What the logger does to the stamps.
-    pub(crate) clock: Option<Scatter>,
-}
-
-/// What a logger does to the stamps.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Scatter {
-    /// Samples arrive in bursts, `interval` apart in seconds.
-    Batching {
-        /// Mean time between bursts.
-        interval: f64,
-        /// Its standard deviation as a part of the interval.
-        scatter: f64,
-    },
-    /// Every stamp is off; its effect on the values has this root mean square, in units of the white noise.
-    Jitter(f64),
-}
-
-impl Nuisances {
-    /// Draws them. Nothing that tells the bank or the effect goes in, but for the seed of the case.
-    pub(crate) fn draw(seed: &Seed) -> Self {
-        let mut draws = Draws::new(&seed.child("nuisances"));
-        let step = ENCODER_STEPS.get(draws.below(ENCODER_STEPS.len())).copied();
-        let encoder_step = step.filter(|_| draws.chance(0.5));
-        let interval = draws.uniform(0.01, 0.08);
-        let scatter = draws.uniform(0.0, 0.1);
-        let jitter = draws.uniform(0.3, 1.0);
-        let clock = match draws.uniform(0.0, 1.0) {
-            share if share < 0.25 => Some(Scatter::Batching { interval, scatter }),
-            share if share < 0.5 => Some(Scatter::Jitter(jitter)),
-            _ => None,
-        };
-        Self { encoder_step, clock }
-    }
-
-    /// Those that remain beside hidden effects: none does what a hidden effect does too, and none scatters
-    /// stamps where their scatter is hidden.
-    pub(crate) fn beside(mut self, hidden: &[&str]) -> Self {
-        if hidden.contains(&"sensor_quantization") {
-            self.encoder_step = None;
-        }
-        if hidden.iter().any(|id| ["timestamp_batching", "timestamp_jitter"].contains(id)) {
-            self.clock = None;
-        }
-        self
-    }
-
-    /// As effects of the measurement chain, for motions with a mean square velocity.
-    pub(crate) fn active(
-        &self,
-        situation: &Situation,
-        square_velocity: f64,
-    ) -> Result<Vec<Active>, TrialError> {
-        let mut active = Vec::new();
-        if let Some(step) = self.encoder_step {
-            active.push(Active::new("sensor_quantization", &[step])?);
-        }
-        let period = 1.0 / situation.sampling.rate_hz;
-        match self.clock {
-            Some(Scatter::Batching { interval, scatter }) => {
-                // A burst holds at least two samples.
-                let interval = interval.clamp(2.0 * period, 0.1 * situation.duration().max(40.0 * period));
-                active.push(Active::new("timestamp_batching", &[interval, scatter * interval])?);
-            }
-            Some(Scatter::Jitter(_)) => {
-                let deviation = self.jitter_deviation(situation, square_velocity);
-                active.push(Active::new("timestamp_jitter", &[deviation])?);
-            }
-            None => {}
-        }
-        Ok(active)
-    }
-
-    /// Standard deviation of the stamps in seconds; at most a third of a sample period.
-    fn jitter_deviation(&self, situation: &Situation, square_velocity: f64) -> f64 {
-        let Some(Scatter::Jitter(part)) = self.clock else { return 0.0 };
-        let velocity = square_velocity.sqrt().max(f64::MIN_POSITIVE);
-        (part * situation.noise / velocity).min(0.3 / situation.sampling.rate_hz)
-    }
-
-    /// Standard deviation of all that is white in the values: the sensor's noise, its rounding, and what
-    /// scattered stamps do to them.
-    pub(crate) fn white(&self, situation: &Situation, square_velocity: f64) -> f64 {
-        let rounding = self.encoder_step.map_or(0.0, |step| step * step / 12.0);
-        let jitter = self.jitter_deviation(situation, square_velocity).powi(2) * square_velocity;
-        (situation.noise.powi(2) + rounding + jitter).sqrt()
-    }
 }

@@ -14,6 +14,7 @@ pub(crate) fn range(index: usize) -> [f64; 2] {
     let at = |index: usize| SIZES.get(index).copied();
     let middle = |one: Option<f64>, other: Option<f64>| Some((one? * other?).sqrt());
     [
+        // The first stands for whatever is smaller.
         index.checked_sub(1).and_then(|below| middle(at(below), at(index))).unwrap_or(0.0),
         middle(at(index), at(index + 1)).unwrap_or(f64::INFINITY),
     ]
@@ -58,6 +59,7 @@ pub(crate) fn sizes(judged: &[Judgment<'_>], by_effect: bool) -> Vec<SizeRow> {
         let effect = match (by_effect, hidden.effects.first()) {
             (false, _) => "",
             (true, Some(first)) => first.id.as_str(),
+            // Where nothing acts the group has no name.
             (true, None) => foreign.unwrap_or_default(),
         };
         groups.entry((judgment.bank(), effect, index)).or_default().push(judgment);

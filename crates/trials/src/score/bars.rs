@@ -3,33 +3,18 @@
 use super::accuracy::{kind_right, range, within};
 use super::judgment::Judgment;
 use super::statistics::{NO_NUMBER, proportion};
+use crate::effects::{SEPARABLE_OTHERWISE, find};
 use crate::hidden::{Asked, Bank};
 use results::{BarRow, ClosureStudy, Proportion, Quantiles, Reliability, UnknownStudy, WithInterval};
 
-/// Size in noise units at which an effect is told from its closest rival in 19 of 20 records, with one, two and three
-/// releases; from the linearized law of a decay of 3.5 Hz with a damping ratio of 0.006, released at 40° (and
-/// 10°; at 60°, 25°, 6°).
-const SEPARABLE: [(&str, [f64; 3]); 11] = [
-    ("gravity", [354.0, 301.0, 122.0]),
-    ("cubic_stiffness", [354.0, 301.0, 122.0]),
-    ("asymmetric_stiffness", [68.0, 68.0, 45.0]),
-    ("stiffness_drift", [26.0, 28.0, 26.0]),
-    ("clock_drift", [26.0, 28.0, 26.0]),
-    ("quadratic_drag", [22.0, 17.0, 18.0]),
-    ("coulomb_friction", [22.0, 17.0, 17.0]),
-    ("hysteresis", [17.0, 16.0, 16.0]),
-    ("stribeck_friction", [11.0, 6.0, 6.0]),
-    ("damping_drift", [10.0, 5.0, 5.0]),
-    ("backlash", [8.0, 8.0, 8.0]),
-];
-
-/// The same for what is not listed.
-const OTHERWISE: f64 = 6.0;
-
 /// Size at which an effect is separable with so many records.
 fn separable(effect: &str, records: usize) -> f64 {
-    let row = SEPARABLE.iter().find(|(id, _)| *id == effect);
-    row.map_or(OTHERWISE, |(_, sizes)| sizes.get(records.clamp(1, 3) - 1).copied().unwrap_or(OTHERWISE))
+    let [one, two, three] = find(effect).map_or(SEPARABLE_OTHERWISE, |effect| effect.separable);
+    match records {
+        0 | 1 => one,
+        2 => two,
+        _ => three,
+    }
 }
 
 /// What the other tables hold.
@@ -156,11 +141,7 @@ mod tests {
     }
 
     #[test]
-    fn every_listed_effect_is_in_the_vocabulary() {
-        for (id, sizes) in SEPARABLE {
-            assert!(dynamics::Effect::find(id).is_ok(), "{id}");
-            assert!(sizes.iter().all(|size| *size > 0.0));
-        }
+    fn sizes_that_separate_go_by_effect_and_number_of_records() {
         assert_eq!((separable("gravity", 2), separable("end_stop", 1)), (301.0, 6.0));
         assert_eq!(separable("gravity", 9), 122.0);
     }

@@ -1,9 +1,9 @@
 //! Scores by effect and by class where several effects act: what is named of what acts, and whether probabilities hold.
 
-use super::class::{CLASSES, class_of};
 use super::judgment::{Judgment, Said};
 use super::reliability::Statements;
 use super::statistics::{proportion, quantiles};
+use crate::effects::{EffectClass, REGISTRY, TrialEffect, class_of};
 use crate::hidden::{Asked, Bank, HiddenEffect};
 use results::{ClassScores, DiagnosisResult, InclusionRow, Proportion, RecallRow};
 
@@ -22,7 +22,7 @@ fn probability(answer: &DiagnosisResult, class: &str, nuisances: &[String]) -> f
     own.map(|row| row.probability).sum::<f64>().min(1.0)
 }
 
-/// Whether a class can be said to act or not: not where a nuisance or a law outside the vocabulary is of it.
+/// Returns whether a class can be said to act or not: not where a nuisance or a law outside the vocabulary is of it.
 fn is_open(judgment: &Judgment<'_>, class: &str) -> bool {
     let hidden = &judgment.case.hidden;
     hidden.nuisances.iter().any(|id| class_of(id) == class)
@@ -51,8 +51,9 @@ pub(crate) fn statements<'a>(judged: impl Iterator<Item = &'a Judgment<'a>>) -> 
             let of = |class: &str| {
                 (probability(answer, class, &judgment.case.hidden.nuisances), acts(judgment, class))
             };
-            let told = CLASSES.iter().filter(|(class, _)| !is_open(judgment, class));
-            Some(told.map(|(class, _)| of(class)).filter(|(stated, _)| *stated > LISTED).collect())
+            let told =
+                EffectClass::ALL.iter().map(|class| class.id()).filter(|class| !is_open(judgment, class));
+            Some(told.map(of).filter(|(stated, _)| *stated > LISTED).collect())
         })
         .collect()
 }
@@ -99,6 +100,7 @@ pub(crate) fn leading_sure<'a>(judged: &[&'a Judgment<'a>]) -> Proportion {
 }
 
 fn stated(judgment: &Judgment<'_>, class: &str) -> f64 {
+    // A case without an answer states nothing.
     judgment.answer().map_or(0.0, |answer| probability(answer, class, &judgment.case.hidden.nuisances))
 }
 
@@ -151,6 +153,7 @@ fn inclusion(id: &str, judged: &[&Judgment<'_>], is_class: bool) -> Option<Inclu
     let acts = |judgment: &Judgment<'_>| judgment.case.hidden.effects.iter().any(|effect| key(&effect.id));
     let is_named = |judgment: &Judgment<'_>| named(judgment).iter().any(|own| key(own));
     let stated = |judgment: &Judgment<'_>| {
+        // As of a class: without an answer nothing is stated.
         if is_class { stated(judgment, id) } else { judgment.probability(id).unwrap_or_default() }
     };
     let counted: Vec<&Judgment<'_>> =
@@ -190,7 +193,8 @@ fn scores(banks: &str, own: &[&Judgment<'_>]) -> ClassScores {
             && named.iter().all(|id| acts(judgment, class_of(id)) || is_open(judgment, class_of(id)))
     };
     let with_effects = || own.iter().filter(|judgment| judgment.asked() == Asked::Effects);
-    let ids = CLASSES.iter().flat_map(|(_, effects)| effects.iter());
+    let of_class = |class| REGISTRY.iter().filter(move |effect| effect.class == class);
+    let ids = EffectClass::ALL.into_iter().flat_map(of_class).map(TrialEffect::id);
     ClassScores {
         banks: banks.to_owned(),
         cases: own.len() as u64,
@@ -202,7 +206,7 @@ fn scores(banks: &str, own: &[&Judgment<'_>]) -> ClassScores {
         attributed: quantiles(own.iter().filter_map(|judgment| attributed(judgment))),
         unknown: unknown(own.iter().copied()),
         false_alarms: false_alarms(own.iter().copied()),
-        classes: CLASSES.iter().filter_map(|(class, _)| inclusion(class, own, true)).collect(),
+        classes: EffectClass::ALL.iter().filter_map(|class| inclusion(class.id(), own, true)).collect(),
         effects: ids.filter_map(|id| inclusion(id, own, false)).collect(),
     }
 }

@@ -128,7 +128,7 @@ impl Clean {
         }
         let period = TAU / omega;
         let all: Vec<f64> = (0..sampling.samples).map(|index| index as f64 / sampling.rate_hz).collect();
-        let duration = all.last().copied().unwrap_or_default();
+        let duration = (sampling.samples - 1) as f64 / sampling.rate_hz;
         let input = match truth.excitation {
             Some(excitation) => {
                 let values = all.iter().map(|&time| excitation.at(time, duration)).collect();
@@ -148,10 +148,9 @@ impl Clean {
             .step_by(per_segment)
             .filter_map(|from| {
                 let to = (from + per_segment).min(times.len());
-                let at = |list: &[f64]| list.get(from).copied().unwrap_or_default();
                 let start = FullState {
-                    position: at(&motion.position),
-                    velocity: at(&motion.velocity),
+                    position: *motion.position.get(from)?,
+                    velocity: *motion.velocity.get(from)?,
                     hidden: None,
                 };
                 let times = times.get(from..to).filter(|times| times.len() >= 4)?.to_vec();
@@ -181,7 +180,8 @@ impl Clean {
 
     /// Squares left by the best start state: Levenberg–Marquardt from the clean motion's own.
     fn fitted(&self, model: &mut Model, segment: &Segment, hidden: usize) -> Result<f64, DynamicsError> {
-        let first = segment.times.get(..1).unwrap_or_default();
+        let first = segment.times.get(..1).unwrap_or(&segment.times);
+        // A system without hidden states has none that relax.
         let relaxed = model.run(segment.start, self.input.as_ref(), first)?.end.hidden.unwrap_or_default();
         let mut at = vec![segment.start.position, segment.start.velocity];
         at.extend(relaxed.into_iter().take(hidden));
@@ -223,6 +223,8 @@ impl Clean {
         segment: &Segment,
         at: &[f64],
     ) -> Result<(DVector<f64>, DMatrix<f64>), DynamicsError> {
+        debug_assert!(at.len() >= 2);
+        // Position and velocity come first, as `fitted` puts them.
         let value = |index: usize| at.get(index).copied().unwrap_or_default();
         let mut states = [0.0; SYSTEM_HIDDEN];
         for (slot, value) in states.iter_mut().zip(at.iter().skip(2)) {

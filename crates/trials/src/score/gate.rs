@@ -65,7 +65,7 @@ impl Gate {
     }
 }
 
-/// Whether some score of the gate is on the wrong side, be it by chance: the bank is fixed.
+/// Returns whether some score of the gate is on the wrong side, be it by chance: the bank is fixed.
 #[must_use]
 pub fn misses_the_gate(result: &TrialsResult) -> bool {
     result.gate.iter().any(|row| row.state == "not met")

@@ -1,6 +1,6 @@
 //! One answer beside one truth.
 
-use super::class::class_of;
+use crate::effects::class_of;
 use crate::hidden::{Asked, Bank, Hidden};
 use dynamics::{Class, Effect};
 use results::{DiagnosisResult, VerdictStatus};
@@ -10,7 +10,7 @@ use results::{DiagnosisResult, VerdictStatus};
 pub struct AnsweredCase {
     /// The case.
     pub id: String,
-    /// What it hid.
+    /// Hidden truth.
     pub hidden: Hidden,
     /// The answer, or why there is none.
     pub answer: Result<DiagnosisResult, String>,
@@ -162,6 +162,7 @@ impl<'a> Judgment<'a> {
     /// Stated probability of an id of the answer's list; 0 where it is not listed.
     pub(crate) fn probability(&self, id: &str) -> Option<f64> {
         let answer = self.answer()?;
+        // A list leaves out what is hardly possible.
         Some(answer.effects.iter().find(|row| row.id == id).map_or(0.0, |row| row.probability))
     }
 

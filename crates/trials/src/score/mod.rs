@@ -2,7 +2,6 @@
 
 pub(crate) mod accuracy;
 mod bars;
-mod class;
 mod classes;
 #[cfg(test)]
 mod classes_tests;
@@ -35,7 +34,7 @@ use results::{
 };
 use seed::Seed;
 
-/// What a score stands under.
+/// Trials that were answered, with all that a score depends on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trials {
     /// Name of the trials.
@@ -44,7 +43,7 @@ pub struct Trials {
     pub seed: u64,
     /// Banks that were not made, and why.
     pub left_out: Vec<LeftOutBank>,
-    /// What the scores have to reach.
+    /// Values that the scores have to reach.
     pub gate: Gate,
     /// Wall time so far in seconds.
     pub seconds: f64,
@@ -102,7 +101,7 @@ pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) ->
     }
 }
 
-/// Whether some bar is missed with its whole interval.
+/// Returns whether some bar is missed with its whole interval.
 #[must_use]
 pub fn misses_a_bar(result: &TrialsResult) -> bool {
     result.bars.iter().any(|bar| bar.missed_beyond_chance)
@@ -178,6 +177,7 @@ fn case_row(judgment: &Judgment<'_>) -> TrialCaseRow {
     TrialCaseRow {
         id: judgment.case.id.clone(),
         bank: judgment.bank().name().to_owned(),
+        // Where nothing acts the cell is empty.
         hidden: if ids.is_empty() { judgment.foreign_law().unwrap_or_default() } else { ids.join("+") },
         size: sizes.join("+"),
         status: judgment.said.name().to_owned(),

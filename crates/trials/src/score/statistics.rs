@@ -35,13 +35,10 @@ pub(crate) fn quantiles(values: impl IntoIterator<Item = f64>) -> Quantiles {
     let count = sorted.len();
     let at = |rank: usize| sorted.get(rank).copied().unwrap_or(f64::NAN);
     // The order statistics between which the median lies with 95 % probability, whatever the distribution.
-    let rank = Binomial::new(0.5, count as u64).map_or(0, |binomial| binomial.inverse_cdf(0.025));
-    let low = usize::try_from(rank).unwrap_or(0).saturating_sub(1);
     // Of fewer than six values not even the smallest and the largest do.
-    let interval_95 = match count {
-        0..6 => [f64::NAN, f64::NAN],
-        count => [at(low), at(count - 1 - low)],
-    };
+    let rank = Binomial::new(0.5, count as u64).ok().filter(|_| count > 5);
+    let low = rank.and_then(|binomial| usize::try_from(binomial.inverse_cdf(0.025)).ok()?.checked_sub(1));
+    let interval_95 = low.map_or([f64::NAN; 2], |low| [at(low), at(count - 1 - low)]);
     let median = WithInterval { value: quantile(&sorted, 0.5), interval_95 };
     Quantiles {
         count: count as u64,

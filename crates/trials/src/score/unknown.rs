@@ -31,7 +31,7 @@ pub(crate) fn study(judged: &[Judgment<'_>]) -> UnknownStudy {
         Some((row, positives))
     };
     let all = of(None, &|_| true);
-    let curve = all.as_ref().map(|(_, positives)| curve(positives, &negatives)).unwrap_or_default();
+    let curve = all.as_ref().map_or_else(Vec::new, |(_, positives)| curve(positives, &negatives));
     let by_size = SIZES.iter().enumerate().filter_map(|(index, size)| {
         of(Some(*size), &|judgment| within(judgment.size(), range(index))).map(|found| found.0)
     });

@@ -4,7 +4,9 @@ use crate::options::Output;
 use crate::share::ShareOptions;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
+use diagnosis::Settings;
 use record::{CsvColumns, Format, Missing, Quantity, ReadOptions, TimeUnit, Unit};
+use seed::Seed;
 use serde::de::IntoDeserializer;
 use serde::de::value::Error;
 use serde::{Deserialize, Serialize};
@@ -136,6 +138,18 @@ pub(crate) struct Reading {
     /// Subtracts the mean of the observed column and of the input: for channels with an arbitrary zero
     #[arg(long)]
     pub(crate) remove_mean: bool,
+}
+
+impl DiagnoseArguments {
+    /// As the diagnosis takes them.
+    pub(super) fn settings(&self) -> Settings {
+        Settings {
+            false_alarm: self.false_alarm,
+            most_effects: self.most_effects.map_or(Settings::default().most_effects, usize::from),
+            without: self.without.clone(),
+            seed: Seed::new(self.seed),
+        }
+    }
 }
 
 impl Default for Reading {

@@ -1,8 +1,7 @@
 //! `trainer diagnose --batch`: every case of a folder.
 
 use super::arguments::DiagnoseArguments;
-use super::labels;
-use super::{kept, settings};
+use super::{kept, labels};
 use crate::error::TrainerError;
 use crate::outcome::Outcome;
 use crate::share::{Launcher, Work, launch, without_launcher};
@@ -190,7 +189,7 @@ fn diagnosed(arguments: &DiagnoseArguments, case: &Case, folder: &RunFolder) -> 
     let question = Question::read(&case.records, &case.nominal, &arguments.reading.plain())?;
     let first = case.records.first().unwrap_or(&case.nominal);
     let labels = labels::read(&case.folder, first)?;
-    let answer = question.answer(&settings(arguments), arguments.seed)?;
+    let answer = question.answer(&arguments.settings(), arguments.seed)?;
     let asked = kept::asked_by_batch(arguments, &question);
     let file = CaseFile { schema: CASE_SCHEMA.to_owned(), asked, labels };
     folder.write_json(kept::CASE_FILE, &file)?;

@@ -2,15 +2,17 @@
 
 use super::arguments::DiagnoseArguments;
 use crate::error::{KeptError, TrainerError};
+use crate::folders::environment::Environment;
+use crate::folders::page::write_report;
 use record::file_digest;
 use results::{CaseFile, DiagnosisResult};
-use runs::{RunError, RunFolder};
+use runs::{RunError, RunFolder, to_csv};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
-use workflow::{Question, nominal};
+use workflow::{Answer, Question, nominal, series_rows};
 
 /// The event that says what was asked, before any other file of a diagnosis is there.
-pub(super) const ASKED: &str = "start";
+const ASKED: &str = "start";
 /// The file beside an answer of a batch that says what was asked.
 pub(super) const CASE_FILE: &str = "case.json";
 /// The event of a diagnosis that is there in full.
@@ -33,6 +35,27 @@ fn asked_of(arguments: &DiagnoseArguments, records: &[&str], nominal: &str) -> V
         "false_alarm": arguments.false_alarm,
         "seed": arguments.seed,
     })
+}
+
+/// Writes the run folder of an answer, its report last.
+pub(super) fn keep(
+    folder: &RunFolder,
+    question: &Question,
+    asked: &Value,
+    answer: &Answer,
+    threads: usize,
+) -> Result<(), TrainerError> {
+    folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
+    folder.write("nominal.toml", export::nominal_text(&question.stated.simulator).as_bytes())?;
+    folder.record_event(ASKED, asked)?;
+    folder.write_json("diagnosis.json", &answer.result)?;
+    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
+    for (name, text) in export::files(&answer.repaired) {
+        folder.write(name, text.as_bytes())?;
+    }
+    write_report(folder)?;
+    folder.record_event(END, &json!({ "status": answer.result.verdict.status }))?;
+    Ok(())
 }
 
 /// The finished answer to a question that a folder holds; `None` where an interrupted diagnosis left it, or nothing is

@@ -8,20 +8,16 @@ mod rigs;
 mod summary;
 
 use crate::error::{LaunchError, TrainerError};
-use crate::folders::environment::Environment;
-use crate::folders::page::write_report;
 use crate::outcome::Outcome;
 use crate::terminal::interrupt::{self, Saving};
 use arguments::DiagnoseArguments;
-use diagnosis::{Observations, Settings};
+use diagnosis::Observations;
 use dynamics::Nominal;
 use record::Quantity;
-use runs::{Disk, RunFolder, default_root, to_csv};
-use seed::Seed;
-use serde_json::{Value, json};
+use runs::{Disk, RunFolder, default_root};
 use std::path::{Path, PathBuf};
 use trials::BaselineRecord;
-use workflow::{Answer, Question, Reading, series_rows};
+use workflow::{Question, Reading};
 
 /// Diagnoses the records named, or every case of a batch.
 pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerError> {
@@ -95,44 +91,14 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         })?;
         return Ok(Outcome::Done);
     }
-    let answer = pool.install(|| question.answer(&settings(arguments), arguments.seed))?;
+    let answer = pool.install(|| question.answer(&arguments.settings(), arguments.seed))?;
     let _saving = Saving::begin();
     let folder = match (begun, &arguments.out) {
         (Some(folder), _) => folder,
         (None, Some(path)) => RunFolder::create_at(path)?,
         (None, None) => RunFolder::create(&default_root(), "diagnosis")?,
     };
-    keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
+    kept::keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
     arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
     Ok(Outcome::Done)
-}
-
-/// Writes the run folder of an answer, its report last.
-fn keep(
-    folder: &RunFolder,
-    question: &Question,
-    asked: &Value,
-    answer: &Answer,
-    threads: usize,
-) -> Result<(), TrainerError> {
-    folder.write_json("environment.json", &Environment::new(threads, &question.digests()))?;
-    folder.write("nominal.toml", export::nominal_text(&question.stated.simulator).as_bytes())?;
-    folder.record_event(kept::ASKED, asked)?;
-    folder.write_json("diagnosis.json", &answer.result)?;
-    folder.write("series.csv", &to_csv("series.csv", &series_rows(&answer.found.series))?)?;
-    for (name, text) in export::files(&answer.repaired) {
-        folder.write(name, text.as_bytes())?;
-    }
-    write_report(folder)?;
-    folder.record_event(kept::END, &json!({ "status": answer.result.verdict.status }))?;
-    Ok(())
-}
-
-fn settings(arguments: &DiagnoseArguments) -> Settings {
-    Settings {
-        false_alarm: arguments.false_alarm,
-        most_effects: arguments.most_effects.map_or(Settings::default().most_effects, usize::from),
-        without: arguments.without.clone(),
-        seed: Seed::new(arguments.seed),
-    }
 }

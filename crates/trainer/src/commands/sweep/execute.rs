@@ -1,7 +1,7 @@
 //! Making the runs of a sweep, several at a time.
 
-use super::frozen::FrozenSweep;
-use super::search::value_of;
+use super::frozen::{FrozenSweep, Job};
+use super::measure::value_of;
 use crate::commands::learn::problem::prepare;
 use crate::commands::learn::{self, Study};
 use crate::commands::run::{Run, perform};
@@ -33,9 +33,6 @@ const REST: u32 = 20;
 
 /// How often a run in another process's hands is looked at.
 const LOOK: Duration = Duration::from_millis(200);
-
-/// A run to be made: its line and its configuration.
-pub(super) type Job<'a> = (&'a SweepLine, &'a str);
 
 /// What a run of a sweep prints: the sweep speaks for it.
 const SILENT: Output = Output { quiet: true, json: false };

@@ -1,7 +1,6 @@
 //! The frozen list of a sweep: made and checked before the first run, or taken up again.
 
 use super::arguments::SweepArguments;
-use super::execute::Job;
 use super::study::Study;
 use crate::commands::learn::problem::files_of;
 use crate::configured::registries;
@@ -16,6 +15,9 @@ use runs::{RunError, RunFolder, SweepFolder, default_root};
 use serde_json::json;
 use settings::Document;
 use std::path::Path;
+
+/// A run to be made: its line and its configuration.
+pub(super) type Job<'a> = (&'a SweepLine, &'a str);
 
 /// A sweep whose list of runs is settled.
 pub(super) struct FrozenSweep {
@@ -111,6 +113,15 @@ pub(super) fn line(run: &PlannedRun) -> SweepLine {
         state: SweepState::Pending,
         run: None,
         message: None,
+    }
+}
+
+/// Whether a run is still to be made, or made again.
+pub(super) fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
+    match line.state {
+        SweepState::Pending | SweepState::Interrupted => true,
+        SweepState::Failed => failed_too,
+        SweepState::Done | SweepState::Stopped => false,
     }
 }
 

@@ -2,7 +2,8 @@
 
 use crate::error::SweepCommandError;
 use experiment::sweep::RunData;
-use results::SweepSearch;
+use results::{SweepLine, SweepSearch, SweepState};
+use runs::SweepFolder;
 use serde_json::Value;
 use settings::nearest;
 
@@ -100,6 +101,20 @@ fn numbers(value: &Value, path: &str, found: &mut Vec<String>) {
         }
         Value::Number(_) | Value::Bool(_) => found.push(path.to_owned()),
         _ => (),
+    }
+}
+
+/// The measure of a run by now: of one that is done, of one that was stopped on a rung; `None` of one that failed.
+pub(crate) fn value_of(
+    folder: &SweepFolder,
+    search: &SweepSearch,
+    line: &SweepLine,
+) -> Result<Option<f64>, SweepCommandError> {
+    let Some(run) = line.run.as_ref().filter(|_| line.state != SweepState::Failed) else { return Ok(None) };
+    let text = std::fs::read_to_string(folder.path().join(run).join("result.json")).unwrap_or_default();
+    match serde_json::from_str::<Value>(&text) {
+        Ok(result) => measured(search, &result),
+        Err(_) => Ok(None),
     }
 }
 

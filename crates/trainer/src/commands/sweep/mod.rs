@@ -9,14 +9,15 @@ mod study;
 
 use crate::error::{SweepCommandError, TrainerError};
 use crate::folders::page::write_report;
+use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::run_table::{of_sweep, print_table};
 use crate::share::{Launcher, Work, launch};
 use crate::terminal::console;
 use crate::terminal::interrupt::{self, Saving};
 use arguments::SweepArguments;
-use execute::{Job, Making};
-use frozen::FrozenSweep;
+use execute::Making;
+use frozen::{FrozenSweep, Job, is_missing};
 use record::counted;
 use report::{run_table_csv, run_table_markdown};
 use results::{RunTable, SweepLine, SweepManifest, SweepSearch, SweepState};
@@ -49,26 +50,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     let shard = arguments.share.shard();
     let output = arguments.output;
     let making = Making { threads: arguments.threads(), output, cancel, pause_after: None };
-    let said = |now: &str| {
-        if !making.is_silent() {
-            let (all, path) = (sweep.manifest.runs.len(), sweep.folder.path().display());
-            console::remark(&format!("sweep of {} in {path}{now}", counted(all, "run")));
-        }
-    };
-    let made = match &searches {
-        Some(search) => {
-            said("");
-            search::search(&mut sweep, search, arguments.failed, &making)?
-        }
-        None => {
-            let own = sweep.jobs().enumerate().filter(|(position, _)| shard.takes(*position));
-            let jobs: Vec<Job<'_>> =
-                own.map(|(_, job)| job).filter(|(line, _)| is_missing(line, arguments.failed)).collect();
-            said(&format!(", {} of them now", jobs.len()));
-            execute::execute(&sweep, &jobs, &making)?;
-            jobs.len()
-        }
-    };
+    let made = make(arguments, &mut sweep, searches.as_ref(), &making)?;
     let _saving = Saving::begin();
     let table = finish(&sweep.folder, &mut sweep.manifest)?;
     let own = || sweep.manifest.runs.iter().enumerate().filter(|(position, _)| shard.takes(*position));
@@ -77,15 +59,7 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     let event = if interrupted { "interrupted" } else { "end" };
     sweep.folder.folder().record_event(event, &json!({ "runs": made, "shard": shard.to_string() }))?;
     let path = sweep.folder.path().display().to_string();
-    if output.json {
-        output.print(&Answer { folder: path.clone(), table: &table }, String::new)?;
-    } else if !output.quiet {
-        print_table(&table);
-        if let Some(found) = &table.search {
-            console::result(&format!("\n{}", found.sentence()));
-        }
-        console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
-    }
+    tell(output, &path, &table)?;
     if interrupted {
         if !output.quiet {
             console::remark(&format!("interrupted; trainer sweep --out {path} --resume goes on"));
@@ -98,6 +72,46 @@ pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerErro
     }
     let is_fine = own().map(|(_, line)| line).all(|line| holds(&table, &sweep.manifest, line));
     Ok(arguments.share.outcome(if is_fine { Outcome::Done } else { Outcome::CheckFailed }))
+}
+
+/// Makes what is missing of the runs that are this process's, and gives how many it made.
+fn make(
+    arguments: &SweepArguments,
+    sweep: &mut FrozenSweep,
+    searches: Option<&SweepSearch>,
+    making: &Making,
+) -> Result<usize, TrainerError> {
+    let (count, path) = (sweep.manifest.runs.len(), sweep.folder.path().display().to_string());
+    let said = |now: &str| {
+        if !making.is_silent() {
+            console::remark(&format!("sweep of {} in {path}{now}", counted(count, "run")));
+        }
+    };
+    if let Some(search) = searches {
+        said("");
+        return search::search(sweep, search, arguments.failed, making);
+    }
+    let shard = arguments.share.shard();
+    let own = sweep.jobs().enumerate().filter(|(position, _)| shard.takes(*position));
+    let jobs: Vec<Job<'_>> =
+        own.map(|(_, job)| job).filter(|(line, _)| is_missing(line, arguments.failed)).collect();
+    said(&format!(", {} of them now", jobs.len()));
+    execute::execute(sweep, &jobs, making)?;
+    Ok(jobs.len())
+}
+
+/// Prints the table, for scripts or for readers.
+fn tell(output: Output, path: &str, table: &RunTable) -> Result<(), TrainerError> {
+    if output.json {
+        output.print(&Answer { folder: path.to_owned(), table }, String::new)?;
+    } else if !output.quiet {
+        print_table(table);
+        if let Some(found) = &table.search {
+            console::result(&format!("\n{}", found.sentence()));
+        }
+        console::result(&format!("\nsweep: {path}\nreport: {path}/report.html"));
+    }
+    Ok(())
 }
 
 /// Hands the frozen list to a batch system: its tasks need no configuration.
@@ -120,14 +134,6 @@ fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, 
 /// Whether a search has to wait for results before it knows what to run.
 fn looks_at_results(search: &SweepSearch) -> bool {
     search.sampler == "tpe" || search.halving.is_some()
-}
-
-fn is_missing(line: &SweepLine, failed_too: bool) -> bool {
-    match line.state {
-        SweepState::Pending | SweepState::Interrupted => true,
-        SweepState::Failed => failed_too,
-        SweepState::Done | SweepState::Stopped => false,
-    }
 }
 
 /// Whether a run is done and every row of it within its tolerance.

@@ -3,16 +3,15 @@
 //! Li, Jamieson, DeSalvo, Rostamizadeh, Talwalkar, Hyperband, Journal of Machine Learning Research 18 (2018) 6765: of n
 //! trials on a rung the best ⌊n/η⌋ go on to the next, which is η times as long. The last rung has no end.
 
-use super::execute::{Job, Making, execute};
-use super::frozen::{FrozenSweep, line};
-use super::measure::measured;
+use super::execute::{Making, execute};
+use super::frozen::{FrozenSweep, Job, is_missing, line};
+use super::measure::value_of;
 use super::study::proposed;
 use crate::error::{SweepCommandError, TrainerError};
 use crate::terminal::console;
 use record::counted;
 use results::{SweepEnd, SweepLine, SweepManifest, SweepRung, SweepRungValue, SweepSearch, SweepState};
 use runs::SweepFolder;
-use serde_json::Value;
 
 /// Name that the process which searches holds.
 const HELD: &str = "search";
@@ -45,11 +44,11 @@ fn batches(
     let mut made = 0;
     loop {
         let jobs: Vec<Job<'_>> =
-            sweep.jobs().filter(|(line, _)| super::is_missing(line, failed_too && made == 0)).collect();
+            sweep.jobs().filter(|(line, _)| is_missing(line, failed_too && made == 0)).collect();
         made += jobs.len();
         execute(sweep, &jobs, making)?;
         sweep.folder.refresh(&mut sweep.manifest)?;
-        let is_open = |line: &SweepLine| super::is_missing(line, false);
+        let is_open = |line: &SweepLine| is_missing(line, false);
         let count = sweep.manifest.runs.len();
         if count >= search.trials || sweep.manifest.runs.iter().any(is_open) {
             return Ok(made);
@@ -82,20 +81,6 @@ fn cost(search: &SweepSearch, value: f64) -> f64 {
     if search.maximize { -value } else { value }
 }
 
-/// The measure of a run by now: of one that is done, of one that was stopped on a rung; `None` of one that failed.
-pub(crate) fn value_of(
-    folder: &SweepFolder,
-    search: &SweepSearch,
-    line: &SweepLine,
-) -> Result<Option<f64>, SweepCommandError> {
-    let Some(run) = line.run.as_ref().filter(|_| line.state != SweepState::Failed) else { return Ok(None) };
-    let text = std::fs::read_to_string(folder.path().join(run).join("result.json")).unwrap_or_default();
-    match serde_json::from_str::<Value>(&text) {
-        Ok(result) => measured(search, &result),
-        Err(_) => Ok(None),
-    }
-}
-
 /// Rungs. What each trial had reached stands in the manifest once a rung is done, so that a resumed search promotes the
 /// same trials.
 fn halved(sweep: &mut FrozenSweep, failed_too: bool, making: &Making) -> Result<usize, TrainerError> {
@@ -103,7 +88,7 @@ fn halved(sweep: &mut FrozenSweep, failed_too: bool, making: &Making) -> Result<
     while let Some(rung) = Rung::next(&sweep.manifest) {
         let jobs: Vec<Job<'_>> = sweep
             .jobs()
-            .filter(|(line, _)| rung.numbers.contains(&line.number) && super::is_missing(line, failed_too))
+            .filter(|(line, _)| rung.numbers.contains(&line.number) && is_missing(line, failed_too))
             .collect();
         made += jobs.len();
         if !making.is_silent() {

@@ -3,6 +3,7 @@
 use crate::make::integrator::{Moment, TorqueLaw};
 
 /// What drifts.
+#[derive(Clone, Copy)]
 pub(crate) enum Drifting {
     /// The spring, of this stiffness.
     Stiffness(f64),

@@ -5,7 +5,7 @@ mod summary;
 
 use super::arguments::DiagnoseArguments;
 use super::batch::Case;
-use super::{keep, kept, settings};
+use super::kept;
 use crate::error::TrainerError;
 use crate::folders::environment::Environment;
 use crate::folders::page::write_report;
@@ -152,8 +152,8 @@ fn answered(
     let result = match kept::finished(&folder, &asked)? {
         Some(result) => result,
         None => {
-            let answer = question.answer(&settings(arguments), arguments.seed)?;
-            keep(&folder, &question, &asked, &answer, threads)?;
+            let answer = question.answer(&arguments.settings(), arguments.seed)?;
+            kept::keep(&folder, &question, &asked, &answer, threads)?;
             answer.result
         }
     };

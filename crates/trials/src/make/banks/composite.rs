@@ -5,38 +5,25 @@
 //! A size is stated as a multiple of the noise: root mean square over all samples of what no recalibration
 //! absorbs of the effect alone, over the standard deviation of all that is white.
 
-use super::case::{ATTEMPTS, Case, Job, Setup};
-use super::draws::Draws;
-use super::error::TrialError;
-use super::foreign;
-use super::integrator::{TorqueLaw, motions};
-use super::laws::{Field, SecondBody, Weight};
-use super::own_record::{OpenLaw, SizedLaw, Told, written};
-use super::plan::TrialPlan;
-use super::ranges::Ranges;
-use super::recalibration::Absorbed;
-use super::situation::{Motion, Motions, Situation};
-use super::stressed::{self, Drawn, EFFECTS, drawn};
+use super::own_record::{Told, written};
+use crate::effects::by_other_laws;
+use crate::make::case::Case;
+use crate::make::draws::Draws;
+use crate::make::error::TrialError;
+use crate::make::integrator::{TorqueLaw, motions};
+use crate::make::job::Job;
+use crate::make::open_law::{OpenLaw, SizedLaw};
+use crate::make::plan::TrialPlan;
+use crate::make::ranges::Ranges;
+use crate::make::recalibration::Absorbed;
+use crate::make::setup::{ATTEMPTS, Setup};
+use crate::make::situation::{Motion, Motions, Situation};
+use crate::make::unlisted;
 use crate::{HiddenEffect, Unlisted};
 use dynamics::DynamicsError;
 use seed::Seed;
 use std::f64::consts::PI;
 use truth::Sampling;
-
-/// Effects with a law of their own here, beside those of the stressed bank.
-const MORE: [(&str, &str); 2] = [("gravity", "weight"), ("flexible_coupling", "second body")];
-
-/// Effects of which a case has one at most: their sum has hardly two sides.
-const ALIKE: [&str; 2] = ["coulomb_friction", "stribeck_friction"];
-
-/// Laws outside the vocabulary, each with the class of effects that it belongs to by its mechanism, if to one.
-const UNLISTED: [(&str, Option<&str>); 5] = [
-    ("field", None),
-    ("cogging", None),
-    ("maxwell", None),
-    ("parametric", Some("drift")),
-    ("position_damping", Some("damping")),
-];
 
 /// Sizes × noise: of the leading effect, of the others, of some small ones, of what has no name.
 const LEADING: [f64; 2] = [30.0, 150.0];
@@ -162,33 +149,33 @@ impl Parts {
         let mut parts = Self::default();
         let mut wanted = sizes.effects.iter();
         let mut size = wanted.next();
-        for (effect, law) in shuffled(EFFECTS.iter().chain(&MORE).copied().collect(), draws) {
+        for (effect, other) in shuffled(by_other_laws(), draws) {
             let Some(floors) = size else { break };
             let beside = |id: &str| parts.effects.iter().any(|effect| effect.id == id);
-            if ALIKE.contains(&effect) && ALIKE.into_iter().any(beside) {
+            if effect.alike.iter().any(|other| beside(other.id())) {
                 continue;
             }
-            let drawn = draw(effect, situation, &mut Draws::new(&own.child(effect)));
+            let drawn = (other.draw)(situation, &mut Draws::new(&own.child(effect.id())));
             let detectability = floors * count.sqrt();
             let Some(sized) = within_reach(&drawn.open, setup, detectability)? else { continue };
             parts.effects.push(HiddenEffect {
-                id: effect.to_owned(),
+                id: effect.id().to_owned(),
                 parameters: (drawn.parameters)(sized.size),
-                law: law.to_owned(),
+                law: other.name.to_owned(),
                 detectability: sized.detectability,
                 floors: Some(sized.detectability / count.sqrt()),
             });
             parts.laws.push(sized.law);
             size = wanted.next();
         }
-        let laws = shuffled(UNLISTED.to_vec(), draws);
-        for ((name, class), floors) in laws.into_iter().zip(&sizes.unlisted) {
-            let open = unlisted(name, situation, &mut Draws::new(&own.child(name)));
+        let laws = shuffled(unlisted::REGISTRY.iter().collect(), draws);
+        for (law, floors) in laws.into_iter().zip(&sizes.unlisted) {
+            let (open, _) = (law.draw)(situation, &mut Draws::new(&own.child(law.name)));
             let Some(sized) = within_reach(&open, setup, floors * count.sqrt())? else { continue };
             parts.unlisted.push(Unlisted {
-                law: name.to_owned(),
+                law: law.name.to_owned(),
                 floors: sized.detectability / count.sqrt(),
-                class: class.map(str::to_owned),
+                class: law.class.map(|class| class.id().to_owned()),
             });
             parts.laws.push(sized.law);
         }
@@ -198,7 +185,7 @@ impl Parts {
 
 /// A law of the size wanted; `None` where no size is, or the motion runs away on the way there.
 fn within_reach(open: &OpenLaw, setup: &Setup, detectability: f64) -> Result<Option<SizedLaw>, TrialError> {
-    match open.sized(setup, detectability, Absorbed::BY_RECALIBRATION) {
+    match setup.sized(open, detectability, Absorbed::BY_RECALIBRATION) {
         Err(TrialError::Dynamics(DynamicsError::Diverged { .. })) => Ok(None),
         sized => sized,
     }
@@ -212,48 +199,7 @@ fn shuffled<T>(mut items: Vec<T>, draws: &mut Draws) -> Vec<T> {
     items
 }
 
-/// An effect of the vocabulary with its shape drawn.
-fn draw(effect: &str, situation: &Situation, draws: &mut Draws) -> Drawn {
-    let nominal = situation.nominal;
-    let (inertia, stiffness) = (nominal.inertia(), nominal.stiffness());
-    match effect {
-        "gravity" => {
-            let angle = draws.uniform(-PI, PI);
-            let law = move |size: f64| Weight { torque: size * stiffness, angle };
-            // The vocabulary's angle counts from position 0.
-            let from_zero = angle - nominal.rest_angle();
-            drawn(1e-2, 0.6, law, move |size| vec![size * stiffness, from_zero], format!("at {angle:.3} rad"))
-        }
-        "flexible_coupling" => {
-            let frequency = draws.uniform(1.8, 5.0) * situation.omega();
-            let damping_ratio = draws.log_uniform(0.003, 0.04);
-            let law = move |size: f64| SecondBody { inertia: size * inertia, frequency, damping_ratio };
-            let values = move |size: f64| {
-                let own = size * inertia;
-                vec![own, own * frequency * frequency, 2.0 * own * damping_ratio * frequency]
-            };
-            drawn(1e-2, 0.5, law, values, format!("second body at {frequency:.3} rad/s"))
-        }
-        other => stressed::draw(other, situation, draws),
-    }
-}
-
-/// A law outside the vocabulary with its shape drawn.
-fn unlisted(name: &str, situation: &Situation, draws: &mut Draws) -> OpenLaw {
-    if name != "field" {
-        return foreign::draw(name, situation, draws).0;
-    }
-    let (swing, speed) = (situation.amplitude, situation.amplitude * situation.omega());
-    let unit = situation.nominal.stiffness() * swing;
-    let mut term = || [draws.normal(), 2.5 * draws.normal(), 2.5 * draws.normal(), draws.uniform(-PI, PI)];
-    let terms: Vec<[f64; 4]> = (0..3).map(|_| term()).collect();
-    let law = move |size: f64| -> Box<dyn TorqueLaw> {
-        Box::new(Field { torque: size * unit, swing, speed, terms: terms.clone() })
-    };
-    OpenLaw { guess: 1e-3, most: 0.3, law: Box::new(law) }
-}
-
-/// Whether a motion is one about the rest angle.
+/// Returns whether a motion is one about the rest angle.
 fn is_sensible(situation: &Situation, motion: &Motion) -> bool {
     let rest = situation.nominal.rest_angle();
     let near = |position: &f64| (position - rest).abs() <= LARGEST_SWING * situation.amplitude;

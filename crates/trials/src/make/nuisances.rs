@@ -1,0 +1,121 @@
+//! What comes with records of every bank alike: an encoder's steps and what a logger does to stamps.
+
+use super::draws::Draws;
+use super::error::TrialError;
+use super::situation::Situation;
+use dynamics::{Active, ChainEffect, Effect};
+use seed::Seed;
+use std::f64::consts::TAU;
+
+/// Steps of an encoder with 12 or 13 bits a turn, in rad.
+const ENCODER_STEPS: [f64; 2] = [TAU / 4096.0, TAU / 8192.0];
+
+const ENCODER: Effect = Effect::MeasuringChain(ChainEffect::SensorQuantization);
+const JITTER: Effect = Effect::MeasuringChain(ChainEffect::TimestampJitter);
+
+/// The effect by which samples that share stamps are described.
+pub(crate) const BATCHING: Effect = Effect::MeasuringChain(ChainEffect::TimestampBatching);
+
+/// What the measurement chain does in every bank with the same probabilities.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Nuisances {
+    /// The encoder's step, where the sensor has one; `nominal.toml` states it.
+    pub(crate) encoder_step: Option<f64>,
+    /// What the logger does to the stamps.
+    pub(crate) clock: Option<Scatter>,
+}
+
+/// A part of [`Nuisances`], which an effect may be that is hidden.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Nuisance {
+    /// [`Nuisances::encoder_step`].
+    EncoderStep,
+    /// [`Nuisances::clock`].
+    Clock,
+}
+
+/// What a logger does to the stamps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Scatter {
+    /// Samples arrive in bursts, `interval` apart in seconds.
+    Batching {
+        /// Mean time between bursts.
+        interval: f64,
+        /// Its standard deviation as a part of the interval.
+        scatter: f64,
+    },
+    /// Every stamp is off; its effect on the values has this root mean square, in units of the white noise.
+    Jitter(f64),
+}
+
+impl Nuisances {
+    /// Draws them. Nothing that tells the bank or the effect goes in, but for the seed of the case.
+    pub(crate) fn draw(seed: &Seed) -> Self {
+        let mut draws = Draws::new(&seed.child("nuisances"));
+        let step = ENCODER_STEPS.get(draws.below(ENCODER_STEPS.len())).copied();
+        let encoder_step = step.filter(|_| draws.chance(0.5));
+        let interval = draws.uniform(0.01, 0.08);
+        let scatter = draws.uniform(0.0, 0.1);
+        let jitter = draws.uniform(0.3, 1.0);
+        let clock = match draws.uniform(0.0, 1.0) {
+            share if share < 0.25 => Some(Scatter::Batching { interval, scatter }),
+            share if share < 0.5 => Some(Scatter::Jitter(jitter)),
+            _ => None,
+        };
+        Self { encoder_step, clock }
+    }
+
+    /// Those that remain beside hidden effects: none does what a hidden effect does too, and none scatters
+    /// stamps where their scatter is hidden.
+    pub(crate) fn beside(mut self, hidden: impl IntoIterator<Item = Nuisance>) -> Self {
+        for nuisance in hidden {
+            match nuisance {
+                Nuisance::EncoderStep => self.encoder_step = None,
+                Nuisance::Clock => self.clock = None,
+            }
+        }
+        self
+    }
+
+    /// As effects of the measurement chain, for motions with a mean square velocity.
+    pub(crate) fn active(
+        &self,
+        situation: &Situation,
+        square_velocity: f64,
+    ) -> Result<Vec<Active>, TrialError> {
+        let mut active = Vec::new();
+        if let Some(step) = self.encoder_step {
+            active.push(Active::of(ENCODER, &[step])?);
+        }
+        let period = 1.0 / situation.sampling.rate_hz;
+        match self.clock {
+            Some(Scatter::Batching { interval, scatter }) => {
+                // A burst holds at least two samples.
+                let interval = interval.clamp(2.0 * period, 0.1 * situation.duration().max(40.0 * period));
+                active.push(Active::of(BATCHING, &[interval, scatter * interval])?);
+            }
+            Some(Scatter::Jitter(_)) => {
+                let deviation = self.jitter_deviation(situation, square_velocity);
+                active.push(Active::of(JITTER, &[deviation])?);
+            }
+            None => {}
+        }
+        Ok(active)
+    }
+
+    /// Standard deviation of the stamps in seconds; at most a third of a sample period.
+    fn jitter_deviation(&self, situation: &Situation, square_velocity: f64) -> f64 {
+        let Some(Scatter::Jitter(part)) = self.clock else { return 0.0 };
+        let velocity = square_velocity.sqrt().max(f64::MIN_POSITIVE);
+        (part * situation.noise / velocity).min(0.3 / situation.sampling.rate_hz)
+    }
+
+    /// Standard deviation of all that is white in the values: the sensor's noise, its rounding, and what
+    /// scattered stamps do to them.
+    pub(crate) fn white(&self, situation: &Situation, square_velocity: f64) -> f64 {
+        // A sensor without steps rounds nothing.
+        let rounding = self.encoder_step.map_or(0.0, |step| step * step / 12.0);
+        let jitter = self.jitter_deviation(situation, square_velocity).powi(2) * square_velocity;
+        (situation.noise.powi(2) + rounding + jitter).sqrt()
+    }
+}

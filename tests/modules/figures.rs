@@ -1,0 +1,126 @@
+//! Figures of every crate, counted from its sources: code, tests, documents, circles, long functions, zeros without a reason.
+//!
+//!     cargo test -p trainer --test acceptance modules::figures -- --nocapture
+
+#![allow(clippy::print_stdout, reason = "its table is what it is run for")]
+
+use super::defaults::zeros_of;
+use super::graph::Graph;
+use super::source::{code_only, without_tests};
+use super::{LONGEST, crates};
+use crate::documents::files;
+use std::path::Path;
+
+/// Lines of sources by what they hold; a line that holds nothing but a comment or a brace's blank counts for neither.
+#[derive(Debug, Default, Clone, Copy, PartialEq, Eq)]
+struct Lines {
+    /// Code that is not compiled for tests only.
+    code: usize,
+    /// Code of tests.
+    tests: usize,
+    /// `///` and `//!`, those of tests left out.
+    documents: usize,
+}
+
+impl Lines {
+    /// Of a file's text; a file of tests has nothing else.
+    fn of(text: &str, is_test: bool) -> Self {
+        let written = code_only(text);
+        let kept = if is_test { String::new() } else { without_tests(&written) };
+        let filled = |code: &str| code.lines().filter(|line| !line.trim().is_empty()).count();
+        let is_document = |line: &&str| ["///", "//!"].iter().any(|mark| line.trim_start().starts_with(mark));
+        let code = filled(&kept);
+        // Where tests begin, documents end: they stand last in a file.
+        let end = text.find("#[cfg(test)]\nmod tests {").unwrap_or(text.len());
+        let documents = if is_test { 0 } else { text[..end].lines().filter(is_document).count() };
+        Self { code, tests: filled(&written) - code, documents }
+    }
+
+    fn with(self, other: Self) -> Self {
+        Self {
+            code: self.code + other.code,
+            tests: self.tests + other.tests,
+            documents: self.documents + other.documents,
+        }
+    }
+
+    /// Lines of documents for a hundred of code.
+    fn density(self) -> f64 {
+        100.0 * self.documents as f64 / self.code.max(1) as f64
+    }
+}
+
+/// What is counted of a crate.
+struct Figures {
+    lines: Lines,
+    /// Modules that are part of a circle.
+    circular: usize,
+    /// Functions of more than [`LONGEST`] lines.
+    long: usize,
+    /// The longest function and its lines.
+    longest: (String, usize),
+    /// Numbers that stand in for what is not there, without a reason.
+    zeros: usize,
+}
+
+impl Figures {
+    fn of(name: &str, root: &Path) -> Self {
+        let graph = Graph::read(root);
+        let mut functions: Vec<(String, usize)> =
+            graph.functions().map(|(place, name, lines)| (format!("{place}::{name}"), lines)).collect();
+        functions.sort_by_key(|(_, lines)| *lines);
+        let (mut lines, mut zeros) = (Lines::default(), 0);
+        for file in files(root.parent().unwrap().to_str().unwrap(), "rs") {
+            let place = file.to_string_lossy().into_owned();
+            let is_test = place.ends_with("tests.rs") || place.contains("/tests/");
+            let text = std::fs::read_to_string(&file).unwrap();
+            lines = lines.with(Lines::of(&text, is_test));
+            zeros += if is_test { 0 } else { zeros_of(name, &text).len() };
+        }
+        Self {
+            lines,
+            circular: graph.circles().iter().map(Vec::len).sum(),
+            long: functions.iter().filter(|(_, lines)| *lines > LONGEST).count(),
+            longest: functions.pop().unwrap_or_default(),
+            zeros,
+        }
+    }
+}
+
+#[test]
+fn every_crate_is_counted() {
+    let found: Vec<(String, Figures)> = crates()
+        .into_iter()
+        .map(|(name, root)| {
+            let figures = Figures::of(&name, &root);
+            (name, figures)
+        })
+        .collect();
+    println!(
+        "| crate | code | tests | documents per 100 | modules in circles | functions over {LONGEST} | zeros | longest function |"
+    );
+    println!("|---|---|---|---|---|---|---|---|");
+    for (name, own) in &found {
+        let Figures { lines, circular, long, longest, zeros } = own;
+        println!(
+            "| `{name}` | {} | {} | {:.0} | {circular} | {long} | {zeros} | `{}`, {} |",
+            lines.code,
+            lines.tests,
+            lines.density(),
+            longest.0,
+            longest.1
+        );
+        assert!(lines.code > 0 && lines.documents > 0, "{name} holds nothing");
+    }
+    let all = found.iter().fold(Lines::default(), |all, (_, own)| all.with(own.lines));
+    println!("| all | {} | {} | {:.0} | | | | |", all.code, all.tests, all.density());
+    assert!(all.code > 50_000, "{all:?}");
+}
+
+#[test]
+fn lines_are_counted_once() {
+    let text = "//! Of a module.\n\n/// Of a function.\nfn f() {\n    // Why.\n    let text = \"/// no document\n\";\n}\n\
+                #[cfg(test)]\nmod tests {\n    /// Of a test.\n    fn g() {}\n}\n";
+    assert_eq!(Lines::of(text, false), Lines { code: 4, tests: 4, documents: 2 });
+    assert_eq!(Lines::of(text, true), Lines { code: 0, tests: 8, documents: 0 });
+}
