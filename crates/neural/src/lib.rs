@@ -22,6 +22,7 @@ mod lbfgs;
 mod levenberg_marquardt;
 mod memory;
 mod minimum;
+mod plain_network;
 mod sequence;
 mod weights;
 
@@ -35,5 +36,6 @@ pub use lbfgs::{Lbfgs, Smooth};
 pub use levenberg_marquardt::{LeastSquares, LevenbergMarquardt, Linearized};
 pub use memory::check_memory;
 pub use minimum::{Iteration, Minimum, StopReason};
+pub use plain_network::{Of, PlainNetwork};
 pub use sequence::Sequence;
 pub use weights::{NamedTensor, from_safetensors, to_safetensors};
