@@ -14,7 +14,12 @@ pub(crate) struct Objective<'a> {
     pub(crate) targets: &'a [f64],
     pub(crate) collocation: &'a [f64],
     pub(crate) physics_weight: f64,
+    /// The network's layers are held at zero: an ablation.
+    pub(crate) network_at_zero: bool,
 }
+
+/// Parameters that stand beside the network's layers, the last ones: a and b of its skip, and λ.
+pub(crate) const BESIDE: usize = 3;
 
 /// λ, and the network's parameters.
 fn split(parameters: &DVector<f64>) -> Result<(f64, &[f64]), FitError> {
@@ -70,6 +75,10 @@ impl LeastSquares for Objective<'_> {
         let part = jacobian.view_mut((above, 0), (below, weights));
         let slopes = network.linearize(Of::Derivative, self.collocation, self.physics_scale(), part);
         jacobian.view_mut((above, weights), (below, 1)).fill(self.physics_scale());
+        if self.network_at_zero {
+            // A parameter without a derivative stays where it is.
+            jacobian.columns_mut(0, (weights + 1).saturating_sub(BESIDE)).fill(0.0);
+        }
         Ok(Linearized { residuals: self.assemble(&fitted, &slopes, rate), jacobian })
     }
 }
