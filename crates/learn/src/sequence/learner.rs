@@ -90,6 +90,6 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
             &network,
             state.best_validation,
         )?;
-        Ok(Fitted { model: Box::new(model), reached, steps: state.steps })
+        Ok(Fitted { model: Box::new(model.calibrated(data)), reached, steps: state.steps })
     }
 }

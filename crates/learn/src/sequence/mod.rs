@@ -13,6 +13,7 @@
 //! Piga, Automatica 127 (2021) 109492 (multi-step simulation error); Beintema, Schoukens, Tóth, Automatica 156 (2023)
 //! 111210 (past windows as encoders, truncated simulation).
 
+mod band;
 mod fields;
 mod frame;
 mod grid;
