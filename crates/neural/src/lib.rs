@@ -29,7 +29,7 @@ mod weights;
 pub use adam::Adam;
 pub use affine_skip::{AffineSkipNetwork, Linearization};
 pub use decay::{Differentiated, Encoder, Reconstruction};
-pub use device::{device, tensor, values};
+pub use device::{DeviceKind, Precision, cpu_as_set, device, device_of, tensor, values};
 pub use flat::{flat_gradient, named_parameters, with_parameters};
 pub use laplace::Laplace;
 pub use lbfgs::{Lbfgs, Smooth};

@@ -31,7 +31,7 @@ use crate::LearnError;
 use burn::module::Module;
 use burn::nn::{Initializer, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
-use neural::{NamedTensor, device, named_parameters, with_parameters};
+use neural::{NamedTensor, cpu_as_set, named_parameters, with_parameters};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use serde::Serialize;
@@ -119,7 +119,7 @@ pub fn drawn<M: Module>(
     Ok(with_parameters(module, &weights, device)?)
 }
 
-/// The plain device.
+/// The device that a trained model predicts on: the processor.
 pub(crate) fn plain_device() -> Result<Device, LearnError> {
-    Ok(device()?)
+    Ok(cpu_as_set()?)
 }
