@@ -104,7 +104,7 @@ pub fn drawn<M: Module>(
         let mut generator = seed.child(&parameter.name).generator();
         match *parameter.shape.as_slice() {
             _ if parameter.name.starts_with("head") => weights.extend(parameter.values),
-            _ if own(&parameter).is_some() => weights.extend(own(&parameter).unwrap_or_default()),
+            _ if let Some(values) = own(&parameter) => weights.extend(values),
             [inputs, _] => {
                 let spread = (inputs as f64).sqrt().recip();
                 let draw = |_: &f64| {
