@@ -25,6 +25,11 @@ fn every_method_agrees_on_the_shipped_record() {
     }
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.to_lowercase().contains("simulated record"));
+    // The library's line is in every comparison, and is the reference's.
+    let library = &result["libraries"][0];
+    assert_eq!((&library["id"], &library["family"]), (&"linfa-linear".into(), &"library".into()));
+    assert!(number(library, "/outcome/estimate/digits_of_agreement") > 12.0, "{library}");
+    assert!(page.contains("linfa and linfa-linear"));
     let again = trainer(&["report", folder.path().to_str().unwrap()]);
     assert_eq!(again.status.code(), Some(0));
     assert_eq!(std::fs::read_to_string(folder.path().join("report.html")).unwrap(), page);
@@ -77,6 +82,22 @@ fn methods_can_be_chosen_by_name() {
     assert_eq!(estimate(&result, "baseline")["pass"], false);
 }
 
+/// What stands beside the network holds the slope (PINN), or the weights hold the answer whatever is read (LSTM).
+#[test]
+fn a_table_says_what_networks_contributed() {
+    let (code, result, _) = result(&["configs/compare.toml", "compare.methods=pinn,lstm,qr"]);
+    assert_eq!(code, 0, "{result}");
+    let without = |id: &str, ablation: &str| {
+        let found = &estimate(&result, id)["ablations"];
+        let row = found.as_array().unwrap().iter().find(|row| row["ablation"] == ablation);
+        number(row.unwrap_or_else(|| panic!("{found}")), "/error_percent")
+    };
+    assert!(without("pinn", "learned_part_at_zero") < 1e-3 && without("pinn", "noise_for_input") > 1.0);
+    assert!(without("lstm", "learned_part_at_zero") > 1.0 && without("lstm", "noise_for_input") < 1e-3);
+    assert_eq!(estimate(&result, "qr").get("ablations"), None);
+    assert!(rows(&result).iter().all(|row| row["estimand"] == "least_squares"), "{result}");
+}
+
 #[test]
 fn an_unknown_method_is_refused_with_the_nearest_name() {
     let output = trainer(&["configs/compare.toml", "compare.methods=pin"]);
@@ -92,6 +113,7 @@ fn threads_do_not_change_a_bit() {
     let run = |threads| {
         let (_, mut result, _) = result(&["configs/compare.toml", "fit.seeds=2", "--threads", threads]);
         result["seconds"] = Value::Null;
+        result["libraries"][0]["outcome"]["estimate"]["seconds"] = Value::Null;
         for row in result["results"].as_array_mut().unwrap() {
             if let Some(found) = row.pointer_mut("/outcome/estimate") {
                 found["seconds"] = Value::Null;

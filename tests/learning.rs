@@ -8,6 +8,9 @@ use std::process::{Command, Stdio};
 /// One sparse learner beside the quick baselines.
 const QUICK: [&str; 3] = ["configs/learn/sindy.toml", "sindy.members=10", "sindy.refit_samples=2000"];
 
+/// All baselines but the one that runs a diagnosis.
+const QUICK_BASELINES: &str = "learn.baselines=persistence,nominal,recalibrated,arx";
+
 fn row<'a>(result: &'a Value, id: &str) -> &'a Value {
     let rows = result["results"].as_array().unwrap();
     rows.iter().find(|row| row["id"] == id).unwrap_or_else(|| panic!("no {id}"))
@@ -36,6 +39,12 @@ fn a_study_leaves_scores_models_tables_and_a_page() {
     }
     let page = std::fs::read_to_string(folder.path().join("report.html")).unwrap();
     assert!(page.contains("Free runs: Friction and gravity, free (simulated)"));
+    for (ablation, words) in [("at-zero", "what it learned at zero"), ("on-noise", "given noise")] {
+        let without = row(&result, &format!("sindy:{ablation}"));
+        assert_eq!(without["kind"], "ablation");
+        assert!(number(without, "/test/free_run_rmse") > 10.0 * error("sindy"), "{without}");
+        assert!(page.contains(words), "no {words}");
+    }
 
     let model = folder.path().join(sindy["model"].as_str().unwrap());
     predicts_a_record(&model);
@@ -186,7 +195,8 @@ fn dry_friction_of_a_measured_disc_is_learned_from_one_release_and_helps_on_anot
     }
     let law = "sindy.library=theta,theta_dot,sign(theta_dot)";
     let problem = "learn.problems=disc-oscillator";
-    let (code, result, _) = result(&["configs/learn/measured.toml", problem, "learn.learners=sindy", law]);
+    let (code, result, _) =
+        result(&["configs/learn/measured.toml", problem, "learn.learners=sindy", QUICK_BASELINES, law]);
     assert_eq!(code, 0, "{result}");
     assert_eq!(result["problems"][0]["origin"], "measured");
     let error = |id: &str| number(row(&result, id), "/test/free_run_rmse");
@@ -202,7 +212,7 @@ fn dry_friction_of_a_measured_disc_is_learned_from_one_release_and_helps_on_anot
 fn absent_records_leave_their_rows_out_and_say_so() {
     let folder = root().join("no-such-folder");
     let folder = format!("problem.air-disc.folder={}", folder.display());
-    let arguments = ["configs/learn/measured.toml", "learn.problems=air-disc", &folder];
+    let arguments = ["configs/learn/measured.toml", "learn.problems=air-disc", QUICK_BASELINES, &folder];
     let (code, result, _) = result(&arguments);
     assert_eq!(code, 0, "{result}");
     assert!(result["problems"][0]["absent"].as_str().unwrap().contains("its rows are left out"));

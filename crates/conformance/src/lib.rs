@@ -14,6 +14,8 @@ mod calibration;
 mod checks;
 mod cohort;
 mod envelopes;
+#[cfg(test)]
+mod estimand_tests;
 mod line;
 mod subject;
 

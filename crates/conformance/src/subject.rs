@@ -1,7 +1,7 @@
 //! An estimator under test.
 
 use envelope::Envelope;
-use estimator::{Cancel, Entry, Estimate, Estimator, FitContext, FitError, Silent, Tag};
+use estimator::{Ablation, Cancel, Entry, Estimate, Estimator, FitContext, FitError, Silent, Tag};
 use seed::Seed;
 use settings::{Document, Resolved, Section, SettingsError};
 use std::collections::HashMap;
@@ -65,6 +65,23 @@ impl<'a> Subject<'a> {
         match reader.as_ref() {
             Ok(Some(reader)) => self.run(reader.as_ref(), envelope, seed, max_steps),
             Ok(None) => self.fit_anew(envelope, seed, max_steps),
+            Err(error) => Err(error.clone()),
+        }
+    }
+
+    /// A fit without a part of the estimator; an amortized estimator is trained whole, and reads without it.
+    ///
+    /// # Errors
+    /// What the fit gives.
+    pub fn ablated(&self, envelope: &Envelope, seed: u64, ablation: Ablation) -> Result<Estimate, FitError> {
+        let cancel = Cancel::new();
+        let context = self.context(seed, None, &cancel).ablating(ablation);
+        if !self.entry.has(Tag::Amortized) {
+            return self.estimator.fit(envelope, &context);
+        }
+        match self.pretrained.of((seed, None), || self.pretrain(seed, None)).as_ref() {
+            Ok(Some(reader)) => reader.fit(envelope, &context),
+            Ok(None) => self.estimator.fit(envelope, &context),
             Err(error) => Err(error.clone()),
         }
     }

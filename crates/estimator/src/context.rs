@@ -1,5 +1,6 @@
 //! What an estimator is given besides the envelope.
 
+use crate::ablation::{Ablation, noise_like};
 use crate::error::FitError;
 use seed::Seed;
 use serde::Serialize;
@@ -95,6 +96,7 @@ pub struct FitContext<'a> {
     cancel: &'a Cancel,
     query_times: &'a [f64],
     checkpoints: Option<&'a dyn Checkpoints>,
+    ablation: Option<Ablation>,
 }
 
 impl<'a> FitContext<'a> {
@@ -104,7 +106,7 @@ impl<'a> FitContext<'a> {
     /// for the untrained estimate.
     #[must_use]
     pub fn new(seed: Seed, max_steps: Option<u64>, observer: &'a dyn Observer, cancel: &'a Cancel) -> Self {
-        Self { seed, max_steps, observer, cancel, query_times: &[], checkpoints: None }
+        Self { seed, max_steps, observer, cancel, query_times: &[], checkpoints: None, ablation: None }
     }
 
     /// Asks for the fitted function at `times` as well: seconds after the envelope's
@@ -118,6 +120,35 @@ impl<'a> FitContext<'a> {
     #[must_use]
     pub fn checkpointing_to(self, checkpoints: &'a dyn Checkpoints) -> Self {
         Self { checkpoints: Some(checkpoints), ..self }
+    }
+
+    /// The same context with a part of the estimator taken away; only an estimator with [`Tag::Ablation`](crate::Tag)
+    /// obeys.
+    #[must_use]
+    pub fn ablating(self, ablation: Ablation) -> Self {
+        Self { ablation: Some(ablation), ..self }
+    }
+
+    /// The part of the estimator that this fit does without.
+    #[must_use]
+    pub fn ablation(&self) -> Option<Ablation> {
+        self.ablation
+    }
+
+    /// Whether the learned part is held at zero.
+    #[must_use]
+    pub fn is_at_zero(&self) -> bool {
+        self.ablation == Some(Ablation::LearnedPartAtZero)
+    }
+
+    /// What a learned part reads: `values` themselves, or white noise of the same range where the ablation asks for it.
+    /// `name` is that of the input, and of the noise's seed.
+    #[must_use]
+    pub fn input(&self, name: &str, values: Vec<f64>) -> Vec<f64> {
+        match self.ablation {
+            Some(Ablation::NoiseForInput) => noise_like(&values, &self.seed(&format!("noise for {name}"))),
+            _ => values,
+        }
     }
 
     /// The state to begin from, where one was kept.

@@ -19,8 +19,40 @@ pub enum Tag {
     /// Learns its skill from envelopes of its own making, before it sees the one it is asked about: its
     /// answer is as good as its training, not least squares to the last digits.
     Amortized,
+    /// Estimates something else than the slope of the least-squares line, as a robust or a friction-aware
+    /// method does: where its value differs from least squares it may be right.
+    OwnEstimand,
+    /// Has a learned part that can be held at zero, and an input that can be replaced by noise: it obeys
+    /// [`FitContext::ablation`].
+    Ablation,
     /// The floor row of tables: not meant to be right.
     Null,
+}
+
+/// Relation of an estimator's converged value to the slope of the least-squares line through ln A.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Estimand {
+    /// It is that slope: a converged fit that differs from certified least squares is wrong.
+    LeastSquares,
+    /// It approximates that slope by a skill learned beforehand: it differs by the error of its training.
+    Approximation,
+    /// It is something else, and may differ from least squares.
+    Own,
+    /// It is nothing: the floor row.
+    Nothing,
+}
+
+impl Estimand {
+    /// The name as files write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LeastSquares => "least_squares",
+            Self::Approximation => "approximation",
+            Self::Own => "own",
+            Self::Nothing => "nothing",
+        }
+    }
 }
 
 /// An estimator with its settings in force.
@@ -73,5 +105,19 @@ impl Entry {
     #[must_use]
     pub fn has(&self, tag: Tag) -> bool {
         self.tags.contains(&tag)
+    }
+
+    /// Relation of its converged value to least squares, by its tags.
+    #[must_use]
+    pub fn estimand(&self) -> Estimand {
+        if self.has(Tag::Null) {
+            Estimand::Nothing
+        } else if self.has(Tag::OwnEstimand) {
+            Estimand::Own
+        } else if self.has(Tag::Amortized) {
+            Estimand::Approximation
+        } else {
+            Estimand::LeastSquares
+        }
     }
 }

@@ -9,14 +9,16 @@
 
 #![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
 
+mod ablation;
 mod context;
 mod entry;
 mod error;
 mod estimate;
 mod scaling;
 
+pub use ablation::Ablation;
 pub use context::{Cancel, Checkpoints, FitContext, Observer, Silent, Step};
-pub use entry::{Entry, Estimator, Tag};
+pub use entry::{Entry, Estimand, Estimator, Tag};
 pub use error::FitError;
 pub use estimate::{Estimate, ModelFile, Prediction, Reached, Stop, Uncertainty};
 pub use scaling::Scaling;

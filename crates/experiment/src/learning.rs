@@ -40,6 +40,8 @@ pub struct LearnSettings {
     problems: Option<Vec<String>>,
     /// Cap on the steps of every fit.
     pub max_steps: Option<u64>,
+    /// Whether learners are judged without what they learned, and given noise, too.
+    pub ablations: bool,
 }
 
 /// A section `problem.NAME`: a data set.
@@ -166,6 +168,14 @@ const LEARN: &[Field] = &[
         key: "max_steps",
         kind: Kind::Integer { min: 0, max: i64::MAX },
         meaning: "Cap on the steps of every fit, whatever a learner's own; 0 leaves networks untrained.",
+        ..PLAIN
+    },
+    Field {
+        key: "ablations",
+        kind: Kind::Boolean,
+        default: Default::Boolean(true),
+        meaning: "Whether each learner's model is judged twice more: with everything that it learned at zero, and given noise \
+                  in place of past and input.",
         ..PLAIN
     },
 ];

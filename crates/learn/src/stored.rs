@@ -10,6 +10,9 @@ use std::collections::HashMap;
 /// Key of the header's description.
 const KEY: &str = "ringdown";
 
+/// Name of the tensor that holds draws of the weights, in files of laws and torques.
+pub(crate) const DRAWS: &str = "draws";
+
 /// Numbers with a shape, row-major.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tensor {
@@ -73,6 +76,21 @@ impl Stored {
     pub fn about_as<T: DeserializeOwned>(&self) -> Result<T, LearnError> {
         serde_json::from_value(self.about.clone())
             .map_err(|error| refused(format!("what it says of its training is of another form: {error}")))
+    }
+
+    /// The same model with everything that was learned at zero: weights, and no draws of them. A sequence model is then
+    /// the linear prediction that it corrects, a torque the nominal simulator, and a law without terms uniform motion.
+    #[must_use]
+    pub fn at_zero(&self) -> Self {
+        let zero = |tensor: &Tensor| match tensor.name == DRAWS {
+            true => Tensor {
+                shape: vec![0, tensor.shape.last().copied().unwrap_or(1)],
+                values: Vec::new(),
+                ..tensor.clone()
+            },
+            false => Tensor { values: vec![0.0; tensor.values.len()], ..tensor.clone() },
+        };
+        Self { tensors: self.tensors.iter().map(zero).collect(), ..self.clone() }
     }
 
     /// The description read back.

@@ -95,10 +95,15 @@ impl Reconstruction {
         let scaling = Scaling::of(envelope)?;
         let peaks = Sequence::of(envelope, &scaling);
         let recording = device.clone().autodiff();
-        let sequence = peaks.clone().pooled(self.longest_sequence);
+        let sequence = peaks.clone().pooled(self.longest_sequence).as_read(context);
         let objective = Objective::new(encoder, &sequence, &peaks, &recording);
+        let (start, most) = match context.is_at_zero() {
+            // Held there: nothing is trained.
+            true => (vec![0.0; start.len()], 0),
+            false => (start, self.max_steps),
+        };
         let method = Lbfgs {
-            max_steps: context.step_limit(self.max_steps),
+            max_steps: context.step_limit(most),
             memory: self.memory,
             gradient_tolerance: self.gradient_tolerance,
         };

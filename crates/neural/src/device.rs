@@ -1,31 +1,178 @@
-//! burn's CPU backend in double precision.
+//! Devices that networks compute on: burn's CPU backend in double precision, and what the program was built with
+//! besides.
 
 #![expect(clippy::disallowed_methods, reason = "this module hands out the device")]
 
-use burn::tensor::{Device, FloatDType, IntDType, Tensor, TensorData};
+use burn::tensor::{DType, Device, FloatDType, IntDType, Tensor, TensorData};
 use estimator::FitError;
+use serde::{Deserialize, Serialize};
 use std::sync::OnceLock;
 
-static DEVICE: OnceLock<Result<Device, String>> = OnceLock::new();
+/// A kind of device.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum DeviceKind {
+    /// The processor; always there.
+    #[default]
+    Cpu,
+    /// A graphics card by way of WebGPU; with the cargo feature `wgpu`.
+    Wgpu,
+    /// An NVIDIA card; with the cargo feature `cuda`.
+    Cuda,
+}
+
+impl DeviceKind {
+    /// The name as configurations write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Cpu => "cpu",
+            Self::Wgpu => "wgpu",
+            Self::Cuda => "cuda",
+        }
+    }
+
+    /// Whether the program was built with it.
+    #[must_use]
+    pub const fn is_built(self) -> bool {
+        match self {
+            Self::Cpu => true,
+            Self::Wgpu => cfg!(feature = "wgpu"),
+            Self::Cuda => cfg!(feature = "cuda"),
+        }
+    }
+}
+
+/// Width of the numbers that a network computes with.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Precision {
+    /// Doubles.
+    #[default]
+    F64,
+    /// Single precision.
+    F32,
+}
+
+impl Precision {
+    /// The name as configurations write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::F64 => "f64",
+            Self::F32 => "f32",
+        }
+    }
+
+    fn dtypes(self) -> (FloatDType, IntDType) {
+        match self {
+            Self::F64 => (FloatDType::F64, IntDType::I64),
+            Self::F32 => (FloatDType::F32, IntDType::I32),
+        }
+    }
+
+    fn of_float(self) -> DType {
+        match self {
+            Self::F64 => DType::F64,
+            Self::F32 => DType::F32,
+        }
+    }
+}
+
+/// A device with the precision that this process has set it to.
+type Set = OnceLock<Result<(Device, Precision), String>>;
+
+static CPU: Set = OnceLock::new();
+static WGPU: Set = OnceLock::new();
+static CUDA: Set = OnceLock::new();
 
 /// burn's CPU device, set to double precision.
 ///
 /// The setting holds for the whole process and can be made once only, before the first tensor; hence
-/// every tensor of this workspace has to come by way of this function.
+/// every tensor of this workspace has to come by way of this module.
+///
+/// # Errors
+/// [`FitError::Backend`] where burn refuses the setting, or this process has set the CPU to single precision.
+pub fn device() -> Result<Device, FitError> {
+    device_of(DeviceKind::Cpu, Precision::F64)
+}
+
+/// burn's CPU device in the precision that this process has set it to, double where nobody has asked for any: what a
+/// trained network predicts on.
 ///
 /// # Errors
 /// [`FitError::Backend`] where burn refuses the setting.
-pub fn device() -> Result<Device, FitError> {
-    DEVICE
-        .get_or_init(|| {
-            let mut device = Device::flex();
-            device
-                .configure((FloatDType::F64, IntDType::I64))
-                .map_err(|error| format!("double precision was refused: {error:?}"))?;
-            Ok(device)
-        })
-        .clone()
-        .map_err(|problem| FitError::Backend { problem })
+pub fn cpu_as_set() -> Result<Device, FitError> {
+    let precision = CPU.get().and_then(|set| set.as_ref().ok()).map(|(_, precision)| *precision);
+    // Nobody has asked yet.
+    device_of(DeviceKind::Cpu, precision.unwrap_or_default())
+}
+
+/// A device of a kind in a precision; the first of its kind where there are several.
+///
+/// # Errors
+/// [`FitError::Backend`] where the program was built without this kind, the machine has no such device, the device does not
+/// compute in this precision, or this process has set it to the other one; the message says what there is.
+pub fn device_of(kind: DeviceKind, precision: Precision) -> Result<Device, FitError> {
+    let refused = |problem: String| FitError::Backend { problem };
+    let set = match kind {
+        DeviceKind::Cpu => &CPU,
+        DeviceKind::Wgpu => &WGPU,
+        DeviceKind::Cuda => &CUDA,
+    };
+    let (device, found) = set.get_or_init(|| configured(kind, precision)).clone().map_err(refused)?;
+    if found == precision {
+        return Ok(device);
+    }
+    let (kind, found, asked) = (kind.name(), found.name(), precision.name());
+    Err(refused(format!(
+        "device \"{kind}\" computes in {found} in this process, and {asked} was asked for; use one precision, or run them \
+         one after the other"
+    )))
+}
+
+fn configured(kind: DeviceKind, precision: Precision) -> Result<(Device, Precision), String> {
+    let name = kind.name();
+    if !kind.is_built() {
+        let built: Vec<&str> = [DeviceKind::Cpu, DeviceKind::Wgpu, DeviceKind::Cuda]
+            .into_iter()
+            .filter(|kind| kind.is_built())
+            .map(DeviceKind::name)
+            .collect();
+        return Err(format!(
+            "device \"{name}\" was asked for, and this program was built without it: it has {}; build it with \
+             `--features {name}`",
+            built.join(", ")
+        ));
+    }
+    let Some(mut device) = first(kind) else {
+        return Err(format!(
+            "device \"{name}\" was asked for, and this machine has none: use device = \"cpu\""
+        ));
+    };
+    if !device.supports_dtype(precision.of_float()) {
+        return Err(format!(
+            "device \"{name}\" does not compute in {}; use precision = \"f32\", or device = \"cpu\"",
+            precision.name()
+        ));
+    }
+    device
+        .configure(precision.dtypes())
+        .map_err(|error| format!("{} was refused: {error:?}", precision.name()))?;
+    Ok((device, precision))
+}
+
+/// The first device of a kind; listing them starts none, so that a machine without one is told and does not panic.
+fn first(kind: DeviceKind) -> Option<Device> {
+    match kind {
+        DeviceKind::Cpu => Some(Device::flex()),
+        #[cfg(feature = "wgpu")]
+        DeviceKind::Wgpu => Device::enumerate(burn::tensor::DeviceType::Wgpu).into_vec().into_iter().next(),
+        #[cfg(feature = "cuda")]
+        DeviceKind::Cuda => Device::enumerate(burn::tensor::DeviceType::Cuda).into_vec().into_iter().next(),
+        #[cfg(not(all(feature = "wgpu", feature = "cuda")))]
+        _ => None,
+    }
 }
 
 /// A matrix of doubles on a device, from its rows one after the other.
@@ -36,13 +183,36 @@ pub fn tensor(values: Vec<f64>, [rows, columns]: [usize; 2], device: &Device) ->
     Tensor::from_data(TensorData::new(values, [rows, columns]), device)
 }
 
-/// The doubles of a tensor, rows one after the other.
+/// The numbers of a tensor, rows one after the other; those of a tensor in single precision as doubles.
 ///
 /// # Errors
-/// [`FitError::Backend`] where the tensor does not hold doubles.
+/// [`FitError::Backend`] where the tensor does not hold floating-point numbers.
 pub fn values<const D: usize>(tensor: Tensor<D>) -> Result<Vec<f64>, FitError> {
-    tensor
-        .into_data()
-        .try_to_vec::<f64>()
-        .map_err(|error| FitError::Backend { problem: format!("{error:?}") })
+    let data = tensor.into_data();
+    let data = if data.dtype() == DType::F32 { data.convert::<f64>() } else { data };
+    data.try_to_vec::<f64>().map_err(|error| FitError::Backend { problem: format!("{error:?}") })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{DeviceKind, Precision, device, device_of};
+
+    #[test]
+    fn what_is_not_there_is_told_with_what_is() {
+        for (kind, feature) in [(DeviceKind::Wgpu, "wgpu"), (DeviceKind::Cuda, "cuda")] {
+            if kind.is_built() {
+                continue;
+            }
+            let message = device_of(kind, Precision::F64).unwrap_err().to_string();
+            assert!(message.contains("it has cpu") && message.contains(&format!("--features {feature}")));
+        }
+    }
+
+    #[test]
+    fn one_process_computes_in_one_precision() {
+        device().unwrap();
+        let message = device_of(DeviceKind::Cpu, Precision::F32).unwrap_err().to_string();
+        assert!(message.contains("computes in f64 in this process, and f32 was asked for"), "{message}");
+        assert!(device_of(DeviceKind::Cpu, Precision::F64).is_ok());
+    }
 }

@@ -1,7 +1,7 @@
 //! What the networks read: an envelope's peaks as a sequence in scaled units.
 
 use envelope::Envelope;
-use estimator::Scaling;
+use estimator::{FitContext, Scaling};
 
 /// What an encoder reads: peaks, or means of neighboring peaks, in scaled units.
 ///
@@ -41,6 +41,13 @@ impl Sequence {
             (Some(first), Some(last)) if self.len() > 1 => (last - first) / (self.len() - 1) as f64,
             _ => 1.0,
         }
+    }
+
+    /// What a network is shown of it: the sequence itself, or white noise where an [ablation](FitContext::input) asks for
+    /// that.
+    #[must_use]
+    pub fn as_read(self, context: &FitContext<'_>) -> Self {
+        Self { times: context.input("times", self.times), values: context.input("amplitudes", self.values) }
     }
 
     /// At most `most` entries: the means of times and values over runs of neighbors, the runs' lengths

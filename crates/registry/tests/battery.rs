@@ -1,4 +1,4 @@
-//! The battery: one named test for each registered estimator and each check, `pinn::untrained_it_is_wrong`.
+//! The battery: one named test for each registered estimator and each check, `pinn::it_beats_the_null_estimator`.
 //!
 //! The tests come from the registry, so that a new estimator joins by its line there. Coverage over a
 //! thousand envelopes is left out unless asked for: `cargo test --release -p registry -- --ignored`.
@@ -14,11 +14,35 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 /// What an estimator is let off, and why. A waived check that passes fails.
-const WAIVERS: &[Waiver] = &[Waiver {
-    estimator: "symbolic",
-    check: "away_from_its_end_it_states_no_interval",
-    reason: "its steps are generations of expressions; the constants of the one at hand are always fitted to the end",
-}];
+const WAIVERS: &[Waiver] = &[
+    Waiver {
+        estimator: "symbolic",
+        check: "away_from_its_end_it_states_no_interval",
+        reason: "its steps are generations of expressions; the constants of the one at hand are always fitted to the end",
+    },
+    at_zero(
+        "pinn",
+        "the straight line beside the network holds the slope: least squares without any network",
+    ),
+    at_zero(
+        "neural-ode",
+        "the constant part of the field is a line's slope: least squares without any network",
+    ),
+    at_zero("gaussian-process", "its mean is a free line, which without a signal is least squares"),
+    at_zero("symbolic", "the straight line that an expression lacks is joined to it"),
+    on_noise("lstm", "its weights hold the answer: trained on one envelope it need not read it"),
+    on_noise("transformer", "its weights hold the answer: trained on one envelope it need not read it"),
+];
+
+/// The learned part contributed nothing to λ.
+const fn at_zero(estimator: &'static str, reason: &'static str) -> Waiver {
+    Waiver { estimator, check: "with_its_learned_part_at_zero_it_is_wrong", reason }
+}
+
+/// What the network read contributed nothing to λ.
+const fn on_noise(estimator: &'static str, reason: &'static str) -> Waiver {
+    Waiver { estimator, check: "reading_noise_it_is_wrong", reason }
+}
 
 /// Envelopes of the short and of the long coverage test.
 const SHORT: u64 = 40;

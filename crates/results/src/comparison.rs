@@ -25,6 +25,9 @@ pub struct ComparisonResult {
     pub derived: Derived,
     /// One row for each method, in the paper's order.
     pub results: Vec<MethodRow>,
+    /// The same line by libraries that are not of this project: a second opinion on the reference.
+    #[serde(default)]
+    pub libraries: Vec<MethodRow>,
     /// The largest error over methods and seeds, in percent.
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub max_error_percent: f64,
@@ -83,10 +86,32 @@ pub struct MethodRow {
     pub id: String,
     /// Name in words.
     pub title: String,
-    /// `"classical"` or `"learned"`.
+    /// `"classical"`, `"learned"` or `"library"`.
     pub family: String,
+    /// Relation of its converged value to least squares: `"least_squares"` where it has to be equal,
+    /// `"approximation"` where it differs by the error of a training, `"own"` where it estimates something else,
+    /// `"nothing"` for the null estimator.
+    #[serde(default = "least_squares")]
+    pub estimand: String,
     /// Estimate, or the reason why there is none.
     pub outcome: MethodOutcome,
+}
+
+/// What was meant before there was a word for it.
+fn least_squares() -> String {
+    "least_squares".to_owned()
+}
+
+/// A method's first seed fitted without a part of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct AblationRow {
+    /// `"learned_part_at_zero"` or `"noise_for_input"`.
+    pub ablation: String,
+    /// |ζ − ζ_oracle| / ζ_oracle · 100 of that fit; `None` where it gave no estimate.
+    pub error_percent: Option<f64>,
+    /// Why it gave none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub failure: Option<String>,
 }
 
 /// Outcome of one method.
@@ -134,8 +159,13 @@ pub struct MethodEstimate {
     pub reached: String,
     /// Reason, in a sentence, why the first seed's fit stopped.
     pub stopped_because: String,
-    /// True if every seed is within the tolerance.
+    /// True if every seed is within the tolerance; one that estimates something else than least squares passes
+    /// where it gives a finite value.
     pub pass: bool,
+    /// The same fit with the learned part at zero, and with noise for its input; empty for a method without a
+    /// learned part.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub ablations: Vec<AblationRow>,
 }
 
 /// A statement that the numbers do not bear out.

@@ -16,7 +16,8 @@ pub struct LearnResult {
     pub data: LearnData,
     /// The problems, in the order of the configuration.
     pub problems: Vec<LearnProblem>,
-    /// A row for each problem and method: problems in their order, within each the least error first.
+    /// A row for each problem and method: problems in their order, within each the least error first, and ablations of
+    /// learners last.
     pub results: Vec<LearnRow>,
     /// Wall time of all fits, in seconds.
     pub seconds: f64,
@@ -115,6 +116,8 @@ pub enum LearnKind {
     Learner,
     /// Knows nothing, or what a simulator knows.
     Baseline,
+    /// A learner's model without what it learned, or given noise: identifiers end in `:at-zero` and `:on-noise`.
+    Ablation,
     /// The true law, fitted: what nobody can do better.
     Reference,
 }
@@ -126,6 +129,7 @@ impl LearnKind {
         match self {
             Self::Learner => "learner",
             Self::Baseline => "baseline",
+            Self::Ablation => "ablation",
             Self::Reference => "reference",
         }
     }

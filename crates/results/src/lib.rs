@@ -24,7 +24,9 @@ mod trials;
 
 pub use batch::{BatchResult, CASE_SCHEMA, CaseFile, FailedCase};
 pub use calibration::{CalibratedRow, Calibration, KnownEffectRow};
-pub use comparison::{Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow};
+pub use comparison::{
+    AblationRow, Caution, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow,
+};
 pub use diagnosis::{
     Backbone, BackbonePoint, BudgetShares, ChainFinding, ChainSummary, ClassEvidenceRow, ClassRow,
     DIAGNOSIS_SCHEMA, DISTINCT_DISTANCE, DetectabilityRow, DiagnosisResult, DiagnosisVerdict, EffectRow,

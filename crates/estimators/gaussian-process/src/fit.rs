@@ -36,7 +36,7 @@ impl Estimator for GaussianProcessConfig {
             });
         }
         let scaling = Scaling::of(envelope)?;
-        let times = scaling.unit_times(envelope);
+        let times = context.input("times", scaling.unit_times(envelope));
         let projection = Projection::new(&times);
         let process = Process::new(self.kernel, self.signal_scale, &times, &scaling.scaled_logs(envelope));
         let rate =
@@ -55,14 +55,15 @@ struct Trained {
 }
 
 impl GaussianProcessConfig {
-    /// Scales between which to look; a and b are free.
-    fn bounds(&self) -> Bounds {
+    /// Scales between which to look; a and b are free. A signal at zero is one that a double hardly holds.
+    fn bounds(&self, context: &FitContext<'_>) -> Bounds {
         let least = LEAST_DEVIATION.ln();
         let free = f64::INFINITY;
+        let most_signal: f64 = if context.is_at_zero() { LEAST_DEVIATION } else { 10.0 };
         let longest = self.longest_length.max(self.shortest_length);
         Bounds {
             least: Vector5::new(-free, -free, least, self.shortest_length.ln(), least),
-            most: Vector5::new(free, free, 10.0_f64.ln(), longest.ln(), 10.0_f64.ln()),
+            most: Vector5::new(free, free, most_signal.ln(), longest.ln(), 10.0_f64.ln()),
         }
     }
 
@@ -72,11 +73,12 @@ impl GaussianProcessConfig {
     fn start(&self, context: &FitContext<'_>, number: u64) -> Vector5<f64> {
         let mut generator = context.seed(&format!("start {number}")).generator();
         let mut between = |from: f64, to: f64| from + (to - from) * generator.random::<f64>();
-        let bounds = self.bounds();
+        let bounds = self.bounds(context);
+        let signal = |drawn: f64| drawn.clamp(bounds.least.z, bounds.most.z);
         Vector5::new(
             between(-self.initial_scale, self.initial_scale),
             between(-self.initial_scale, self.initial_scale),
-            between(0.05_f64.ln(), 0.2_f64.ln()),
+            signal(between(0.05_f64.ln(), 0.2_f64.ln())),
             between(bounds.least.w, bounds.most.w),
             between(0.5_f64.ln(), 2.0_f64.ln()),
         )
@@ -109,7 +111,7 @@ impl GaussianProcessConfig {
                 if context.is_canceled() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
             };
             let (Summit { at, ended: how }, taken) =
-                climb(process, &self.bounds(), start, self.tolerance, limit - steps, watch);
+                climb(process, &self.bounds(context), start, self.tolerance, limit - steps, watch);
             steps += taken;
             ended = how;
             if best.as_ref().is_none_or(|best| at.value > best.value) {
@@ -140,7 +142,7 @@ impl GaussianProcessConfig {
             });
         }
         let stop = self.stop(ended, climbed, steps, &best);
-        let degrees_of_freedom = degrees_of_freedom(&process.slope(&best), &self.bounds(), &best);
+        let degrees_of_freedom = degrees_of_freedom(&process.slope(&best), &self.bounds(context), &best);
         Ok(Trained { best, stop, steps, degrees_of_freedom })
     }
 

@@ -47,7 +47,7 @@ pub const ENTRY: Entry = Entry {
     paper_number: Some(20),
     title: "Gaussian process",
     summary: "A line plus a smooth random function plus noise; the slope of their posterior mean.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Rasmussen, Williams, Gaussian Processes for Machine Learning (2006)",
         "Patterson, Thompson, Biometrika 58 (1971) 545-554",

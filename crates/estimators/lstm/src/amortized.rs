@@ -45,7 +45,7 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     paper_number: None,
     title: "Long short-term memory network, amortized",
     summary: "Trained on simulated envelopes only, reads one it never saw, peak after peak.",
-    tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735-1780",
         "Cranmer, Brehmer, Louppe, PNAS 117 (2020) 30055-30062",

@@ -37,7 +37,7 @@ pub const ENTRY: Entry = Entry {
     paper_number: Some(15),
     title: "Long short-term memory network",
     summary: "Reads the peaks one after the other and says the exponential that reconstructs them.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Hochreiter, Schmidhuber, Neural Computation 9 (1997) 1735-1780",
         "Nocedal, Mathematics of Computation 35 (1980) 773-782",

@@ -1,11 +1,11 @@
 //! The network.
 
-use crate::backpropagation::backpropagate;
+use crate::backpropagation::Passed;
 use burn::module::Module;
 use burn::nn::{Initializer, Linear, LinearConfig, Lstm, LstmConfig};
 use burn::tensor::{Device, Tensor, TensorData};
 use estimator::FitError;
-use neural::{Differentiated, Encoder, NamedTensor, Sequence, flat_gradient, named_parameters};
+use neural::{Differentiated, Encoder, NamedTensor, Sequence, flat_gradient, named_parameters, tensor};
 use rand::{Rng, RngExt};
 use rand_distr::StandardNormal;
 
@@ -101,21 +101,21 @@ impl Encoder for Network {
         self.head.forward(last.hidden)
     }
 
-    /// The tape begins at the last hidden state; what comes before goes by [`backpropagate`].
+    /// The tape begins at the last hidden state; what comes before goes by [`Passed`], on plain matrices.
     fn differentiate(
         &self,
         input: Tensor<3>,
         loss: impl FnOnce(Tensor<2>) -> Tensor<1>,
     ) -> Result<Differentiated, FitError> {
-        let (lstm, input) = (self.lstm.valid(), input.inner());
-        let (hidden, last) = lstm.forward(input.clone(), None);
-        let last = last.hidden.autodiff().require_grad();
+        let recording = input.device();
+        let [sequences, ..] = input.dims();
+        let passed = Passed::forward(&self.lstm, input)?;
+        let last = tensor(passed.last(), [sequences, self.lstm.d_hidden], &recording).require_grad();
         let said = self.head.forward(last.clone());
         let loss = loss(said.clone());
         let gradients = loss.backward();
         let none = || FitError::Backend { problem: "no gradient of the last hidden state".to_owned() };
-        let by_last = last.grad(&gradients).ok_or_else(none)?;
-        let mut gradient = backpropagate(&lstm, input, hidden, by_last)?;
+        let mut gradient = passed.backpropagate(last.grad(&gradients).ok_or_else(none)?)?;
         gradient.extend(flat_gradient(&self.head, &gradients)?);
         Ok(Differentiated { said, loss, gradient })
     }

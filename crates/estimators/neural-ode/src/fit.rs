@@ -2,7 +2,7 @@
 
 use crate::config::NeuralOdeConfig;
 use crate::field::VectorField;
-use crate::objective::{Objective, Reading};
+use crate::objective::{BESIDE, Objective, Reading};
 use envelope::Envelope;
 use estimator::{
     Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Uncertainty,
@@ -28,8 +28,9 @@ impl Estimator for NeuralOdeConfig {
         }
         let scaling = Scaling::of(envelope)?;
         let device = device()?;
-        let (times, targets) = (scaling.centered_times(envelope), scaling.scaled_logs(envelope));
-        let objective = Objective::new(self, &device, &times, &targets);
+        let times = context.input("times", scaling.centered_times(envelope));
+        let targets = scaling.scaled_logs(envelope);
+        let objective = Objective::new(self, &device, &times, &targets, context.is_at_zero());
         let method = LevenbergMarquardt {
             max_steps: context.step_limit(self.max_steps),
             loss_tolerance: self.loss_tolerance,
@@ -71,6 +72,11 @@ impl NeuralOdeConfig {
         let mut parameters = VectorField::draw_parameters(&self.hidden, self.initial_scale, &mut generator);
         let normal: f64 = StandardNormal.sample(&mut context.seed("initial state").generator());
         parameters.push(self.initial_scale * normal);
+        if context.is_at_zero() {
+            // The constant part c and the initial state stay.
+            let held = parameters.len().saturating_sub(BESIDE);
+            parameters.iter_mut().take(held).for_each(|weight| *weight = 0.0);
+        }
         DVector::from_vec(parameters)
     }
 }

@@ -54,7 +54,7 @@ pub const ENTRY: Entry = Entry {
     title: "Neural ordinary differential equation",
     summary: "A network as the vector field of ln A, trained through a Runge-Kutta solver; λ is the slope of \
               its trajectory.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Chen, Rubanova, Bettencourt, Duvenaud, Advances in Neural Information Processing Systems 31 (2018) \
          6571-6583",

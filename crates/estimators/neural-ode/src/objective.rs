@@ -25,7 +25,12 @@ pub(crate) struct Objective<'a> {
     /// A solution takes hundreds of passes one after the other: the last one is kept, because an
     /// accepted step asks for it three times.
     latest: RefCell<Option<(DVector<f64>, Rc<Trajectory>)>>,
+    /// The network is held at zero but for its constant part: an ablation.
+    network_at_zero: bool,
 }
+
+/// Parameters that stand beside the network, the last ones: the constant part c and the initial state.
+pub(crate) const BESIDE: usize = 2;
 
 /// The trained function at a time.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +50,7 @@ impl<'a> Objective<'a> {
         device: &'a Device,
         times: &[f64],
         targets: &'a [f64],
+        network_at_zero: bool,
     ) -> Self {
         let mean = times.iter().sum::<f64>() / times.len() as f64;
         let squares: f64 = times.iter().map(|time| (time - mean).powi(2)).sum();
@@ -56,6 +62,7 @@ impl<'a> Objective<'a> {
             slope_shares: times.iter().map(|time| (time - mean) / squares).collect(),
             decayed: VectorField::decayed(&config.hidden),
             latest: RefCell::default(),
+            network_at_zero,
         }
     }
 
@@ -199,6 +206,10 @@ impl LeastSquares for Objective<'_> {
                 *entry = self.decay_scale();
             }
         }
+        if self.network_at_zero {
+            // A parameter without a derivative stays where it is.
+            transposed.rows_mut(0, parameters.len().saturating_sub(BESIDE)).fill(0.0);
+        }
         Ok(Linearized { residuals: self.assemble(&trajectory, parameters), jacobian: transposed.transpose() })
     }
 }
@@ -237,7 +248,7 @@ mod tests {
     #[test]
     fn the_jacobian_through_the_solver_is_exact() {
         let (device, config, parameters) = (device().unwrap(), config(), parameters(1));
-        let objective = Objective::new(&config, &device, TIMES, TARGETS);
+        let objective = Objective::new(&config, &device, TIMES, TARGETS, false);
         let linearized = objective.linearize(&parameters).unwrap();
         assert_eq!(linearized.residuals, objective.residuals(&parameters).unwrap());
         // Weights: 2·4 + 4·3 + 3, biases: 4 + 3 + 1, the initial state; all but 2·4 + 2 of them decay.
@@ -260,7 +271,7 @@ mod tests {
     #[test]
     fn a_line_added_to_a_trajectory_is_a_change_of_parameters_that_costs_nothing() {
         let (device, config) = (device().unwrap(), config());
-        let objective = Objective::new(&config, &device, TIMES, TARGETS);
+        let objective = Objective::new(&config, &device, TIMES, TARGETS, false);
         let (a, b) = (0.4, -0.7);
         let before = parameters(2);
         let mut after = before.clone();
@@ -285,7 +296,7 @@ mod tests {
     #[test]
     fn the_projected_slope_of_a_line_is_its_slope() {
         let (device, config) = (device().unwrap(), config());
-        let objective = Objective::new(&config, &device, TIMES, TARGETS);
+        let objective = Objective::new(&config, &device, TIMES, TARGETS, false);
         let line: Vec<f64> = TIMES.iter().map(|time| 0.3 - 1.7 * time).collect();
         assert!((objective.projected_slope(&line) + 1.7).abs() < 1e-15);
     }

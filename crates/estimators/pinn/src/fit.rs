@@ -1,7 +1,7 @@
 //! Training.
 
 use crate::config::PinnConfig;
-use crate::objective::Objective;
+use crate::objective::{BESIDE, Objective};
 use envelope::Envelope;
 use estimator::{
     Estimate, Estimator, FitContext, FitError, ModelFile, Prediction, Reached, Scaling, Step, Uncertainty,
@@ -32,10 +32,11 @@ impl Estimator for PinnConfig {
         let objective = Objective {
             hidden: &self.hidden,
             device: &device,
-            times: &scaling.centered_times(envelope),
+            times: &context.input("times", scaling.centered_times(envelope)),
             targets: &scaling.scaled_logs(envelope),
             collocation: &collocation,
             physics_weight: self.physics_weight,
+            network_at_zero: context.is_at_zero(),
         };
         let method = LevenbergMarquardt {
             max_steps: context.step_limit(self.max_steps),
@@ -80,6 +81,11 @@ impl PinnConfig {
             AffineSkipNetwork::draw_parameters(&self.hidden, self.initial_scale, &mut generator);
         let uniform: f64 = context.seed("initial decay rate").generator().random();
         parameters.push(self.initial_scale * (2.0 * uniform - 1.0));
+        if context.is_at_zero() {
+            // The line beside the network and λ stay.
+            let held = parameters.len().saturating_sub(BESIDE);
+            parameters.iter_mut().take(held).for_each(|weight| *weight = 0.0);
+        }
         DVector::from_vec(parameters)
     }
 }

@@ -33,7 +33,7 @@ pub const ENTRY: Entry = Entry {
     paper_number: Some(13),
     title: "Physics-informed neural network",
     summary: "A network for ln A(t) and a trainable decay rate, tied by the residual of d ln A/dt + λ.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686-707",
         "Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431-441",

@@ -3,7 +3,7 @@
 use burn::tensor::Device;
 use estimator::FitError;
 use nalgebra::{DMatrix, DVector};
-use neural::{AffineSkipNetwork, LeastSquares, Linearized, tensor, values};
+use neural::{AffineSkipNetwork, LeastSquares, Linearized, Of, PlainNetwork};
 
 /// mean over the peaks of (f(sᵢ) − zᵢ)² + w · mean over the collocation points of (f′(σⱼ) + λ)², in
 /// scaled units. Parameters: those of the network, then λ.
@@ -14,17 +14,30 @@ pub(crate) struct Objective<'a> {
     pub(crate) targets: &'a [f64],
     pub(crate) collocation: &'a [f64],
     pub(crate) physics_weight: f64,
+    /// The network's layers are held at zero: an ablation.
+    pub(crate) network_at_zero: bool,
+}
+
+/// Parameters that stand beside the network's layers, the last ones: a and b of its skip, and λ.
+pub(crate) const BESIDE: usize = 3;
+
+/// λ, and the network's parameters.
+fn split(parameters: &DVector<f64>) -> Result<(f64, &[f64]), FitError> {
+    let none = || FitError::Backend { problem: "no parameters".to_owned() };
+    parameters.as_slice().split_last().map(|(rate, weights)| (*rate, weights)).ok_or_else(none)
 }
 
 impl Objective<'_> {
     /// The network and λ of a parameter vector.
     pub(crate) fn model(&self, parameters: &DVector<f64>) -> Result<(AffineSkipNetwork, f64), FitError> {
-        let (rate, weights) = parameters
-            .as_slice()
-            .split_last()
-            .ok_or_else(|| FitError::Backend { problem: "no parameters".to_owned() })?;
-        let network = AffineSkipNetwork::from_parameters(self.hidden, weights, self.device)?;
-        Ok((network, *rate))
+        let (rate, weights) = split(parameters)?;
+        Ok((AffineSkipNetwork::from_parameters(self.hidden, weights, self.device)?, rate))
+    }
+
+    /// The same on plain matrices, for training.
+    fn plain(&self, parameters: &DVector<f64>) -> Result<(PlainNetwork, f64), FitError> {
+        let (rate, weights) = split(parameters)?;
+        Ok((PlainNetwork::new(self.hidden, weights)?, rate))
     }
 
     fn data_scale(&self) -> f64 {
@@ -46,29 +59,26 @@ impl LeastSquares for Objective<'_> {
     type Error = FitError;
 
     fn residuals(&self, parameters: &DVector<f64>) -> Result<DVector<f64>, FitError> {
-        let (network, rate) = self.model(parameters)?;
-        let column = |points: &[f64]| tensor(points.to_vec(), [points.len(), 1], self.device);
-        let fitted = values(network.forward(&column(self.times)))?;
-        let (_, slopes) = network.forward_with_derivative(&column(self.collocation));
-        Ok(self.assemble(&fitted, &values(slopes)?, rate))
+        let (network, rate) = self.plain(parameters)?;
+        let (fitted, slopes) =
+            (network.at(Of::Value, self.times), network.at(Of::Derivative, self.collocation));
+        Ok(self.assemble(&fitted, &slopes, rate))
     }
 
     fn linearize(&self, parameters: &DVector<f64>) -> Result<Linearized, FitError> {
-        let (network, rate) = self.model(parameters)?;
-        let data = network.linearize_values(self.times, self.device)?;
-        let physics = network.linearize_derivatives(self.collocation, self.device)?;
-        let (rows, columns) = (self.times.len() + self.collocation.len(), parameters.len());
-        let mut jacobian = DMatrix::zeros(rows, columns);
-        let weights = columns - 1;
-        jacobian
-            .view_mut((0, 0), (self.times.len(), weights))
-            .copy_from(&(data.jacobian * self.data_scale()));
-        let below = self.times.len();
-        jacobian
-            .view_mut((below, 0), (self.collocation.len(), weights))
-            .copy_from(&(physics.jacobian * self.physics_scale()));
-        jacobian.view_mut((below, weights), (self.collocation.len(), 1)).fill(self.physics_scale());
-        let residuals = self.assemble(&data.values, &physics.values, rate);
-        Ok(Linearized { residuals, jacobian })
+        let (network, rate) = self.plain(parameters)?;
+        let (above, below) = (self.times.len(), self.collocation.len());
+        let weights = parameters.len() - 1;
+        let mut jacobian = DMatrix::zeros(above + below, weights + 1);
+        let part = jacobian.view_mut((0, 0), (above, weights));
+        let fitted = network.linearize(Of::Value, self.times, self.data_scale(), part);
+        let part = jacobian.view_mut((above, 0), (below, weights));
+        let slopes = network.linearize(Of::Derivative, self.collocation, self.physics_scale(), part);
+        jacobian.view_mut((above, weights), (below, 1)).fill(self.physics_scale());
+        if self.network_at_zero {
+            // A parameter without a derivative stays where it is.
+            jacobian.columns_mut(0, (weights + 1).saturating_sub(BESIDE)).fill(0.0);
+        }
+        Ok(Linearized { residuals: self.assemble(&fitted, &slopes, rate), jacobian })
     }
 }

@@ -27,13 +27,15 @@ impl Estimator for SymbolicConfig {
                 needed: FEWEST_PEAKS,
             });
         }
-        let data = Data::new(envelope)?;
+        let mut data = Data::new(envelope)?;
+        data.times = context.input("times", data.times);
         let mut workspace = Workspace::default();
         let evolved = evolve(self, &data.thinned(self.search_peaks), context);
         if evolved.generations == 0 {
             return Ok(untrained(&data, &evolved, context.query_times(), &mut workspace));
         }
-        let front = whole_front(&evolved.front, &data, &mut workspace);
+        let found = if context.is_at_zero() { &Front::default() } else { &evolved.front };
+        let front = whole_front(found, &data, &mut workspace);
         // Where the line makes the constants run away, the next expression is asked.
         let settled = front.by_preference(&data).find_map(|member| {
             let joined = with_line(member, &data, &mut workspace)?;

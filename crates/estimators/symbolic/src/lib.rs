@@ -44,7 +44,7 @@ pub const ENTRY: Entry = Entry {
     title: "Symbolic regression",
     summary: "Genetic programming over expression trees; the simplest adequate expression of the front of error \
               against complexity.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Koza, Genetic Programming (MIT Press 1992)",
         "Kommenda, Burlacu, Kronberger, Affenzeller, Genetic Programming and Evolvable Machines 21 (2020) 471-501",

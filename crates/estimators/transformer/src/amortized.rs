@@ -59,7 +59,7 @@ pub const AMORTIZED_ENTRY: Entry = Entry {
     paper_number: None,
     title: "Transformer, amortized",
     summary: "Trained on simulated envelopes only, reads one it never saw, all its peaks at once.",
-    tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Amortized, Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Vaswani et al., Advances in Neural Information Processing Systems 30 (2017)",
         "Cranmer, Brehmer, Louppe, PNAS 117 (2020) 30055-30062",

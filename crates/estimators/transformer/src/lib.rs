@@ -38,7 +38,7 @@ pub const ENTRY: Entry = Entry {
     paper_number: Some(21),
     title: "Transformer",
     summary: "Attends over the peaks, all at once, and says the exponential that reconstructs them.",
-    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval],
+    tags: &[Tag::Iterative, Tag::Seeded, Tag::Interval, Tag::Ablation],
     citations: &[
         "Vaswani et al., Advances in Neural Information Processing Systems 30 (2017)",
         "Nocedal, Mathematics of Computation 35 (1980) 773-782",

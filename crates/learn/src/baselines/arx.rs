@@ -41,6 +41,7 @@ impl Arx {
     /// # Errors
     /// As [`Self::fit`].
     pub(crate) fn validated(data: &DataSet, ridges: &[f64]) -> Result<Self, LearnError> {
+        // Without a training part no order fits, which is refused below.
         let shortest = data.train.iter().map(|part| part.samples_within(data.warm_up_s)).min().unwrap_or(0);
         let orders = ORDERS.iter().filter(|order| **order < shortest.max(8));
         let fitted = orders
@@ -71,6 +72,7 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
         for now in (order..part.len()).step_by(stride) {
             rows.extend(latest_first(part.values(), now, order));
             if driven {
+                // A driven set has an input in every part.
                 rows.extend(latest_first(part.input().unwrap_or_default(), now, order));
             }
             rows.push(1.0);
@@ -95,6 +97,7 @@ fn of(data: &DataSet, order: usize, ridge: f64) -> Option<Arx> {
 
 /// The `count` values before `now`, the latest first.
 fn latest_first(values: &[f64], now: usize, count: usize) -> impl Iterator<Item = f64> + '_ {
+    // Callers ask from the `count`-th value on; of fewer there are none.
     values.get(now.saturating_sub(count)..now).unwrap_or_default().iter().rev().copied()
 }
 
@@ -104,13 +107,16 @@ impl Model for Arx {
         let known = past.values.len();
         if known < order {
             let spacing =
+                // Of no sample no time has passed.
                 past.times_s.last().zip(past.times_s.first()).map_or(0.0, |(last, first)| last - first)
                     / known.saturating_sub(1).max(1) as f64;
             let needed_s = spacing * (order as f64 - 1.0);
             return Err(LearnError::ShortPast { samples: known, needed: order, needed_s });
         }
         let mut values = past.values.to_vec();
+        // Without an input there is no weight for one.
         let inputs = [past.input.unwrap_or_default(), ahead.input.unwrap_or_default()].concat();
+        // Only a message counts from here.
         let first = past.times_s.first().copied().unwrap_or_default();
         for (number, time) in ahead.times_s.iter().enumerate() {
             let now = known + number;

@@ -221,7 +221,13 @@ fn calibrated(
         hold: hold_of(data),
         weights: free.len(),
     };
-    let mut weights: Vec<f64> = free.iter().map(|quantity| value(&system, *quantity)).collect();
+    let start = free.iter().map(|quantity| {
+        value(&system, *quantity).ok_or_else(|| LearnError::Unsolvable {
+            what: "recalibration",
+            problem: format!("the simulator has no {}", name(*quantity)),
+        })
+    });
+    let mut weights = start.collect::<Result<Vec<f64>, _>>()?;
     let mut best: Option<(f64, Simulated, Fit)> = None;
     for periods in LENGTHS {
         let pieces = data.training_pieces(periods * data.period_s, SAMPLES);
@@ -278,19 +284,19 @@ fn coefficients(free: &[Free], fit: &Fit) -> Vec<Coefficient> {
     free.iter().zip(&fit.weights).enumerate().map(one).collect()
 }
 
-fn value(system: &System, quantity: Free) -> f64 {
+/// The value of a quantity in a system; `None` of an effect that it lacks, and of a start, which is no part of it.
+fn value(system: &System, quantity: Free) -> Option<f64> {
     let nominal = system.nominal().coefficients();
     match quantity {
-        Free::Inertia => nominal.inertia,
-        Free::Damping => nominal.damping,
-        Free::Stiffness => nominal.stiffness,
-        Free::RestAngle => nominal.rest_angle,
-        Free::InputGain => nominal.input_gain,
+        Free::Inertia => Some(nominal.inertia),
+        Free::Damping => Some(nominal.damping),
+        Free::Stiffness => Some(nominal.stiffness),
+        Free::RestAngle => Some(nominal.rest_angle),
+        Free::InputGain => Some(nominal.input_gain),
         Free::Effect { id, parameter } => {
-            let active = system.effects().iter().find(|active| active.id() == id);
-            active.and_then(|active| active.value(parameter)).unwrap_or(0.0)
+            system.effects().iter().find(|active| active.id() == id)?.value(parameter)
         }
-        Free::StartPosition | Free::StartVelocity | Free::StartHidden(_) => 0.0,
+        Free::StartPosition | Free::StartVelocity | Free::StartHidden(_) => None,
     }
 }
 

@@ -57,6 +57,7 @@ pub(crate) fn local_state(part: &Trajectory, sample: usize, time: f64, half: f64
         position,
         velocity: slope / half,
         acceleration: 2.0 * curvature / (half * half),
+        // Without an input nothing drives.
         input: part.input().and_then(|input| input.get(sample)).copied().unwrap_or(0.0),
     })
 }

@@ -100,6 +100,7 @@ impl Trajectory {
     /// Time from the first to the last sample, in seconds.
     #[must_use]
     pub fn duration_s(&self) -> f64 {
+        // Of no sample no time passes.
         self.times_s.first().zip(self.times_s.last()).map_or(0.0, |(first, last)| last - first)
     }
 
@@ -114,6 +115,7 @@ impl Trajectory {
     pub fn part(&self, from: usize, to: usize) -> Self {
         let to = to.min(self.len());
         let from = from.min(to);
+        // The range was cut to what there is.
         let cut = |column: &[f64]| column.get(from..to).unwrap_or_default().to_vec();
         Self {
             name: self.name.clone(),
@@ -132,6 +134,7 @@ impl Trajectory {
     /// Number of samples within `seconds` of the first, at least one where there is any.
     #[must_use]
     pub fn samples_within(&self, seconds: f64) -> usize {
+        // Of no sample none lies within.
         let end = self.times_s.first().copied().unwrap_or_default() + seconds * (1.0 + 1e-9);
         self.times_s.partition_point(|&time| time <= end)
     }

@@ -53,11 +53,13 @@ impl TryFrom<String> for Expression {
 
 impl Reader<'_> {
     fn wrong(&self, problem: impl Into<String>) -> Unreadable {
+        // A place between letters cannot be told: the start of the text.
         let at = self.text.get(..self.at).map_or(0, |before| before.chars().count()) + 1;
         Unreadable { text: self.text.to_owned(), at, problem: problem.into() }
     }
 
     fn rest(&self) -> &str {
+        // Behind the end there is nothing to read.
         self.text.get(self.at..).unwrap_or_default()
     }
 
@@ -187,6 +189,7 @@ impl Reader<'_> {
     fn word(&mut self) -> Result<Expression, Unreadable> {
         let rest = self.rest();
         let length = rest.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(rest.len());
+        // The length was found in it.
         let word = rest.get(..length).unwrap_or_default().to_owned();
         if let Some(variable) = Variable::ALL.into_iter().find(|variable| variable.name() == word) {
             self.at += length;

@@ -158,6 +158,7 @@ impl FlowModel {
 
     fn ahead(&self, weights: &[f64], state: State, all: &Joined) -> Result<Vec<f64>, LearnError> {
         let motion = self.run(weights).motion(state, &all.times_s, all.input.as_deref(), false)?;
+        // Nothing lies ahead of a past that is all.
         Ok(motion.positions.get(all.past..).unwrap_or_default().to_vec())
     }
 
@@ -262,6 +263,9 @@ impl Model for FlowModel {
     }
 
     fn stored(&self) -> Option<Stored> {
+        if self.form.is_null() {
+            return None;
+        }
         let described = Described {
             running: self.running,
             coefficients: self.coefficients.clone(),

@@ -86,7 +86,9 @@ impl Run<'_> {
         };
         let mut motion = Motion { positions: vec![start.position], ..Motion::default() };
         going.note(&mut motion);
+        // Only a message counts from here.
         let first = times_s.first().copied().unwrap_or_default();
+        // Without an input nothing drives.
         let at = |number: usize| input.and_then(|input| input.get(number)).copied().unwrap_or(0.0);
         for (number, (&from, &to)) in times_s.iter().zip(times_s.iter().skip(1)).enumerate() {
             let end = if self.hold == InputHold::Linear { at(number + 1) } else { at(number) };

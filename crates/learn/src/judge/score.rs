@@ -2,6 +2,8 @@
 
 use crate::data::{DataSet, Trajectory};
 use crate::{Ahead, LearnError, Model, Past, Predicted};
+use rand_distr::{Distribution, StandardNormal};
+use seed::Seed;
 
 /// Free run of one test trajectory.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,7 +42,9 @@ const FLOORS: f64 = 3.0;
 
 fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
     Past {
+        // Within the part: a data set refuses shorter ones.
         times_s: part.times_s().get(from..to).unwrap_or_default(),
+        // As above.
         values: part.values().get(from..to).unwrap_or_default(),
         input: part.input().and_then(|input| input.get(from..to)),
     }
@@ -48,6 +52,7 @@ fn past(part: &Trajectory, from: usize, to: usize) -> Past<'_> {
 
 fn ahead(part: &Trajectory, from: usize, to: usize) -> Ahead<'_> {
     Ahead {
+        // Within the part: a data set refuses shorter ones.
         times_s: part.times_s().get(from..to).unwrap_or_default(),
         input: part.input().and_then(|input| input.get(from..to)),
     }
@@ -65,11 +70,55 @@ pub fn runs(model: &dyn Model, data: &DataSet) -> Vec<Run> {
         Run {
             name: part.name().to_owned(),
             times_s: ahead(part, now, end).times_s.to_vec(),
+            // A warm-up ends within its part.
             observed: part.values().get(now..).unwrap_or_default().to_vec(),
             predicted: model.banded_run(&past(part, 0, now), &ahead(part, now, end)),
         }
     };
     data.test.iter().map(run).collect()
+}
+
+/// Free runs of the test part as [`runs`], but for what a model is given: past and input are white noise, normal with the
+/// trajectory's own means and standard deviations. An error that does not grow says that a model predicts the same
+/// whatever it is given.
+#[must_use]
+pub fn runs_on_noise(model: &dyn Model, data: &DataSet, seed: &Seed) -> Vec<Run> {
+    let run = |(number, part): (usize, &Trajectory)| {
+        let (now, end) = (warm_up(part, data), part.len());
+        let seed = seed.child("noise for input").child(&number.to_string());
+        let values = noise_like(part.values(), &seed.child("position"));
+        let input = part.input().map(|input| noise_like(input, &seed.child("input")));
+        let (before, after) = (past(part, 0, now), ahead(part, now, end));
+        // As many as there are samples of the part.
+        let values = values.get(..now).unwrap_or_default();
+        let past = Past { values, input: cut(&input, 0, now), ..before };
+        let ahead = Ahead { input: cut(&input, now, end), ..after };
+        Run {
+            name: part.name().to_owned(),
+            times_s: after.times_s.to_vec(),
+            // A warm-up ends within its part.
+            observed: part.values().get(now..).unwrap_or_default().to_vec(),
+            predicted: model.free_run(&past, &ahead),
+        }
+    };
+    data.test.iter().enumerate().map(run).collect()
+}
+
+fn cut(of: &Option<Vec<f64>>, from: usize, to: usize) -> Option<&[f64]> {
+    of.as_ref().and_then(|of| of.get(from..to))
+}
+
+/// Normal numbers with the mean and the standard deviation of `values`.
+fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
+    let count = values.len().max(1) as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let spread = (values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count).sqrt();
+    let mut generator = seed.generator();
+    let mut draw = |_: &f64| {
+        let standard: f64 = StandardNormal.sample(&mut generator);
+        mean + spread * standard
+    };
+    values.iter().map(&mut draw).collect()
 }
 
 /// Root mean square error of free runs over the validation part, without bands; infinite where one fails.
@@ -81,6 +130,7 @@ pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
         let Ok(found) = model.free_run(&past(part, 0, now), &ahead(part, now, end)) else {
             return f64::INFINITY;
         };
+        // A warm-up ends within its part.
         let observed = part.values().get(now..).unwrap_or_default();
         sum += observed.iter().zip(&found.values).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
         count += observed.len();
@@ -92,6 +142,12 @@ pub fn validation_error(model: &dyn Model, data: &DataSet) -> f64 {
 /// Scores of a model's free runs, and of single steps along the test part.
 #[must_use]
 pub fn score(model: &dyn Model, runs: &[Run], data: &DataSet) -> Score {
+    Score { one_step_rmse: one_step(model, data), ..score_of_runs(runs, data) }
+}
+
+/// Scores of free runs alone; the error of one step is not a number.
+#[must_use]
+pub fn score_of_runs(runs: &[Run], data: &DataSet) -> Score {
     let (mut sum, mut count, mut covered, mut stated) = (0.0, 0_usize, 0_usize, 0_usize);
     let mut horizons = Vec::new();
     for run in runs {
@@ -114,7 +170,7 @@ pub fn score(model: &dyn Model, runs: &[Run], data: &DataSet) -> Score {
         free_run_rmse,
         over_noise: free_run_rmse / data.noise,
         horizon_s: median(&mut horizons),
-        one_step_rmse: one_step(model, data),
+        one_step_rmse: f64::NAN,
         coverage_95: (stated > 0).then(|| covered as f64 / stated as f64),
     }
 }
@@ -126,6 +182,7 @@ fn finite(error: f64) -> f64 {
 fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let (low, high) = (values.len().saturating_sub(1) / 2, values.len() / 2);
+    // Without a test part nothing was predicted for any time.
     let at = |place: usize| values.get(place).copied().unwrap_or(0.0);
     0.5 * (at(low) + at(high))
 }
@@ -138,6 +195,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
     for (place, (&time, square)) in times_s.iter().zip(&squares).enumerate() {
         sum += square;
         while times_s.get(oldest).is_some_and(|&begin| begin < time - window_s) {
+            // There are as many squares as times.
             sum -= squares.get(oldest).copied().unwrap_or(0.0);
             oldest += 1;
         }
@@ -147,6 +205,7 @@ fn horizon(times_s: &[f64], errors: &[f64], bound: f64, window_s: f64) -> f64 {
             return (time - first - window_s).max(0.0);
         }
     }
+    // The first time is there, hence the last one.
     times_s.last().map_or(0.0, |last| last - first)
 }
 
@@ -160,7 +219,8 @@ fn one_step(model: &dyn Model, data: &DataSet) -> f64 {
             let Some(value) = found.ok().and_then(|found| found.values.first().copied()) else {
                 return f64::INFINITY;
             };
-            sum += part.values().get(now).map_or(0.0, |observed| (observed - value).powi(2));
+            let Some(observed) = part.values().get(now) else { continue };
+            sum += (observed - value).powi(2);
             count += 1;
         }
     }

@@ -63,6 +63,7 @@ pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
             let center = first.time_s + half + window as f64 * step;
             let from = states.partition_point(|state| state.time_s < center - half);
             let to = states.partition_point(|state| state.time_s <= center + half);
+            // Both places were found among the states.
             let inside = states.get(from..to).unwrap_or_default();
             let (row, sum) = weak_row(part, inside, center, half, terms);
             rows.extend(row);

@@ -1,5 +1,6 @@
 //! Settings that every sequence model has.
 
+use neural::{DeviceKind, Precision};
 use serde::Deserialize;
 use settings::{Default, Field, Kind as Value};
 
@@ -27,9 +28,13 @@ pub struct Settings {
     pub weight_decay: f64,
     /// Epochs without a better validation before training ends.
     pub patience: u64,
+    /// Device that trains.
+    pub device: DeviceKind,
+    /// Precision that it computes in.
+    pub precision: Precision,
 }
 
-const SHARED: [Field; 9] = [
+const SHARED: [Field; 11] = [
     Field {
         key: "samples_per_period",
         kind: Value::Integer { min: 8, max: 1_000 },
@@ -96,6 +101,21 @@ const SHARED: [Field; 9] = [
         meaning: "Epochs without a better free run over the validation part after which training ends.",
         ..OWN
     },
+    Field {
+        key: "device",
+        kind: Value::Choice(&["cpu", "wgpu", "cuda"]),
+        default: Default::Text("cpu"),
+        meaning: "Device that trains: the processor, or a graphics card where the program was built with `--features wgpu` or \
+                  `--features cuda`. A trained model predicts on the processor.",
+        ..OWN
+    },
+    Field {
+        key: "precision",
+        kind: Value::Choice(&["f64", "f32"]),
+        default: Default::Text("f64"),
+        meaning: "Precision that the device computes in: doubles, or single precision, one for the whole study.",
+        ..OWN
+    },
 ];
 
 /// A key that counts something: its range, its default, its meaning.
@@ -104,7 +124,7 @@ pub const fn count(key: &'static str, [min, max]: [i64; 2], default: i64, meanin
     Field { key, kind: Value::Integer { min, max }, default: Default::Integer(default), meaning, ..OWN }
 }
 
-/// An architecture's own keys with those that every sequence model has; `ALL` is nine more than `N`.
+/// An architecture's own keys with those that every sequence model has; `ALL` is eleven more than `N`.
 #[must_use]
 pub const fn with_shared<const N: usize, const ALL: usize>(own: [Field; N]) -> [Field; ALL] {
     let mut all = [OWN; ALL];

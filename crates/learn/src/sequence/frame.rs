@@ -166,9 +166,12 @@ impl Frame {
         for part in train {
             let starts = (0..(part.len() + 1).saturating_sub(self.length())).step_by((self.block / 2).max(1));
             for from in starts {
+                // Starts leave room for past and block.
                 let positions = part.values().get(from..from + self.past).unwrap_or_default();
+                // As above.
                 let ahead = part.values().get(from + self.past..from + self.length()).unwrap_or_default();
                 let inputs = part.input().and_then(|input| input.get(from..from + self.length()));
+                // Without an input there is no weight for one.
                 let predicted = self.linear(positions, inputs.unwrap_or_default());
                 for ((square, own), observed) in squares.iter_mut().zip(predicted).zip(ahead) {
                     *square += (own - observed).powi(2);

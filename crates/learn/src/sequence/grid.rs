@@ -8,6 +8,7 @@ fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f6
     let at = |time: f64| {
         let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
         let before = next.saturating_sub(1);
+        // A trajectory has samples, and places are cut to theirs.
         let pick = |column: &[f64], place: usize| column.get(place).copied().unwrap_or_default();
         let (from, to) = (pick(times, before), pick(times, next));
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
@@ -25,6 +26,7 @@ fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f6
 
 /// A trajectory at even times from its first sample on.
 pub(super) fn evened(part: &Trajectory, interval: f64, hold: InputHold) -> Result<Trajectory, LearnError> {
+    // A trajectory has samples.
     let first = part.times_s().first().copied().unwrap_or_default();
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
     let times: Vec<f64> = (0..count).map(|at| first + at as f64 * interval).collect();
@@ -39,6 +41,7 @@ pub(super) fn evened(part: &Trajectory, interval: f64, hold: InputHold) -> Resul
 /// The last `count` even times of a past, ending at its last sample: positions.
 pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Result<Vec<f64>, LearnError> {
     let (first, last) = (past.times_s.first().copied(), past.times_s.last().copied());
+    // A past without samples is too short, which is refused below.
     let (first, last) = (first.unwrap_or_default(), last.unwrap_or_default());
     // Jitter may shorten a past by a part of an interval; the cubic reaches that far.
     let there = ((last - first) / interval + 0.5).floor() as usize + 1;
@@ -63,6 +66,7 @@ pub(super) fn inputs(
 ) -> Option<Vec<f64>> {
     let input = [past.input?, ahead.input?].concat();
     let times = [past.times_s, ahead.times_s].concat();
+    // A past is at least eight samples.
     let last = past.times_s.last().copied().unwrap_or_default();
     let time = |at: usize| last + (at as f64 - before as f64 + 1.0) * interval;
     Some((0..before + after).map(|at| averaged(&times, &input, hold, (time(at), interval))).collect())

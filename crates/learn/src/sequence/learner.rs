@@ -8,6 +8,7 @@ use crate::data::{DataSet, Trajectory, Window, windows};
 use crate::training::{Schedule, State, Training, train};
 use crate::{Context, Fitted, LearnError, Learner, Model, Stored};
 use estimator::Reached;
+use neural::device_of;
 use settings::{Resolved, SettingsError};
 
 /// An architecture with its settings.
@@ -46,6 +47,7 @@ pub fn restore<A: Architecture>(stored: &Stored) -> Result<Box<dyn Model>, Learn
 
 /// Windows of the validation part: long ones of equal length, evenly chosen.
 fn held(parts: &[Trajectory], past: usize, block: usize) -> Vec<Window> {
+    // Without a validation part there is no window.
     let shortest = parts.iter().map(Trajectory::len).min().unwrap_or(0);
     let blocks = (shortest.saturating_sub(past) / block).clamp(1, HELD_BLOCKS);
     let all = windows(parts, past, blocks * block, blocks * block);
@@ -57,11 +59,12 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
     fn fit(&self, data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnError> {
         let settings = &self.settings;
         let Framed { frame, train: parts, validation } = Framed::new(data, settings)?;
+        // Without a training part there is no window, which the training refuses.
         let shortest = parts.iter().map(Trajectory::len).max().unwrap_or(0);
         let blocks = (shortest.saturating_sub(frame.past) / frame.block).clamp(1, settings.blocks);
         let future = blocks * frame.block;
         let stride = windows(&parts, frame.past, future, 1).len().div_ceil(settings.windows).max(1);
-        let device = plain_device()?;
+        let device = device_of(settings.device, settings.precision)?;
         let roll = Roll {
             architecture: &self.architecture,
             held: held(&validation, frame.past, frame.block),
@@ -69,6 +72,7 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
             frame: &frame,
             train: &parts,
             validation: &validation,
+            device,
         };
         let training = Training {
             epochs: settings.epochs,
@@ -83,13 +87,13 @@ impl<A: Architecture> Learner for SequenceLearner<A> {
         let trained = train(&roll, &all, &training, context.resumed()?, context, &mut keep)?;
         let state = trained.state;
         let reached = if trained.stopped_early { Reached::Converged } else { Reached::BudgetSpent };
-        let network = neural::with_parameters(roll.shape.clone(), &state.best, &device)?;
+        let network = neural::with_parameters(roll.shape.clone(), &state.best, &plain_device()?)?;
         let model = SequenceModel::<A>::new(
             self.architecture.clone(),
             frame.clone(),
             &network,
             state.best_validation,
         )?;
-        Ok(Fitted { model: Box::new(model), reached, steps: state.steps })
+        Ok(Fitted { model: Box::new(model.calibrated(data)), reached, steps: state.steps })
     }
 }

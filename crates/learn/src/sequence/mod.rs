@@ -13,6 +13,7 @@
 //! Piga, Automatica 127 (2021) 109492 (multi-step simulation error); Beintema, Schoukens, Tóth, Automatica 156 (2023)
 //! 111210 (past windows as encoders, truncated simulation).
 
+mod band;
 mod fields;
 mod frame;
 mod grid;
@@ -30,7 +31,7 @@ use crate::LearnError;
 use burn::module::Module;
 use burn::nn::{Initializer, Linear, LinearConfig};
 use burn::tensor::{Device, Tensor};
-use neural::{NamedTensor, device, named_parameters, with_parameters};
+use neural::{NamedTensor, cpu_as_set, named_parameters, with_parameters};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 use serde::Serialize;
@@ -103,7 +104,7 @@ pub fn drawn<M: Module>(
         let mut generator = seed.child(&parameter.name).generator();
         match *parameter.shape.as_slice() {
             _ if parameter.name.starts_with("head") => weights.extend(parameter.values),
-            _ if own(&parameter).is_some() => weights.extend(own(&parameter).unwrap_or_default()),
+            _ if let Some(values) = own(&parameter) => weights.extend(values),
             [inputs, _] => {
                 let spread = (inputs as f64).sqrt().recip();
                 let draw = |_: &f64| {
@@ -118,7 +119,7 @@ pub fn drawn<M: Module>(
     Ok(with_parameters(module, &weights, device)?)
 }
 
-/// The plain device.
+/// The device that a trained model predicts on: the processor.
 pub(crate) fn plain_device() -> Result<Device, LearnError> {
-    Ok(device()?)
+    Ok(cpu_as_set()?)
 }

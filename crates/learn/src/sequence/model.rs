@@ -1,9 +1,11 @@
 //! A trained sequence model.
 
+use super::band::{Band, Calibration};
 use super::frame::Frame;
 use super::grid::{inputs, past_positions, read_back};
 use super::roll::{Rows, free_run, sizes};
 use super::{Architecture, plain_device};
+use crate::data::{DataSet, Trajectory};
 use crate::{Ahead, LearnError, Model, Past, Predicted, Stored, Tensor};
 use neural::{NamedTensor, named_parameters, with_parameters};
 use seed::Seed;
@@ -17,8 +19,11 @@ pub(super) struct SequenceModel<A> {
     architecture: A,
     frame: Frame,
     weights: Vec<NamedTensor>,
-    /// Root mean square error of free runs over the validation part, in the position's unit.
+    /// Root mean square error of free runs over the validation part, in the position's unit: the band of a model without
+    /// a calibrated one.
     std: f64,
+    /// The calibrated band; `None` where validation left nothing to calibrate on.
+    band: Option<Band>,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -26,6 +31,8 @@ struct Described<A> {
     architecture: A,
     frame: Frame,
     std: f64,
+    #[serde(default)]
+    band: Option<Band>,
 }
 
 impl<A: Architecture> SequenceModel<A> {
@@ -35,12 +42,12 @@ impl<A: Architecture> SequenceModel<A> {
         network: &A::Network,
         std: f64,
     ) -> Result<Self, LearnError> {
-        Ok(Self { architecture, frame, weights: named_parameters(network)?, std })
+        Ok(Self { architecture, frame, weights: named_parameters(network)?, std, band: None })
     }
 
     pub(super) fn restored(stored: &Stored) -> Result<Self, LearnError> {
         let described: Described<A> = stored.described()?;
-        let Described { architecture, frame, std } = described;
+        let Described { architecture, frame, std, band } = described;
         let shape = architecture.init(sizes(&frame), &Seed::new(0), &plain_device()?)?;
         let mut weights = Vec::new();
         for own in named_parameters(&shape)? {
@@ -54,7 +61,34 @@ impl<A: Architecture> SequenceModel<A> {
             }
             weights.push(NamedTensor { values: found.values.clone(), ..own });
         }
-        Ok(Self { architecture, frame, weights, std })
+        Ok(Self { architecture, frame, weights, std, band })
+    }
+
+    /// The same model with bands calibrated on free runs over the validation part, from each part's start and from a third of
+    /// its length on.
+    pub(super) fn calibrated(self, data: &DataSet) -> Self {
+        let run = |(record, part): (usize, &Trajectory), share: f64| {
+            let begin = (share * part.len() as f64) as usize;
+            let part = part.part(begin, part.len());
+            let now = part.samples_within(data.warm_up_s).max(8);
+            let input = |from: usize, to: usize| part.input().and_then(|input| input.get(from..to));
+            let past = Past {
+                times_s: part.times_s().get(..now)?,
+                values: part.values().get(..now)?,
+                input: input(0, now),
+            };
+            let times_s = part.times_s().get(now..)?;
+            let ahead = Ahead { times_s, input: input(now, part.len()) };
+            let predicted = self.free_run(&past, &ahead).ok()?.values;
+            let leads_s = leads(&past, &ahead);
+            let observed = part.values().get(now..)?.to_vec();
+            (!leads_s.is_empty()).then_some(Calibration { record, leads_s, predicted, observed })
+        };
+        let parts = data.validation.iter().enumerate();
+        let runs: Vec<Calibration> =
+            parts.flat_map(|part| [0.0, 1.0 / 3.0].map(|share| run(part, share))).flatten().collect();
+        let band = Band::calibrated(&runs, self.frame.scale.center, data.noise, data.period_s);
+        Self { band, ..self }
     }
 
     fn network(&self) -> Result<A::Network, LearnError> {
@@ -63,6 +97,13 @@ impl<A: Architecture> SequenceModel<A> {
         let flat: Vec<f64> = self.weights.iter().flat_map(|own| own.values.iter().copied()).collect();
         Ok(with_parameters(shape, &flat, &device)?)
     }
+}
+
+/// Times ahead, counted from the end of the past.
+fn leads(past: &Past<'_>, ahead: &Ahead<'_>) -> Vec<f64> {
+    // A past is at least eight samples.
+    let now = past.times_s.last().copied().unwrap_or_default();
+    ahead.times_s.iter().map(|time| time - now).collect()
 }
 
 impl<A: Architecture> Model for SequenceModel<A> {
@@ -96,8 +137,11 @@ impl<A: Architecture> Model for SequenceModel<A> {
 
     fn banded_run(&self, past: &Past<'_>, ahead: &Ahead<'_>) -> Result<Predicted, LearnError> {
         let found = self.free_run(past, ahead)?;
-        let std = Some(vec![self.std; found.values.len()]);
-        Ok(Predicted { std, ..found })
+        let std = match &self.band {
+            Some(band) => band.std(&leads(past, ahead), &found.values),
+            None => vec![self.std; found.values.len()],
+        };
+        Ok(Predicted { std: Some(std), ..found })
     }
 
     fn parameters(&self) -> usize {
@@ -105,8 +149,12 @@ impl<A: Architecture> Model for SequenceModel<A> {
     }
 
     fn stored(&self) -> Option<Stored> {
-        let described =
-            Described { architecture: self.architecture.clone(), frame: self.frame.clone(), std: self.std };
+        let described = Described {
+            architecture: self.architecture.clone(),
+            frame: self.frame.clone(),
+            std: self.std,
+            band: self.band.clone(),
+        };
         let tensors = self.weights.iter().map(|own| Tensor {
             name: own.name.clone(),
             shape: own.shape.clone(),

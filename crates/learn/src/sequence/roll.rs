@@ -5,7 +5,7 @@
 //! prediction given by all that came after it.
 
 use super::frame::{Frame, OnDevice};
-use super::{Architecture, Batch, Network, Sizes, plain_device};
+use super::{Architecture, Batch, Network, Sizes};
 use crate::LearnError;
 use crate::data::{Trajectory, Window};
 use crate::training::Trainable;
@@ -24,6 +24,8 @@ pub(super) struct Roll<'a, A: Architecture> {
     pub(super) held: Vec<Window>,
     /// A network of the right shape.
     pub(super) shape: A::Network,
+    /// The device that computes.
+    pub(super) device: Device,
 }
 
 /// Windows as rows of numbers: positions and, where there is one, the input, each of `length` samples.
@@ -41,10 +43,13 @@ impl Rows {
                 windows.iter().map(|window| of(parts.get(window.trajectory)?)?.get(window.from..window.to));
             Some(rows.collect::<Option<Vec<_>>>()?.concat())
         };
+        let positions = column(&|part| Some(part.values()));
+        debug_assert!(positions.is_some(), "windows lie within their parts");
         Self {
             count: windows.len(),
+            // Without a window there is no row.
             length: windows.first().map_or(0, |window| window.to - window.from),
-            positions: column(&|part| Some(part.values())).unwrap_or_default(),
+            positions: positions.unwrap_or_default(), // Asserted above.
             inputs: column(&|part| part.input()),
         }
     }
@@ -52,6 +57,7 @@ impl Rows {
     /// The samples `from..from + length` of every row.
     fn cut(&self, of: &[f64], from: usize, length: usize) -> Vec<f64> {
         let rows = of.chunks(self.length.max(1));
+        // Blocks end within their rows.
         rows.flat_map(|row| row.get(from..from + length).unwrap_or_default().iter().copied()).collect()
     }
 
@@ -124,7 +130,7 @@ impl<A: Architecture> Roll<'_, A> {
         mut adjoint: Vec<f64>,
         gradient: &mut [f64],
     ) -> Result<(), LearnError> {
-        let recording = plain_device()?.autodiff();
+        let recording = self.device.clone().autodiff();
         let network = with_parameters(self.shape.clone(), weights, &recording)?;
         let (frame, matrices) = (self.frame, self.frame.on(&recording));
         let none = || FitError::Backend { problem: "no gradient of a block's past".to_owned() };
@@ -151,12 +157,12 @@ impl<A: Architecture> Roll<'_, A> {
 impl<A: Architecture> Trainable for Roll<'_, A> {
     fn initial(&self, seed: &Seed) -> Result<Vec<f64>, LearnError> {
         let frame = self.frame;
-        let network = self.architecture.init(sizes(frame), seed, &plain_device()?)?;
+        let network = self.architecture.init(sizes(frame), seed, &self.device)?;
         Ok(named_parameters(&network)?.into_iter().flat_map(|own| own.values).collect())
     }
 
     fn loss(&self, weights: &[f64], batch: &[Window], gradient: &mut [f64]) -> Result<f64, LearnError> {
-        let device = plain_device()?;
+        let device = self.device.clone();
         let rows = Rows::of(self.train, batch);
         let network = with_parameters(self.shape.clone(), weights, &device)?;
         let whole = free_run(&network, self.frame, &rows, &device)?;
@@ -170,7 +176,7 @@ impl<A: Architecture> Trainable for Roll<'_, A> {
     }
 
     fn validation(&self, weights: &[f64]) -> Result<f64, LearnError> {
-        let device = plain_device()?;
+        let device = self.device.clone();
         let rows = Rows::of(self.validation, &self.held);
         let network = with_parameters(self.shape.clone(), weights, &device)?;
         let whole = free_run(&network, self.frame, &rows, &device)?;

@@ -11,7 +11,7 @@ use crate::training::Trainable;
 use crate::{Context, Kind, Past};
 use estimator::Checkpoints;
 use frame::Framed;
-use neural::tensor;
+use neural::{DeviceKind, Precision, tensor};
 use roll::{Roll, sizes};
 use serde_json::json;
 use std::sync::Mutex;
@@ -27,6 +27,8 @@ fn settings() -> Settings {
         learning_rate: 5e-3,
         weight_decay: 0.0,
         patience: 5,
+        device: DeviceKind::Cpu,
+        precision: Precision::F64,
     }
 }
 
@@ -52,6 +54,7 @@ fn slopes<A: Architecture>() -> [f64; 2] {
         frame: &frame,
         train: &train,
         validation: &validation,
+        device,
     };
     let batch = windows(&train, frame.past, 3 * frame.block, 97);
     let mut weights = roll.initial(&Seed::new(4)).unwrap();

@@ -108,8 +108,13 @@ impl<N: Skilled> Amortized<N> {
         let scaling = Scaling::of(envelope)?;
         let peaks = Sequence::of(envelope, &scaling);
         let device = device()?;
-        let encoder = with_parameters(self.network.encoder(SAID, &device), &skill.parameters, &device)?;
-        let mut reading = self.training.read(&encoder, &peaks, &device)?;
+        let parameters = match context.is_at_zero() {
+            true => &vec![0.0; skill.parameters.len()],
+            false => &skill.parameters,
+        };
+        let encoder = with_parameters(self.network.encoder(SAID, &device), parameters, &device)?;
+        // Its answer is a line through what it reads.
+        let mut reading = self.training.read(&encoder, &peaks.clone().as_read(context), &device)?;
         reading.level_std_error *= skill.calibration.level;
         reading.rate_std_error *= skill.calibration.rate;
         let decay_rate = scaling.rate_per_centered_time(reading.rate);

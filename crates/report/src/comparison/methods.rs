@@ -1,6 +1,6 @@
 //! A row for each method: the paper's Tables 4 and 5.
 
-use results::{ComparisonResult, MethodOutcome, MethodRow};
+use results::{AblationRow, ComparisonResult, MethodOutcome, MethodRow};
 
 use crate::format::{count, duration, fixed, significant};
 use crate::tables::{reached, whole};
@@ -10,11 +10,37 @@ pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀
      method’s seeds. Digits are the significant digits in which the worst seed agrees with ζ₀; a double has \
      15.7. ± is the method’s own standard error of ζ, where it states one. ζ, steps and state are the first \
      seed’s, the time of a fit is the median over the seeds. A method passes where every seed is within the \
-     stated tolerance.";
+     stated tolerance, or where it estimates something else. May differ says whether its value can differ from least \
+     squares at all. At zero and on noise are the first seed’s errors in percent with the learned part held at zero, and with \
+     noise for what it reads: an error that stays small says that this part, or what it read, contributed nothing to λ.";
+
+/// How to read the two columns of ablations, for the terminal.
+pub const ABLATION_READING: &str = "an error that stays small says that the learned part, or what it read, contributed nothing to \
+     the decay rate";
+
+/// Whether a value of this relation to least squares can differ from it.
+#[must_use]
+pub fn may_differ(estimand: &str) -> &'static str {
+    match estimand {
+        "least_squares" => "no",
+        "approximation" => "by its training",
+        "own" => "yes",
+        _ => "–",
+    }
+}
+
+/// The error of a fit without a part, in percent; – where there is no such part.
+#[must_use]
+pub fn ablation_cell(ablations: &[AblationRow], name: &str) -> String {
+    match ablations.iter().find(|row| row.ablation == name) {
+        None => "–".to_owned(),
+        Some(row) => row.error_percent.map_or_else(|| "no estimate".to_owned(), error),
+    }
+}
 
 /// What the columns say. The first is the method's number, the second its name, the last whether it
 /// passes; a method without an estimate has its reason in place of all others.
-pub(super) const COLUMNS: [&str; 13] = [
+pub(super) const COLUMNS: [&str; 16] = [
     "#",
     "method",
     "ζ",
@@ -26,6 +52,9 @@ pub(super) const COLUMNS: [&str; 13] = [
     "steps",
     "parameters",
     "time",
+    "may differ",
+    "at zero, %",
+    "on noise, %",
     "state",
     "",
 ];
@@ -66,7 +95,13 @@ pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
         id,
         title,
         columns: &COLUMNS,
-        rows: result.results.iter().filter(|row| of(&row.family)).map(view).collect(),
+        rows: result
+            .results
+            .iter()
+            .chain(&result.libraries)
+            .filter(|row| of(&row.family))
+            .map(view)
+            .collect(),
     };
     [
         table("classical", "Table 4: classical numerical methods", &|family| family == "classical"),
@@ -95,6 +130,9 @@ fn view(row: &MethodRow) -> MethodView {
                 count(estimate.steps),
                 whole(estimate.parameters),
                 duration(estimate.seconds),
+                may_differ(&row.estimand).to_owned(),
+                ablation_cell(&estimate.ablations, "learned_part_at_zero"),
+                ablation_cell(&estimate.ablations, "noise_for_input"),
             ],
             state: reached(&estimate.reached),
             because: estimate.stopped_because.clone(),

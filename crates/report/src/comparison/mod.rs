@@ -24,6 +24,7 @@ use crate::{ReportError, RunTexts};
 
 pub(crate) use markdown::markdown;
 use methods::MethodTable;
+pub use methods::{ABLATION_READING, ablation_cell, may_differ};
 use parts::WordTable;
 
 #[derive(Template)]

@@ -33,7 +33,9 @@ const READING: &str = "Each method was given the start of a test record, its war
      observation. The free run’s error is the root mean square over all test records, in their unit and over the sensor’s \
      noise; the horizon is the median time until the error, over a quarter of a period, passes three times the noise. One \
      step is the error a sample ahead of a moving past. The torque’s error is relative to what the nominal simulator lacks. \
-     Baselines know nothing, or what a simulator knows; the true law fitted exactly is what nobody can do better.";
+     Baselines know nothing, or what a simulator knows; the true law fitted exactly is what nobody can do better. \
+     Below these stand the learners’ models with everything that they learned at zero, and given noise in place of past and \
+     input: an error that stays small says that what is missing contributed nothing.";
 
 /// One coefficient of a law.
 struct CoefficientView<'a> {
@@ -79,6 +81,8 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
     let rows: Vec<&LearnRow> =
         learning.result.results.iter().filter(|row| row.problem == problem.id).collect();
     let id = format!("problem-{}", anchor(&problem.id));
+    let methods: Vec<&LearnRow> =
+        rows.iter().copied().filter(|row| row.kind != LearnKind::Ablation).collect();
     let law = |row: &&LearnRow| row.equation.as_ref().map(|equation| format!("{}: {equation}", row.title));
     ProblemView {
         title: &problem.title,
@@ -87,7 +91,7 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
         facts: if problem.absent.is_some() { Vec::new() } else { facts(problem) },
         laws: rows.iter().filter_map(law).collect(),
         coefficients: rows.iter().flat_map(|row| coefficients(row)).collect(),
-        figures: figures::figures(&id, problem, &rows, learning),
+        figures: figures::figures(&id, problem, &methods, learning),
         table: (!rows.is_empty()).then(|| ScoreTable {
             columns: COLUMNS.to_vec(),
             rows: rows.into_iter().map(score_row).collect(),

@@ -65,6 +65,7 @@ fn page(learner: f64) -> String {
             row("sindy", LearnKind::Learner, Some(learner)),
             row("arx", LearnKind::Baseline, Some(0.1)),
             row("nominal", LearnKind::Baseline, None),
+            row("sindy:at-zero", LearnKind::Ablation, Some(0.7)),
         ],
         seconds: 1.0,
     };
@@ -89,9 +90,18 @@ fn a_page_shows_scores_coefficients_and_plots_and_says_where_a_row_failed() {
         "Learned torque: A swing (simulated)",
         "Training: A swing (simulated)",
         "problem-swing-errors",
+        "Method sindy:at-zero",
     ] {
         assert!(page.contains(words), "no {words}");
     }
+}
+
+/// An ablation is a row of the table, no method of the plots.
+#[test]
+fn an_ablation_is_a_row_and_in_no_plot() {
+    let page = page(0.002);
+    assert_eq!(page.matches("sindy:at-zero").count(), 1);
+    assert!(page.matches("Method arx").count() > 1);
 }
 
 #[test]

@@ -3,8 +3,8 @@
 use crate::error::TrainerError;
 use envelope::Envelope;
 use estimator::{
-    Cancel, Checkpoints, Entry, Estimate, Estimator, FitContext, Observer, Prediction, Reached, Silent, Stop,
-    Tag, Uncertainty,
+    Ablation, Cancel, Checkpoints, Entry, Estimand, Estimate, Estimator, FitContext, Observer, Prediction,
+    Reached, Silent, Stop, Tag, Uncertainty,
 };
 use experiment::Single;
 use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
@@ -121,6 +121,60 @@ impl Method {
             Self::Classical(route) => route.draws,
             Self::Learned(entry, _) => entry.has(Tag::Seeded),
         }
+    }
+
+    /// Relation of its converged value to least squares.
+    pub(crate) fn estimand(&self) -> Estimand {
+        match self {
+            Self::Classical(_) => Estimand::LeastSquares,
+            Self::Learned(entry, _) => entry.estimand(),
+        }
+    }
+
+    /// Whether an error passes: a value that may differ from least squares is held to no distance from it.
+    pub(crate) fn passes(&self, error_percent: f64, tolerance_percent: f64) -> bool {
+        match self.estimand() {
+            Estimand::Own => error_percent.is_finite(),
+            _ => scoring::passes(error_percent, tolerance_percent),
+        }
+    }
+
+    /// Whether it has a learned part that can be taken away.
+    pub(crate) fn has_ablations(&self) -> bool {
+        matches!(self, Self::Learned(entry, _) if entry.has(Tag::Ablation))
+    }
+
+    /// As [`Self::pretrained`], told to nobody and kept nowhere.
+    pub(crate) fn pretrained_quietly(&self, seed: u64, request: &Request<'_>) -> Result<Self, TrainerError> {
+        let (entry, estimator) = match self {
+            Self::Classical(route) => return Ok(Self::Classical(route)),
+            Self::Learned(entry, estimator) => (entry, estimator),
+        };
+        let context =
+            FitContext::new(Seed::new(seed).child(entry.id), request.max_steps, &Silent, request.cancel);
+        let trained = estimator.pretrain(&context);
+        let trained = trained.map_err(|source| TrainerError::Fit { estimator: entry.id, seed, source })?;
+        Ok(Self::Learned(*entry, trained.map_or_else(|| Arc::clone(estimator), Into::into)))
+    }
+
+    /// λ in 1/s of a fit without a part of the method.
+    pub(crate) fn fit_without(
+        &self,
+        ablation: Ablation,
+        envelope: &Envelope,
+        seed: u64,
+        request: &Request<'_>,
+    ) -> Result<f64, TrainerError> {
+        let not_finite = TrainerError::NotFinite { estimator: self.id(), seed };
+        let Self::Learned(entry, estimator) = self else { return Err(not_finite) };
+        let branch = Seed::new(seed).child(entry.id);
+        let context = FitContext::new(branch, request.max_steps, &Silent, request.cancel).ablating(ablation);
+        let estimate = estimator.fit(envelope, &context).map_err(|source| TrainerError::Fit {
+            estimator: entry.id,
+            seed,
+            source,
+        })?;
+        if estimate.decay_rate.is_finite() { Ok(estimate.decay_rate) } else { Err(not_finite) }
     }
 
     /// The same method with the part of its work done that no envelope enters.

@@ -1,5 +1,6 @@
 //! From a record to fitted methods: what estimating, comparing and predicting share.
 
+pub(crate) mod ablations;
 pub(crate) mod agreement;
 pub(crate) mod cautions;
 pub(crate) mod fit;

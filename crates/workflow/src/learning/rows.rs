@@ -4,8 +4,12 @@ use super::method::Method;
 use super::{Ready, Tried};
 use learn::LearnError;
 use learn::data::Trajectory;
-use learn::judge::{Score, Truth};
-use results::{LearnCoefficient, LearnData, LearnEnd, LearnProblem, LearnRow, LearnTest, LearnValidation};
+use learn::judge::{Score, Truth, runs, runs_on_noise, score_of_runs};
+use learn::learners::find;
+use results::{
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnRow, LearnTest, LearnValidation,
+};
+use seed::Seed;
 use std::collections::BTreeMap;
 
 /// The row of a method in the table of results; `problem` names the data set, `model` the file that keeps a model which can be
@@ -58,11 +62,48 @@ pub fn row(
     row
 }
 
-/// Sorts rows by their error in free runs, the best first and what failed last.
+/// Rows of a learner's model with everything that it learned at zero, and given noise in place of past and input; none for
+/// other methods, where nothing was learned, and for a model that cannot be kept.
+#[must_use]
+pub fn ablation_rows(
+    problem: &str,
+    ready: &Ready,
+    method: &Method<'_>,
+    tried: &Tried,
+    seed: &Seed,
+) -> Vec<LearnRow> {
+    let (LearnKind::Learner, Ok(judged)) = (method.kind, &tried.fitted) else { return Vec::new() };
+    let (data, model) = (&ready.data, judged.model.as_ref());
+    let Some(zero) = model.stored().map(|stored| stored.at_zero()) else { return Vec::new() };
+    let at_zero = find(&zero.learner).map(|entry| (entry.restore)(&zero));
+    let at_zero = at_zero.map(|zero| zero.map(|zero| score_of_runs(&runs(zero.as_ref(), data), data)));
+    let on_noise = Ok(score_of_runs(&runs_on_noise(model, data, seed), data));
+    let row = |suffix: &str, words: &str, score: Result<Score, LearnError>| LearnRow {
+        problem: problem.to_owned(),
+        id: format!("{}:{suffix}", method.id),
+        title: format!("{}, {words}", method.title),
+        kind: LearnKind::Ablation,
+        test: score.as_ref().ok().map(|score| LearnTest { coverage_95: None, ..test(score, &data.unit) }),
+        validation: None,
+        coefficients: None,
+        equation: None,
+        torque_error: None,
+        parameters: model.parameters(),
+        seconds: 0.0,
+        reached: if score.is_ok() { judged.reached } else { LearnEnd::Failed },
+        failure: score.err().map(|error| error.to_string()),
+        model: None,
+    };
+    let zero = at_zero.map(|score| row("at-zero", "what it learned at zero", score));
+    zero.into_iter().chain([row("on-noise", "given noise", on_noise)]).collect()
+}
+
+/// Sorts rows by their error in free runs, the best first and what failed last; ablations after all others.
 pub fn sort(rows: &mut [LearnRow]) {
     let error =
         |row: &LearnRow| row.test.as_ref().and_then(|test| test.free_run_rmse).unwrap_or(f64::INFINITY);
-    rows.sort_by(|a, b| error(a).total_cmp(&error(b)));
+    let ablated = |row: &LearnRow| row.kind == LearnKind::Ablation;
+    rows.sort_by(|a, b| ablated(a).cmp(&ablated(b)).then(error(a).total_cmp(&error(b))));
 }
 
 fn test(score: &Score, unit: &str) -> LearnTest {

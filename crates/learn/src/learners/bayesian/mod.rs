@@ -174,6 +174,7 @@ fn pieces_of(data: &DataSet, samples: usize, fit: &Fit) -> Vec<Trajectory> {
     let matching = |pieces: &Vec<Trajectory>| {
         pieces.len() == fit.starts.len() && pieces.iter().map(Trajectory::len).sum::<usize>() == fit.samples
     };
+    // A fit on no pieces of these has no likelihood, and its sampler refuses.
     lengths.into_iter().map(cut).find(matching).unwrap_or_default()
 }
 

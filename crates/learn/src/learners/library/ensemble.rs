@@ -9,6 +9,7 @@ use seed::Seed;
 /// Share of `members` resampled regressions that keep each term, groups of rows drawn with replacement.
 #[must_use]
 pub fn inclusion(regression: &Regression, threshold: f64, members: usize, seed: &Seed) -> Vec<f64> {
+    // Without a row there is no group.
     let last = regression.groups.iter().max().map_or(0, |last| last + 1);
     let mut by_group: Vec<Vec<usize>> = vec![Vec::new(); last];
     for (row, &group) in regression.groups.iter().enumerate() {

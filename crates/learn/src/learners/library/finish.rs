@@ -83,6 +83,7 @@ impl Law {
         let errors: Option<Vec<f64>> =
             covariance.as_ref().map(|all| all.diagonal().iter().map(|own| own.sqrt()).collect());
         let drawn = |all: &DMatrix<f64>| Posterior::normal(&self.weights, all, &context.seed);
+        // Without a covariance there are no draws, hence no band.
         let posterior = covariance.as_ref().map(drawn).unwrap_or_default();
         let running = Running::new(data, self.fit.as_ref().map_or(data.noise, Fit::rms));
         law(learner, &self.library(), (&self.weights, errors.as_deref()), posterior, running, data)
@@ -153,9 +154,11 @@ fn refitted(
             phase: &phase,
         };
         let Some(mut law) = from.fitted(data, &pieces, context, &shooting)? else { break };
+        // A law that was not fitted took no step.
         steps += law.fit.as_ref().map_or(0, |fit| fit.steps);
         while let Some(place) = law.superfluous() {
             let Some(shorter) = law.without(place).fitted(data, &pieces, context, &shooting)? else { break };
+            // As above.
             steps += shorter.fit.as_ref().map_or(0, |fit| fit.steps);
             law = shorter;
         }
@@ -163,6 +166,7 @@ fn refitted(
         // The next length may have use for what this one is too short to tell.
         let weight_of =
             |term: &Term| law.terms.iter().zip(&law.weights).find(|(own, _)| *own == term).map(|(_, w)| *w);
+        // A term that was taken out begins from nothing.
         from.weights = from.terms.iter().map(|term| weight_of(term).unwrap_or(0.0)).collect();
         found.push((error, law));
     }
@@ -177,9 +181,10 @@ fn refitted(
 /// [`LearnError::Stored`] for a file of another form.
 pub fn restore(learner: &'static str, stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
     let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
-        let terms = form.get("terms").cloned().unwrap_or_default();
-        let terms: Vec<Term> = serde_json::from_value(terms)
-            .map_err(|error| LearnError::Stored { problem: format!("the terms of the law: {error}") })?;
+        let problem =
+            |error: String| LearnError::Stored { problem: format!("the terms of the law: {error}") };
+        let terms = form.get("terms").cloned().ok_or_else(|| problem("there are none".to_owned()))?;
+        let terms: Vec<Term> = serde_json::from_value(terms).map_err(|error| problem(error.to_string()))?;
         Ok(Box::new(Library::new(terms)))
     };
     Ok(Box::new(FlowModel::restore(learner, stored, field)?))

@@ -35,6 +35,7 @@ pub fn law(
     running: Running,
     data: &DataSet,
 ) -> FlowModel {
+    // Without standard errors every coefficient has none.
     let errors = errors.unwrap_or_default().iter().copied().map(Some).chain(std::iter::repeat(None));
     let coefficients =
         library.terms().iter().zip(weights).zip(errors).map(|((term, value), error)| Coefficient {

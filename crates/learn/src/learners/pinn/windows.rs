@@ -104,6 +104,7 @@ pub(super) fn stretches(data: &DataSet, jumps: bool, seconds: f64, samples: usiz
 
 impl Window {
     pub(super) fn new(piece: &Trajectory, hold: InputHold) -> Self {
+        // A piece has more than three samples.
         let first = piece.times_s().first().copied().unwrap_or_default();
         let half_s = (0.5 * piece.duration_s()).max(f64::MIN_POSITIVE);
         let scaled = |time: f64| (time - first) / half_s - 1.0;

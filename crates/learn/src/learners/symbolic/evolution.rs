@@ -65,6 +65,7 @@ impl Grammar {
         let variables = [Variable::Position, Variable::Velocity, Variable::Input];
         let count = if self.driven { 3 } else { 2 };
         Expression::Variable(one_of(
+            // Two or three of three.
             variables.get(..count).unwrap_or_default(),
             Variable::Position,
             generator,

@@ -275,19 +275,22 @@ fn model(
         form: json!({ "parts": sum.parts }),
         field: Box::new(sum.clone()),
         weights: weights.to_vec(),
+        // Without a covariance there are no draws, hence no band.
         posterior: covariance
             .as_ref()
             .map(|all| Posterior::normal(weights, all, &context.seed))
-            .unwrap_or_default(),
+            .unwrap_or_default(), // As said above.
         running,
     }
 }
 
 fn restored(stored: &Stored) -> Result<Box<dyn Model>, LearnError> {
     let field = |form: &serde_json::Value| -> Result<Box<dyn Field>, LearnError> {
-        let parts = form.get("parts").cloned().unwrap_or_default();
-        let parts: Vec<Expression> = serde_json::from_value(parts)
-            .map_err(|error| LearnError::Stored { problem: format!("the parts of the law: {error}") })?;
+        let problem =
+            |error: String| LearnError::Stored { problem: format!("the parts of the law: {error}") };
+        let parts = form.get("parts").cloned().ok_or_else(|| problem("there are none".to_owned()))?;
+        let parts: Vec<Expression> =
+            serde_json::from_value(parts).map_err(|error| problem(error.to_string()))?;
         Ok(Box::new(Sum { parts }))
     };
     Ok(Box::new(FlowModel::restore(ID, stored, field)?))

@@ -33,6 +33,7 @@ impl Weak {
                 let to = states.partition_point(|state| state.time_s <= center + half);
                 let mut sum = 0.0;
                 let mut weights = Vec::new();
+                // Both places were found among the states.
                 for state in states.get(from..to).unwrap_or_default() {
                     let [value, _, curvature] = test_function((state.time_s - center) / half);
                     let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);

@@ -110,6 +110,8 @@ impl<C: Correction> Field for Corrected<C> {
             *slot = scale.acceleration * feature;
             sum += weight * feature;
         }
+        debug_assert!(linear.len() >= 3, "constant, position and velocity are always trained");
+        // Said above.
         let [_, weight_x, weight_v] = linear.first_chunk::<3>().copied().unwrap_or_default();
         let [stiffness, damping, ..] = self.base.nominal;
         slope.position = scale.acceleration * (by_x + weight_x) / scale.position - stiffness;

@@ -36,6 +36,7 @@ pub fn model<C: Kept>(
     let form = Form { base: field.base, correction: field.correction.clone() };
     FlowModel {
         learner,
+        // A model without a form is not kept (`FlowModel::stored`).
         form: serde_json::to_value(form).unwrap_or_default(),
         field: Box::new(field.clone()),
         weights: weights.to_vec(),
@@ -97,7 +98,8 @@ pub fn finished<C: Kept>(
 fn laplace(fit: &Fit, penalty: &Penalty, context: &Context<'_>) -> Posterior {
     let precision = DMatrix::from_diagonal(&DVector::from_column_slice(&penalty.precision));
     let covariance = inverse(&(&fit.information / fit.variance() + precision));
+    // Without a covariance there are no draws, hence no band.
     covariance
         .map(|covariance| Posterior::normal(&fit.weights, &covariance, &context.seed))
-        .unwrap_or_default()
+        .unwrap_or_default() // As said above.
 }

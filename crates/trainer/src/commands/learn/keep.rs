@@ -18,6 +18,8 @@ pub(super) struct Row<'a> {
     pub(super) ready: &'a Ready,
     pub(super) method: &'a Method<'a>,
     pub(super) tried: Tried,
+    /// The model without what it learned, and given noise.
+    pub(super) ablated: Vec<LearnRow>,
 }
 
 impl Row<'_> {
@@ -46,6 +48,7 @@ pub(super) fn result(
             row(&problem.id, own.ready, own.method, &own.tried, truth.as_ref(), file)
         };
         let mut made: Vec<LearnRow> = own.iter().map(told).collect();
+        made.extend(own.iter().flat_map(|row| row.ablated.iter().cloned()));
         sort(&mut made);
         results.extend(made);
     }

@@ -34,6 +34,11 @@ pub(super) struct Trying<'a> {
 }
 
 impl Trying<'_> {
+    /// The seed of a method on a problem.
+    pub(super) fn seed_of(&self, problem: &str, method: &Method<'_>) -> Seed {
+        Seed::new(self.seed).child("learn").child(problem).child(method.id)
+    }
+
     /// Makes a method's model of a data set, or takes the one that was finished before, and scores it.
     pub(super) fn tried(
         &self,
@@ -66,7 +71,7 @@ impl Trying<'_> {
             seen.steps.push(step.clone());
             pause_where_due(seen.steps.len());
         };
-        let seed = Seed::new(self.seed).child("learn").child(problem).child(method.id);
+        let seed = self.seed_of(problem, method);
         let max_steps = self.max_steps;
         let context =
             Context { seed, max_steps, cancel: &stop, observe: &observe, checkpoints: Some(&place) };

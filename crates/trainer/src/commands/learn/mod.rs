@@ -24,7 +24,7 @@ use results::LearnKind;
 use runs::RunFolder;
 use serde_json::json;
 use std::time::Instant;
-use workflow::learning::{Method, Ready, methods};
+use workflow::learning::{Method, Ready, ablation_rows, methods};
 
 /// A training is kept every ten seconds, at the end of an epoch.
 const KEPT: CheckpointSettings = CheckpointSettings { interval_s: 10.0, interval_steps: None };
@@ -75,7 +75,8 @@ pub(crate) fn perform(of: &Study<'_>) -> Result<Outcome, TrainerError> {
         pause_after: of.pause_after,
         ledger: &ledger,
     };
-    let tried = try_all(&trying, problems, &methods, pool, output.quiet || output.json)?;
+    let how = (output.quiet || output.json, study.settings.ablations);
+    let tried = try_all(&trying, problems, &methods, pool, how)?;
     let _saving = Saving::begin();
     let interrupted = tried.iter().any(|row| matches!(row.tried.fitted, Err(LearnError::Interrupted)));
     let result = keep::result(study, problems, &tried, start.elapsed().as_secs_f64());
@@ -109,7 +110,7 @@ fn try_all<'a>(
     problems: &'a [Prepared],
     methods: &'a [Method<'a>],
     pool: &ThreadPool,
-    silent: bool,
+    (silent, ablations): (bool, bool),
 ) -> Result<Vec<Row<'a>>, TrainerError> {
     let jobs: Vec<(&Prepared, &Ready, &Method<'_>)> = problems
         .iter()
@@ -122,8 +123,13 @@ fn try_all<'a>(
         jobs.into_par_iter()
             .map(|(problem, ready, method)| {
                 let tried = trying.tried(&problem.id, ready, method)?;
+                let seed = trying.seed_of(&problem.id, method);
+                let ablated = match ablations {
+                    true => ablation_rows(&problem.id, ready, method, &tried, &seed),
+                    false => Vec::new(),
+                };
                 progress.one_of_many_done();
-                Ok(Row { problem, ready, method, tried })
+                Ok(Row { problem, ready, method, tried, ablated })
             })
             .collect()
     });

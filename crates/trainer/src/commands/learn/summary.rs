@@ -12,7 +12,8 @@ const HEADER: [&str; 9] =
 pub(super) fn summary(result: &LearnResult, folder: &Path) -> String {
     let mut parts = vec![
         "errors are RMS on records never seen, in the record's unit; the horizon ends where the error passes three times \
-         the noise; the torque's error is relative to what the nominal simulator lacks"
+         the noise; the torque's error is relative to what the nominal simulator lacks; at-zero is a learner's model with everything that \
+         it learned at zero, on-noise the model given noise in place of past and input"
             .to_owned(),
     ];
     parts.extend(result.problems.iter().map(|problem| described(problem, result)));
@@ -56,10 +57,9 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
 
 fn cells(row: &LearnRow) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
-    let name = if row.kind == LearnKind::Learner {
-        row.id.clone()
-    } else {
-        format!("{} ({})", row.id, row.kind.name())
+    let name = match row.kind {
+        LearnKind::Learner => row.id.clone(),
+        kind => format!("{} ({})", row.id, kind.name()),
     };
     let mut cells = vec![name];
     match &row.test {

@@ -3,6 +3,7 @@
 use super::ready::Run;
 use super::summary;
 use crate::error::TrainerError;
+use crate::fits::ablations::{ablations, linfa};
 use crate::fits::agreement::disagreement;
 use crate::fits::cautions::cautions;
 use crate::fits::fit::{FitSetting, SeedFit, seeds};
@@ -13,11 +14,13 @@ use crate::folders::resume::end;
 use crate::outcome::Outcome;
 use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
+use estimator::Estimand;
 use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
 use results::{
-    ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN, RESULT_SCHEMA, SeedRow,
+    AblationRow, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN,
+    RESULT_SCHEMA, SeedRow,
 };
 use runs::to_csv;
 use serde_json::json;
@@ -31,9 +34,12 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
     let methods = choose(comparison)?;
     let start = Instant::now();
     let fits = fit_all(run, &methods)?;
+    let ablated = ablate_all(run, &methods);
     let _saving = Saving::begin();
     let interrupted = run.cancel.is_requested() && fits.iter().flatten().any(is_interrupted);
-    let mut result = result(run, comparison, &methods, fits, start.elapsed().as_secs_f64());
+    let outcomes = methods.iter().zip(fits).zip(ablated);
+    let outcomes = outcomes.map(|((method, fits), ablated)| row(method, outcome(run, method, fits, ablated)));
+    let mut result = result(run, comparison, outcomes.collect(), start.elapsed().as_secs_f64());
     let answer = Answer { zeta: result.oracle.zeta, zeta_std_error: Some(result.oracle.zeta_std_error) };
     result.truth = known_truth::compare(&run.input, &answer)?;
     keep(run, &result, interrupted)?;
@@ -102,19 +108,35 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
     Ok(by_method)
 }
 
+/// Every method's first seed without its learned part, in the methods' order.
+fn ablate_all(run: &Run<'_>, methods: &[Method]) -> Vec<Vec<AblationRow>> {
+    let request = Request { query_times: &[], max_steps: run.experiment.fit.max_steps, cancel: run.cancel };
+    let envelope = &run.input.extraction.envelope;
+    let (seed, oracle) = (run.experiment.seed, run.input.oracle.decay_rate);
+    run.pool.install(|| {
+        methods.par_iter().map(|method| ablations(method, envelope, seed, &request, oracle)).collect()
+    })
+}
+
 fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
     MethodRow {
         number: method.number(),
         id: method.id().to_owned(),
         title: method.title().to_owned(),
         family: method.family().to_owned(),
+        estimand: method.estimand().name().to_owned(),
         outcome,
     }
 }
 
 /// One method's seeds as one outcome. A single seed that failed fails the method: leaving it out would
 /// flatter.
-fn outcome(run: &Run<'_>, fits: Vec<Result<SeedFit, String>>) -> MethodOutcome {
+fn outcome(
+    run: &Run<'_>,
+    method: &Method,
+    fits: Vec<Result<SeedFit, String>>,
+    ablations: Vec<AblationRow>,
+) -> MethodOutcome {
     let fits: Vec<SeedFit> = match fits.into_iter().collect() {
         Ok(fits) => fits,
         Err(reason) => return MethodOutcome::Failed { reason },
@@ -141,28 +163,23 @@ fn outcome(run: &Run<'_>, fits: Vec<Result<SeedFit, String>>) -> MethodOutcome {
         seconds: scoring::median(rows.iter().map(|row| row.seconds)),
         reached: row.reached.clone(),
         stopped_because: first.estimate.stop.because.clone(),
-        pass: scoring::passes(worst, run.experiment.fit.tolerance_percent),
+        pass: method.passes(worst, run.experiment.fit.tolerance_percent),
+        ablations,
     })
 }
 
-fn result(
-    run: &Run<'_>,
-    comparison: &Comparison,
-    methods: &[Method],
-    fits: Vec<Vec<Result<SeedFit, String>>>,
-    seconds: f64,
-) -> ComparisonResult {
+fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, seconds: f64) -> ComparisonResult {
     let (experiment, input) = (run.experiment, &run.input);
-    let results: Vec<MethodRow> =
-        methods.iter().zip(fits).map(|(method, fits)| row(method, outcome(run, fits))).collect();
-    let estimates = || {
-        results.iter().filter_map(|row| match &row.outcome {
-            MethodOutcome::Estimate(estimate) => Some(estimate),
-            MethodOutcome::Failed { .. } => None,
-        })
+    let libraries =
+        vec![linfa(&input.extraction.envelope, input.oracle.decay_rate, experiment.fit.tolerance_percent)];
+    let estimate = |row: &MethodRow| match &row.outcome {
+        MethodOutcome::Estimate(estimate) => Some((estimate.worst_error_percent, estimate.pass)),
+        MethodOutcome::Failed { .. } => None,
     };
-    let max_error_percent = scoring::worst(estimates().map(|row| row.worst_error_percent));
-    let pass = estimates().filter(|row| row.pass).count() == results.len();
+    // The distance of what estimates something else is no error.
+    let held = results.iter().filter(|row| row.estimand != Estimand::Own.name());
+    let max_error_percent = scoring::worst(held.filter_map(estimate).map(|(worst, _)| worst));
+    let pass = results.iter().chain(&libraries).all(|row| estimate(row).is_some_and(|(_, passes)| passes));
     let derived = derived(run, comparison.inertia_kg_m2);
     let cautions = match comparison.claims {
         Claims::None => Vec::new(),
@@ -185,6 +202,7 @@ fn result(
         oracle: input.oracle_summary(),
         derived,
         results,
+        libraries,
         max_error_percent,
         tolerance_percent: experiment.fit.tolerance_percent,
         pass,

@@ -99,7 +99,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
         },
         error_percent: run.row(first).error_percent,
         tolerance_percent: tolerance,
-        pass: scoring::passes(worst, tolerance),
+        pass: method.passes(worst, tolerance),
         seconds: first.seconds,
         steps: estimate.steps,
         parameters: estimate.parameters,

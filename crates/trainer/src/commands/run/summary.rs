@@ -1,6 +1,7 @@
 //! The terminal's answer: one short screen.
 
 use crate::terminal::table::table;
+use estimator::Ablation;
 use report::format;
 use results::{
     ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
@@ -89,10 +90,12 @@ pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
         comparison_headline(result),
         oscillation(result),
         methods(result),
+        contributions(result),
         pipelines(&result.pipelines),
         comparison_remarks(result),
         ending(folder),
     ]);
+    parts.retain(|part| !part.is_empty());
     parts.join("\n\n")
 }
 
@@ -175,6 +178,7 @@ fn methods(result: &ComparisonResult) -> String {
     let rows = result
         .results
         .iter()
+        .chain(&result.libraries)
         .filter(|row| is_begun(row))
         .map(|row| {
             let number = row.number.map_or_else(|| "-".to_owned(), |number| number.to_string());
@@ -207,6 +211,32 @@ fn methods(result: &ComparisonResult) -> String {
         [] => table(&header, rows),
         ids => format!("{}\ninterrupted before these were fitted: {}", table(&header, rows), ids.join(", ")),
     }
+}
+
+/// Whether each learned method's value may differ from least squares, and what its learned part contributed.
+fn contributions(result: &ComparisonResult) -> String {
+    let learned = result.results.iter().filter(|row| is_begun(row) && row.family == "learned");
+    let rows = learned.map(|row| {
+        let ablations = match &row.outcome {
+            MethodOutcome::Estimate(found) => found.ablations.as_slice(),
+            MethodOutcome::Failed { .. } => &[],
+        };
+        let error = |ablation: Ablation| report::ablation_cell(ablations, ablation.name());
+        let mut cells = vec![row.id.clone(), report::may_differ(&row.estimand).to_owned()];
+        cells.extend(Ablation::ALL.map(error));
+        cells
+    });
+    let rows: Vec<Vec<String>> = rows.collect();
+    if rows.is_empty() {
+        return String::new();
+    }
+    let header = [
+        "method",
+        "may differ from least squares",
+        "learned part at zero, error %",
+        "noise for its input, error %",
+    ];
+    format!("{}\n{}", table(&header, rows), report::ABLATION_READING)
 }
 
 fn comparison_remarks(result: &ComparisonResult) -> String {

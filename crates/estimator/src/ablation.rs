@@ -1,0 +1,54 @@
+//! Ablations: what a learned part contributes shows when it is taken away.
+
+use rand::RngExt;
+use seed::Seed;
+
+/// A part of an estimator that is taken away for a fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Ablation {
+    /// Every parameter of the learned part (network, process, expression) is held at zero; what stands beside it,
+    /// such as a straight line, is trained.
+    LearnedPartAtZero,
+    /// What the learned part reads is replaced by white noise of the same range; its targets stay as they are.
+    NoiseForInput,
+}
+
+impl Ablation {
+    /// Both, in the order of tables.
+    pub const ALL: [Self; 2] = [Self::LearnedPartAtZero, Self::NoiseForInput];
+
+    /// The name as files write it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::LearnedPartAtZero => "learned_part_at_zero",
+            Self::NoiseForInput => "noise_for_input",
+        }
+    }
+}
+
+/// White noise, uniform between the least and the largest of `values`, one number for each.
+pub(crate) fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
+    let mut generator = seed.generator();
+    let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    values.iter().map(|_| least + (most - least) * generator.random::<f64>()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::noise_like;
+    use seed::Seed;
+
+    #[test]
+    fn noise_keeps_the_range_and_forgets_the_order() {
+        let values: Vec<f64> = (0..1000).map(|at| -1.0 + 0.002 * f64::from(at)).collect();
+        let noise = noise_like(&values, &Seed::new(3));
+        assert_eq!(noise, noise_like(&values, &Seed::new(3)));
+        assert!(noise.iter().all(|value| (-1.0..=0.998).contains(value)));
+        let mean = noise.iter().sum::<f64>() / 1000.0;
+        let product: f64 = values.iter().zip(&noise).map(|(a, b)| (a + 0.001) * (b - mean)).sum();
+        assert!(mean.abs() < 0.1 && (product / 333.0).abs() < 0.15, "{mean} {product}");
+        assert!(noise_like(&[], &Seed::new(3)).is_empty());
+    }
+}

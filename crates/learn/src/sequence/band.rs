@@ -1,0 +1,241 @@
+//! Calibrated 95 % bands of free runs.
+//!
+//! A free run's error grows with the time since its start, and in proportion to the swing. So errors are taken relative to
+//! the local amplitude of the prediction, in bins of lead time, from free runs over the validation records. Errors of one
+//! record go together, so what is exchangeable with the next one are whole records: every record weighs the same, and
+//! one more weighs as much at infinity. From twenty records on the 95 % quantile of that is finite, and a band then holds 95 % of
+//! the observations of a record more, whatever the distribution of errors. From fewer it is the pooled quantile, raised
+//! by the upper 95 % limit of a mean of logarithms, with a spread between records that is pooled over the bins; one record, which cannot
+//! tell how records differ, goes by the stated [`ONE_RECORD`]. Lead times beyond all that validation has seen continue in
+//! proportion to the lead, as an error of phase does.
+//!
+//! Lei, G'Sell, Rinaldo, Tibshirani, Wasserman, J. Am. Stat. Assoc. 113 (2018) 1094, section 2.2 and 5.2 (split conformal,
+//! locally weighted); Lee, Barber, Willett, arXiv:2306.06342 (2023) (records of dependent scores, one more at infinity);
+//! Stankevičiūtė, Alaa, van der Schaar, NeurIPS 34 (2021) 6216 (quantiles by horizon).
+
+use serde::{Deserialize, Serialize};
+
+/// A free run over a validation record.
+pub(super) struct Calibration {
+    /// Number of the record.
+    pub(super) record: usize,
+    /// Times since the start of the run, in seconds.
+    pub(super) leads_s: Vec<f64>,
+    /// Predicted positions.
+    pub(super) predicted: Vec<f64>,
+    /// What was observed.
+    pub(super) observed: Vec<f64>,
+}
+
+/// Half widths of 95 % bands by lead time, relative to the local amplitude.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(super) struct Band {
+    /// Middles of the bins of lead time, in seconds, increasing.
+    leads_s: Vec<f64>,
+    /// 95 % half width over the local amplitude in each bin.
+    relative: Vec<f64>,
+    /// Added to the local amplitude: the sensor's noise, in the position's unit.
+    floor: f64,
+    /// Rest position that amplitudes are counted from.
+    center: f64,
+    /// Time over which an amplitude is local, in seconds.
+    window_s: f64,
+}
+
+/// Share of observations that a band is to hold.
+const LEVEL: f64 = 0.95;
+
+/// Quantiles of the standard normal distribution: that of a one-sided 95 % limit, and that of a 95 % interval.
+const ONE_SIDED: f64 = 1.645;
+const TWO_SIDED: f64 = 1.96;
+
+/// Spread of the logarithm of records' quantiles where there is one record: they differ by a factor of 1.5.
+const ONE_RECORD: f64 = 0.4;
+
+/// Most bins of lead time, and fewest errors in a bin of each record.
+const MOST_BINS: usize = 12;
+const LEAST_ERRORS: usize = 20;
+
+/// No prediction is farther off than the sum of two opposite swings.
+const LARGEST: f64 = 2.0;
+
+impl Band {
+    /// A band from free runs over validation records; `None` where they leave nothing to calibrate on.
+    pub(super) fn calibrated(runs: &[Calibration], center: f64, floor: f64, period_s: f64) -> Option<Self> {
+        let mut band = Self { leads_s: Vec::new(), relative: Vec::new(), floor, center, window_s: period_s };
+        let records = runs.iter().map(|run| run.record).max()? + 1;
+        let scored: Vec<(usize, f64, f64)> = runs.iter().flat_map(|run| band.scores(run)).collect();
+        let longest = scored.iter().map(|(_, lead, _)| *lead).fold(0.0, f64::max);
+        let bins = (scored.len() / records / LEAST_ERRORS).clamp(1, MOST_BINS);
+        let of_bin = |bin: usize| -> Vec<Vec<f64>> {
+            let within = |lead: f64| {
+                let place = (lead / longest.max(f64::MIN_POSITIVE) * bins as f64) as usize;
+                place.min(bins - 1) == bin
+            };
+            let of_record = |record: usize| {
+                let own = scored.iter().filter(|(own, lead, _)| *own == record && within(*lead));
+                own.map(|(_, _, score)| *score).collect()
+            };
+            (0..records).map(of_record).filter(|own: &Vec<f64>| !own.is_empty()).collect()
+        };
+        let scores: Vec<Vec<Vec<f64>>> = (0..bins).map(of_bin).collect();
+        let spread = spread(&scores).unwrap_or(ONE_RECORD);
+        for (bin, scores) in scores.iter().enumerate() {
+            let count = scores.len() as f64;
+            let found = quantile(scores, LEVEL * (count + 1.0) / count).or_else(|| {
+                let raised = (ONE_SIDED * spread / count.sqrt()).exp();
+                quantile(scores, LEVEL).map(|pooled| pooled * raised)
+            });
+            let Some(relative) = found else { continue };
+            band.leads_s.push((bin as f64 + 0.5) * longest / bins as f64);
+            band.relative.push(relative);
+        }
+        (!band.leads_s.is_empty()).then_some(band)
+    }
+
+    /// Standard deviations whose 1.96 fold are the half widths, one for each prediction.
+    pub(super) fn std(&self, leads_s: &[f64], predicted: &[f64]) -> Vec<f64> {
+        let amplitudes = self.amplitudes(leads_s, predicted);
+        let pairs = leads_s.iter().zip(amplitudes);
+        pairs.map(|(lead, amplitude)| self.relative_at(*lead) * amplitude / TWO_SIDED).collect()
+    }
+
+    /// The largest relative half width at a lead time: between bins in proportion, beyond the last in proportion to the lead.
+    fn relative_at(&self, lead_s: f64) -> f64 {
+        let next = self.leads_s.partition_point(|&own| own < lead_s);
+        let at = |place: usize| self.leads_s.get(place).copied().zip(self.relative.get(place).copied());
+        let found = match (next.checked_sub(1).and_then(at), at(next)) {
+            (Some((from, low)), Some((to, high))) => low + (high - low) * (lead_s - from) / (to - from),
+            (Some((last, relative)), None) => relative * (lead_s / last).max(1.0),
+            (None, Some((_, first))) => first,
+            (None, None) => LARGEST,
+        };
+        // Where noise is all there is, a band may be wider than a swing.
+        found.min(LARGEST.max(self.relative.iter().copied().fold(0.0, f64::max)))
+    }
+
+    /// Record, lead time and relative error of every sample of a run.
+    fn scores(&self, run: &Calibration) -> Vec<(usize, f64, f64)> {
+        let amplitudes = self.amplitudes(&run.leads_s, &run.predicted);
+        let errors = run.observed.iter().zip(&run.predicted).map(|(a, b)| (a - b).abs());
+        let scores = errors.zip(amplitudes).map(|(error, amplitude)| error / amplitude);
+        let scored = run.leads_s.iter().zip(scores).filter(|(_, score)| score.is_finite());
+        scored.map(|(lead, score)| (run.record, *lead, score)).collect()
+    }
+
+    /// Local amplitude of a prediction at every time: √2 times the root mean square within half a window on either side, and
+    /// the floor.
+    fn amplitudes(&self, leads_s: &[f64], predicted: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0];
+        for value in predicted {
+            // The list begins with a number.
+            sums.push(sums.last().copied().unwrap_or_default() + (value - self.center).powi(2));
+        }
+        let amplitude = |lead: &f64| {
+            let from = leads_s.partition_point(|own| *own < lead - 0.5 * self.window_s);
+            let to = leads_s.partition_point(|own| *own <= lead + 0.5 * self.window_s);
+            let square = sums.get(to).zip(sums.get(from)).map_or(f64::NAN, |(to, from)| to - from);
+            (2.0 * square.max(0.0) / (to - from).max(1) as f64).sqrt() + self.floor
+        };
+        leads_s.iter().map(amplitude).collect()
+    }
+}
+
+/// The least score that a share of the scores does not exceed, every record weighing the same; `None` of nothing, and where
+/// the share is more than all.
+fn quantile(records: &[Vec<f64>], share: f64) -> Option<f64> {
+    let weighted = |own: &Vec<f64>| {
+        let weight = 1.0 / (own.len() * records.len()) as f64;
+        own.iter().map(|score| (*score, weight)).collect::<Vec<_>>()
+    };
+    let mut all: Vec<(f64, f64)> = records.iter().flat_map(weighted).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut sum = 0.0;
+    // Weights add up to 1 but for rounding.
+    all.into_iter()
+        .find(|(_, weight)| {
+            sum += weight;
+            sum >= share - 1e-9
+        })
+        .map(|(score, _)| score)
+}
+
+/// Standard deviation of the logarithms of records' own quantiles about their bins' means, pooled over bins; `None` where no
+/// bin has two records.
+fn spread(bins: &[Vec<Vec<f64>>]) -> Option<f64> {
+    let (mut squares, mut degrees) = (0.0, 0_usize);
+    for records in bins {
+        let own = records.iter().filter_map(|scores| quantile(std::slice::from_ref(scores), LEVEL));
+        let logs: Vec<f64> = own.map(f64::ln).filter(|log| log.is_finite()).collect();
+        if logs.len() < 2 {
+            continue;
+        }
+        let mean = logs.iter().sum::<f64>() / logs.len() as f64;
+        squares += logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>();
+        degrees += logs.len() - 1;
+    }
+    (degrees > 0).then(|| (squares / degrees as f64).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Band, Calibration};
+    use rand_distr::{Distribution, StandardNormal};
+    use seed::Seed;
+
+    /// A decaying swing, predicted with an error of phase that differs from record to record.
+    fn run(record: usize, seconds: f64, seed: &Seed) -> Calibration {
+        let mut generator = seed.child(&record.to_string()).generator();
+        let mut normal = || -> f64 { StandardNormal.sample(&mut generator) };
+        let drift = 0.02 * normal();
+        let leads_s: Vec<f64> = (1..(50.0 * seconds) as usize).map(|at| 0.02 * at as f64).collect();
+        let swing = |t: f64, phase: f64| 0.5 * (-0.1 * t).exp() * (6.0 * t + phase).cos();
+        let predicted = leads_s.iter().map(|t| swing(*t, 0.0)).collect();
+        let observed = leads_s.iter().map(|t| swing(*t, drift * t) + 1e-3 * normal()).collect();
+        Calibration { record, leads_s, predicted, observed }
+    }
+
+    fn coverage(band: &Band, runs: &[Calibration]) -> f64 {
+        let (mut held, mut count) = (0, 0);
+        for run in runs {
+            let std = band.std(&run.leads_s, &run.predicted);
+            let errors = run.observed.iter().zip(&run.predicted).map(|(a, b)| (a - b).abs());
+            held += errors.zip(&std).filter(|(error, std)| *error <= 1.96 * **std).count();
+            count += std.len();
+        }
+        held as f64 / count as f64
+    }
+
+    /// Mean coverage of fresh records by bands from so many, over 40 draws of these.
+    fn mean_coverage(records: usize) -> f64 {
+        let of_draw = |draw: u64| {
+            let seed = Seed::new(draw);
+            let runs: Vec<Calibration> = (0..records).map(|record| run(record, 20.0, &seed)).collect();
+            let band = Band::calibrated(&runs, 0.0, 1e-3, 1.0).unwrap();
+            let fresh: Vec<Calibration> =
+                (0..20).map(|record| run(record, 20.0, &seed.child("fresh"))).collect();
+            coverage(&band, &fresh)
+        };
+        (0..40).map(of_draw).sum::<f64>() / 40.0
+    }
+
+    #[test]
+    fn bands_hold_on_fresh_records_whatever_the_number_that_they_come_from() {
+        for (records, least, most) in [(2, 0.87, 0.99), (3, 0.91, 0.99), (8, 0.93, 0.99), (40, 0.94, 0.975)] {
+            let found = mean_coverage(records);
+            assert!((least..=most).contains(&found), "{records} records: {found}");
+        }
+    }
+
+    #[test]
+    fn beyond_what_was_seen_a_band_grows_with_the_lead() {
+        let seed = Seed::new(3);
+        let runs: Vec<Calibration> = (0..10).map(|record| run(record, 5.0, &seed)).collect();
+        let band = Band::calibrated(&runs, 0.0, 1e-3, 1.0).unwrap();
+        let fresh: Vec<Calibration> =
+            (0..100).map(|record| run(record, 20.0, &seed.child("fresh"))).collect();
+        let found = coverage(&band, &fresh);
+        assert!(found > 0.92, "{found}");
+        assert!(Band::calibrated(&[], 0.0, 1e-3, 1.0).is_none());
+    }
+}

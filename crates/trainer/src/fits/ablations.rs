@@ -1,0 +1,76 @@
+//! What a method's learned part contributed: its fit without it.
+
+use super::method::{Method, Request};
+use envelope::Envelope;
+use estimator::Ablation;
+use oracle::linfa_decay_rate;
+use results::{AblationRow, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN};
+use std::time::Instant;
+
+/// The first seed's fit without each part that can be taken away; empty for a method that learns nothing.
+pub(crate) fn ablations(
+    method: &Method,
+    envelope: &Envelope,
+    seed: u64,
+    request: &Request<'_>,
+    oracle: f64,
+) -> Vec<AblationRow> {
+    if !method.has_ablations() {
+        return Vec::new();
+    }
+    // Trained once, where the training sees no envelope.
+    let trained = method.pretrained_quietly(seed, request);
+    let row = |ablation: Ablation| {
+        let found = match &trained {
+            _ if request.cancel.is_requested() => Err(NOT_BEGUN.to_owned()),
+            Ok(trained) => {
+                trained.fit_without(ablation, envelope, seed, request).map_err(|error| error.to_string())
+            }
+            Err(error) => Err(error.to_string()),
+        };
+        let error = found.as_ref().map(|rate| scoring::error_percent(*rate, oracle));
+        AblationRow {
+            ablation: ablation.name().to_owned(),
+            error_percent: error.ok().filter(|error| error.is_finite()),
+            failure: found.err(),
+        }
+    };
+    Ablation::ALL.map(row).into()
+}
+
+/// The same line by linfa-linear on linfa's data set.
+pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) -> MethodRow {
+    let start = Instant::now();
+    let outcome = match linfa_decay_rate(envelope) {
+        Err(error) => MethodOutcome::Failed { reason: error.to_string() },
+        Ok((decay_rate, _)) => {
+            let error_percent = scoring::error_percent(decay_rate, oracle);
+            MethodOutcome::Estimate(MethodEstimate {
+                decay_rate,
+                zeta: envelope.damping_ratio(decay_rate),
+                zeta_std_error: None,
+                error_percent,
+                median_error_percent: error_percent,
+                worst_error_percent: error_percent,
+                digits_of_agreement: scoring::digits_of_agreement(error_percent),
+                seeds: 1,
+                steps: 0,
+                // Intercept and slope.
+                parameters: 2,
+                seconds: start.elapsed().as_secs_f64(),
+                reached: "converged".to_owned(),
+                stopped_because: "solved in closed form, by QR".to_owned(),
+                pass: scoring::passes(error_percent, tolerance_percent),
+                ablations: Vec::new(),
+            })
+        }
+    };
+    MethodRow {
+        number: None,
+        id: "linfa-linear".to_owned(),
+        title: "linfa and linfa-linear".to_owned(),
+        family: "library".to_owned(),
+        estimand: "least_squares".to_owned(),
+        outcome,
+    }
+}
