@@ -108,7 +108,7 @@ fn what_cannot_be_cited_is_refused() {
         (&["cite", "--estimator", "pin"][..], "unknown estimator \"pin\"; did you mean `pinn`?"),
         (
             &["cite", "configs"],
-            "configs: is no finished run: neither result.json nor diagnosis.json is there",
+            "configs: is not a finished run: neither result.json nor diagnosis.json is there",
         ),
     ] {
         let output = trainer(arguments);

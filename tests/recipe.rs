@@ -240,8 +240,8 @@ fn a_name_that_cannot_be_one_and_a_place_that_is_no_checkout_are_refused() {
     let nowhere = tempfile::tempdir().unwrap();
     let place = nowhere.path().to_str().unwrap();
     for (name, words) in [
-        ("Two Words", "is no identifier"),
-        ("loop", "is no identifier"),
+        ("Two Words", "is not an identifier"),
+        ("loop", "is not an identifier"),
         ("fine", "is not in a checkout of Ringdown"),
     ] {
         let output = trainer(&["new", "estimator", name, "--kind", "field", "--workspace", place]);

@@ -143,8 +143,8 @@ fn rigs_that_cannot_be_compared_are_refused() {
         assert_eq!(output.status.code(), Some(2), "{message}");
         assert!(message.contains(expected), "{message}");
     };
-    refusal(&[folder], "a rig alone has nothing to agree with");
+    refusal(&[folder], "a single rig has nothing to be compared with");
     refusal(&[folder, "no-such-rig"], "no-such-rig: No such file");
-    refusal(&[folder, folder], "once more");
+    refusal(&[folder, folder], "again");
     refusal(&[folder, folder, "--nominal", "nominal.toml"], "cannot be used with");
 }

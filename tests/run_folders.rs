@@ -135,7 +135,7 @@ fn methods_that_were_not_begun_are_no_failures() {
     assert!(!shown.contains("FAILED"), "{shown}");
     let waiting =
         shown.lines().find(|line| line.starts_with("interrupted before these were fitted: ")).unwrap();
-    assert!(waiting.contains("transformer") && shown.contains("WERE NOT BEGUN"), "{shown}");
+    assert!(waiting.contains("transformer") && shown.contains("WERE NOT STARTED"), "{shown}");
 }
 
 #[test]

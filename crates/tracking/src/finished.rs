@@ -10,7 +10,7 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub enum TrackingError {
     /// The folder is no finished run.
-    #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
+    #[error("{folder}: is not a finished run: {problem}; expected a run's folder, as below reports/runs")]
     NoRun {
         /// The folder.
         folder: String,

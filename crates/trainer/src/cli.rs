@@ -109,7 +109,7 @@ pub(crate) enum Command {
     Predict(PredictArguments),
     /// Prints the JSON Schema of configurations, for editors
     Schema {
-        /// What the file is for [default: what its key `task` says]
+        /// Purpose of the file [default: what its key `task` says]
         #[arg(value_enum)]
         purpose: Option<Purpose>,
     },

@@ -9,7 +9,7 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::probability::{Doubt, probability};
+use crate::evidence::probability::probability;
 use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
 use crate::evidence::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
@@ -102,21 +102,18 @@ impl<'a> Inclusion<'a> {
 
     /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
     /// others.
-    ///
-    /// `odds` are the prior odds of a class.
-    pub(crate) fn classes(&self, witness: Option<&Witness>, odds: f64, seed: &Seed) -> Vec<EffectClass> {
-        let doubt = Doubt { left_over: self.sets.left_over, odds };
+    pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
         let members = self.sets.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         let (ids, mut rows): (Vec<EvidenceClass>, Vec<EffectClass>) = EvidenceClass::among(members)
             .into_iter()
             .filter(|class| *class != EvidenceClass::Unnamed)
-            .filter_map(|class| Some((class, self.class(class, witness, doubt, seed)?)))
+            .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
         for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
             for (other, beside) in ids.iter().enumerate().filter(|(other, _)| *other != place) {
                 let (Some(own), Some(rival)) = (known.get(place), known.get(other)) else { continue };
-                let Some(either) = self.either(*class, *beside, doubt) else { continue };
+                let Some(either) = self.either(*class, *beside) else { continue };
                 row.probability = row.probability.max(either * own / (own + rival));
                 let is_better = own > rival || own == rival && place < other;
                 if is_better {
@@ -129,7 +126,7 @@ impl<'a> Inclusion<'a> {
 
     /// Probability that one of two classes acts that take each other's place, and that nothing else is left; none where they do
     /// not. Where something is left, there is always one of several that takes some of it.
-    fn either(&self, one: EvidenceClass, other: EvidenceClass, doubt: Doubt) -> Option<f64> {
+    fn either(&self, one: EvidenceClass, other: EvidenceClass) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| fit.hypothesis.holds(one))?;
         let with_other = place(&|fit| fit.hypothesis.holds(other))?;
@@ -143,16 +140,11 @@ impl<'a> Inclusion<'a> {
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let shown = ClassEvidence { replacement, half_swings: None };
-        Some((1.0 - doubt.left_over) * probability(&shown, error(neither) / error(best), doubt))
+        let left_over = self.sets.left_over;
+        Some((1.0 - left_over) * probability(&shown, error(neither) / error(best), left_over))
     }
 
-    fn class(
-        &self,
-        class: EvidenceClass,
-        witness: Option<&Witness>,
-        doubt: Doubt,
-        seed: &Seed,
-    ) -> Option<EffectClass> {
+    fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let (with, without) =
             (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
@@ -174,7 +166,7 @@ impl<'a> Inclusion<'a> {
             },
         };
         let ratio = class_row.error_without / class_row.error_with;
-        class_row.probability = probability(&class_row.evidence, ratio, doubt);
+        class_row.probability = probability(&class_row.evidence, ratio, self.sets.left_over);
         Some(class_row)
     }
 

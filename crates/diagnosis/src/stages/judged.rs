@@ -41,7 +41,7 @@ impl<'a> Judged<'a> {
         let frequency = request.simulator.angular_frequency();
         let swings = half_swings(request.records, &measured.free, frequency);
         let witness = swings.as_ref().map(|own| &own.witness);
-        let classes = inclusion.classes(witness, request.settings.false_alarm, &request.settings.seed);
+        let classes = inclusion.classes(witness, &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
         let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();

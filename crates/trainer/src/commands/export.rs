@@ -16,7 +16,7 @@ pub(crate) struct ExportArguments {
     /// Folders of finished runs
     #[arg(required = true, value_name = "RUN")]
     runs: Vec<PathBuf>,
-    /// For which tracker
+    /// Tracker to write for
     #[arg(long, value_enum, value_delimiter = ',', required = true)]
     to: Vec<Tracker>,
     /// MLflow's store

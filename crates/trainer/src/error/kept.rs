@@ -20,6 +20,6 @@ pub(crate) enum KeptError {
          one has {found}. Answers are never written over: name another folder with --out"
     )]
     AnotherNominal { nominal: String, answer: String, kept: String, found: String },
-    #[error("{answer}: is no diagnosis: {problem}; take it away, or name another folder with --out")]
+    #[error("{answer}: is not a diagnosis: {problem}; remove it, or name another folder with --out")]
     NoDiagnosis { answer: String, problem: String },
 }

@@ -8,7 +8,7 @@ use thiserror::Error;
 pub(crate) enum LearnCommandError {
     #[error("problem.{problem}: {source}")]
     Data { problem: String, source: LearnError },
-    #[error("problem.{problem}: the name `{pattern}` in records is no pattern: {reason}")]
+    #[error("problem.{problem}: the name `{pattern}` in records is not a pattern: {reason}")]
     Pattern { problem: String, pattern: String, reason: String },
     #[error(
         "problem.{problem}: no file in {folder} is called {pattern}; check records, or leave the problem out"

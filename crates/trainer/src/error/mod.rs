@@ -105,12 +105,12 @@ pub(crate) enum TrainerError {
     #[error("{folder}: {problem}; expected the folder of a rig, holding record-*.csv and nominal.toml")]
     NoRig { folder: String, problem: String },
     #[error(
-        "--rigs {rig}: a rig alone has nothing to agree with; name several, or diagnose it with \
+        "--rigs {rig}: a single rig has nothing to be compared with; name several, or diagnose it with \
          `trainer diagnose RECORD --nominal FILE`"
     )]
     OneRig { rig: String },
     #[error(
-        "{log}: its name has no ending, so that a folder of that name cannot stand beside it; name one with --out"
+        "{log}: its name has no extension, so a folder of that name cannot be created beside it; name a folder with --out"
     )]
     NoFolder { log: String },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
@@ -129,7 +129,7 @@ pub(crate) enum TrainerError {
     Run(#[from] RunError),
     #[error(transparent)]
     Report(#[from] ReportError),
-    #[error("{folder}: is no finished run: {problem}; expected a run's folder, as below reports/runs")]
+    #[error("{folder}: is not a finished run: {problem}; expected a run's folder, as below reports/runs")]
     NoRun { folder: String, problem: String },
     /// The result was printed to a place that took it not.
     #[error("the result cannot be written to standard output: {problem}")]

@@ -6,8 +6,8 @@ use thiserror::Error;
 #[derive(Debug, Error)]
 pub(crate) enum NewError {
     #[error(
-        "`{name}` is no identifier; expected small letters, digits and hyphens, each word beginning with a letter, as in \
-         `echo-state`, and no word that Rust keeps for itself"
+        "`{name}` is not an identifier; expected lowercase letters, digits and hyphens, each word beginning with a letter, as in \
+         `echo-state`, and not a reserved word of Rust"
     )]
     Name { name: String },
     #[error("there is a learner `{name}` already, or a file of its name; choose another name")]
@@ -20,7 +20,7 @@ pub(crate) enum NewError {
     #[error("{file}: cannot be read: {reason}")]
     Unreadable { file: String, reason: String },
     #[error(
-        "{file}: the registry has another form than this version of trainer knows; add the module and its ENTRY by hand"
+        "{file}: the registry does not have the form that this version of trainer expects; add the module and its ENTRY by hand"
     )]
     Registry { file: String },
 }

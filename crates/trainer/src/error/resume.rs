@@ -11,8 +11,8 @@ pub(crate) enum ResumeError {
     )]
     NoRun { folder: String },
     #[error(
-        "{folder}: is of `trainer {command}`, which is not run again from its folder alone; `trainer {command} … --out {folder} \
-         --resume` looks whether it answers the same question"
+        "{folder}: was made by `trainer {command}`, which cannot be repeated from its folder alone; `trainer {command} … --out {folder} \
+         --resume` checks that it answers the same question"
     )]
     OfAnotherCommand { folder: String, command: &'static str },
     #[error(
@@ -35,7 +35,7 @@ pub(crate) enum ResumeError {
          old record back, or start again in another folder"
     )]
     OtherData { file: String, expected: String, found: String },
-    #[error("{file}: the checkpoint belongs to another run; take it away and resume again")]
+    #[error("{file}: the checkpoint belongs to another run; remove it and resume")]
     ForeignCheckpoint { file: String },
     #[error("{folder}: this run is not finished, so there is nothing to verify; finish it with --resume")]
     Unfinished { folder: String },

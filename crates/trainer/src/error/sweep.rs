@@ -56,7 +56,7 @@ pub(crate) enum SweepCommandError {
     )]
     Shares { what: &'static str },
     #[error(
-        "{folder}: another process is at this search; wait for it, or begin another one in another folder"
+        "{folder}: another process is working on this search; wait for it, or start another one in another folder"
     )]
     Searching { folder: String },
     #[error("result.json has no number at {measure}{nearest}; it has {known}")]

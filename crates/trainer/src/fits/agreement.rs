@@ -42,7 +42,7 @@ pub(crate) fn disagreement(rows: &[PipelineRow], data: &DataSummary) -> Option<S
     let said: Vec<String> = differing.iter().map(how).collect();
     (!said.is_empty()).then(|| {
         format!(
-            "Pipelines or clocks disagree on this record: next to {}, in force, {}. {}",
+            "Pipelines or clocks disagree on this record: compared with {}, which is in force, {}. {}",
             name(own),
             said.join("; "),
             belief(own, data)

@@ -44,7 +44,7 @@ impl Drop for Saving {
 pub(crate) fn watch() -> Result<&'static Cancel, TrainerError> {
     watch_for(
         PATIENCE,
-        "interrupted within a step; what was kept before it is there, and --resume goes on from it",
+        "interrupted within a step; everything saved before it is kept, and --resume continues from there",
     )
 }
 

@@ -54,9 +54,9 @@ impl Progress {
     pub(crate) fn fit_done<E: Display>(&self, method: &str, seed: u64, fit: Result<&SeedRow, E>) {
         let line = match fit {
             Ok(row) => format!(
-                "{method}, seed {seed}: {} after {} steps, {:.2} s, error {} %",
-                row.reached,
-                row.steps,
+                "{method}, seed {seed}: {} after {}, {:.2} s, error {} %",
+                row.reached.replace('_', " "),
+                record::counted(row.steps as usize, "step"),
                 row.seconds,
                 two_digits(row.error_percent)
             ),

@@ -28,7 +28,7 @@ pub(crate) struct CompareArguments {
     /// With --sort, the largest first
     #[arg(long, requires = "sort")]
     pub(crate) reverse: bool,
-    /// What is printed
+    /// Form of the output
     #[arg(long, value_enum, conflicts_with = "json")]
     pub(crate) format: Option<Format>,
     /// Writes report.html, table.csv, table.md and result.json to a new or empty folder

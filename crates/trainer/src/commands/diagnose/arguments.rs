@@ -217,7 +217,7 @@ fn word<'de, T: Deserialize<'de>>(text: &'de str) -> Option<T> {
 pub(crate) enum FormatChoice {
     /// By the first line
     Auto,
-    /// A header with column names, then comma-separated numbers
+    /// A header with column names, then numbers, with commas, semicolons, tabs or blanks between them
     Csv,
     /// Two header lines, then wall clock, elapsed s, angle deg
     HostLog,

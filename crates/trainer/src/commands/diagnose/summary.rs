@@ -148,7 +148,7 @@ fn whereabouts(result: &DiagnosisResult) -> String {
         .map(|(name, share)| format!("{name} {}", format::share(*share)))
         .collect();
     let kinds = if named.is_empty() {
-        "the gap beyond recalibration: none worth dividing".to_owned()
+        "the gap beyond recalibration: too small to divide".to_owned()
     } else {
         format!("the gap beyond recalibration: {}", named.join(", "))
     };

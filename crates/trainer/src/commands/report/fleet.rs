@@ -89,7 +89,7 @@ fn fleet(path: &Path) -> FleetResult {
 fn answer(folder: &Path) -> Option<Result<DiagnosisResult, String>> {
     let path = folder.join(ANSWER);
     if path.is_file() {
-        let unreadable = |problem: String| format!("{}: is no diagnosis: {problem}", path.display());
+        let unreadable = |problem: String| format!("{}: is not a diagnosis: {problem}", path.display());
         let bytes = std::fs::read(&path).map_err(|error| unreadable(error.to_string()));
         return Some(bytes.and_then(|bytes| {
             serde_json::from_slice(&bytes).map_err(|error| unreadable(error.to_string()))

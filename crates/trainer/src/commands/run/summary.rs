@@ -31,8 +31,12 @@ pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
 
 fn headline(result: &EstimationResult) -> String {
     let verdict = if result.pass { "solves" } else { "does NOT solve" };
+    let whose = match result.seeds.len() {
+        0 | 1 => "its damping ratio is".to_owned(),
+        count => format!("the worst damping ratio of {count} seeds is"),
+    };
     format!(
-        "{} on {} ({} record): {verdict} least squares to {} %; its damping ratio is {} % from that of the closed form",
+        "{} on {} ({} record): {verdict} least squares to {} %; {whose} {} % from that of the closed form",
         result.estimator_title,
         result.data.path,
         result.data.origin,
@@ -65,9 +69,9 @@ fn numbers(result: &EstimationResult) -> String {
         row(
             "stopped",
             format!(
-                "{} after {} steps: {}",
+                "{} after {}: {}",
                 result.estimate.reached.replace('_', " "),
-                result.steps,
+                record::counted(result.steps as usize, "step"),
                 result.estimate.stopped_because
             ),
         ),
@@ -106,18 +110,20 @@ fn comparison_headline(result: &ComparisonResult) -> String {
     let verdict = match (result.pass, waiting, passed + waiting < count) {
         (true, ..) => String::new(),
         (false, 0, _) => ", THE OTHERS DO NOT".to_owned(),
-        (false, _, true) => format!(", {waiting} WERE NOT BEGUN, THE OTHERS DO NOT"),
-        (false, _, false) => format!(", {waiting} WERE NOT BEGUN"),
+        (false, _, true) => format!(", {waiting} WERE NOT STARTED, THE OTHERS DO NOT"),
+        (false, _, false) => format!(", {waiting} WERE NOT STARTED"),
+    };
+    let seeds = match result.seeds {
+        0 | 1 => format!("seed {}", result.seed),
+        count => format!("seeds {} to {}", result.seed, result.seed + count - 1),
     };
     format!(
         "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
-         form, seeds {} to {}, {:.1} s",
+         form, {seeds}, {:.1} s",
         result.data.path,
         result.data.origin,
         result.tolerance_percent,
         two_digits(result.max_error_percent),
-        result.seed,
-        result.seed + result.seeds.saturating_sub(1),
         result.seconds,
     )
 }
@@ -298,12 +304,18 @@ fn clock(data: &DataSummary) -> Vec<String> {
     let mut remarks = vec![
         data.reading.sentence.clone(),
         format!("clock in force: {}", data.clock),
-        format!(
-            "sensor: one sample every {:.6} ms, {:.2} ± {:.2} Hz",
-            1e3 * data.sample_period_s,
-            data.sample_rate_hz,
-            data.sample_rate_std_error_hz
-        ),
+        match data.sample_rate_std_error_hz {
+            error if error >= 0.005 => format!(
+                "sensor: one sample every {:.6} ms, {:.2} ± {error:.2} Hz",
+                1e3 * data.sample_period_s,
+                data.sample_rate_hz
+            ),
+            _ => format!(
+                "sensor: one sample every {:.6} ms, {:.2} Hz",
+                1e3 * data.sample_period_s,
+                data.sample_rate_hz
+            ),
+        },
     ];
     remarks.extend(report::noticed(data).iter().map(|finding| format!("note: {finding}")));
     remarks

@@ -82,11 +82,11 @@ pub(crate) struct SearchOptions {
     /// With --search, points in all [default: 50]
     #[arg(long, value_name = "N", requires = "search", value_parser = clap::value_parser!(u16).range(1..=10_000))]
     pub(crate) trials: Option<u16>,
-    /// Number of result.json that is to be small, by its dotted path [default: validation.over_noise of a study of learners,
+    /// Number in result.json to minimize, by its dotted path [default: validation.over_noise of a study of learners,
     /// else error_percent]
     #[arg(long, value_name = "PATH", conflicts_with = "maximize")]
     pub(crate) minimize: Option<String>,
-    /// Number of result.json that is to be large
+    /// Number in result.json to maximize
     #[arg(long, value_name = "PATH")]
     pub(crate) maximize: Option<String>,
     /// With --search tpe, points proposed at once; results depend on it, not on the threads

@@ -126,7 +126,7 @@ pub(crate) fn take_up(
     let ground = environment::changes(&folder.read("environment.json")?, &environment_of(beginning));
     remark(&format!("resuming {shown}"));
     for change in &ground {
-        remark(&format!("note: {change}; last digits may differ from those of a run in one go"));
+        remark(&format!("note: {change}; the last digits may differ from those of an uninterrupted run"));
     }
     folder.record_event(RESUME, &json!({ "changes": ground }))?;
     Ok(TakenUp::Open(folder))

@@ -121,7 +121,7 @@ fn list(folders: &[PathBuf]) -> Result<Vec<Rig>, TrainerError> {
         if let Some(other) =
             rigs.iter().find(|rig| rig.folder.canonicalize().is_ok_and(|own| own == resolved))
         {
-            let problem = std::io::Error::other(format!("is the rig {} once more", other.folder.display()));
+            let problem = std::io::Error::other(format!("is the rig {} again", other.folder.display()));
             return Err(refused(problem));
         }
         let case = Case::read(folder).map_err(refused)?;
