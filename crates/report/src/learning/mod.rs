@@ -89,8 +89,8 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
         origin: verdict::origin(&problem.origin),
         absent: problem.absent.as_deref().unwrap_or_default(),
         facts: if problem.absent.is_some() { Vec::new() } else { facts(problem) },
-        laws: rows.iter().filter_map(law).collect(),
-        coefficients: rows.iter().flat_map(|row| coefficients(row)).collect(),
+        laws: methods.iter().filter_map(law).collect(),
+        coefficients: methods.iter().flat_map(|row| coefficients(row)).collect(),
         figures: figures::figures(&id, problem, &methods, learning),
         table: (!rows.is_empty()).then(|| ScoreTable {
             columns: COLUMNS.to_vec(),
