@@ -341,7 +341,7 @@ fn records_that_say_nothing_are_refused() {
 
 #[test]
 fn another_system_and_other_units_are_refused() {
-    let other = NOMINAL.replace("484.0", "100.0");
+    let other = NOMINAL.replace("484.0", "36.0");
     refused(&decay(800, 0.7), &other, &[], "this is not the same system, or the units are wrong");
     refused(&decay(800, 0.7), NOMINAL, &["--time-unit", "ms"], "this is not the same system");
     let hertz = NOMINAL.replace("484.0", "12.26");

@@ -36,6 +36,8 @@ pub(super) const CIRCLES: &[(&str, &str)] = &[
     ("diagnosis", "model::candidates::sensor_saturation"),
     ("diagnosis", "model::candidates::stiffness_drift"),
     ("diagnosis", "model::candidates::stribeck_friction"),
+    ("diagnosis", "model::candidates::unlisted_damping"),
+    ("diagnosis", "model::candidates::unlisted_stiffness"),
     ("diagnosis", "model::predictor"),
     ("diagnosis", "noise::floor"),
     ("diagnosis", "noise::rounding"),

@@ -417,10 +417,7 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         duration: records.iter().map(Observations::duration_s).fold(0.0, f64::max),
         interval,
         rest_moved: rest - nominal.rest_angle(),
-        friction_known: simulator
-            .effects()
-            .iter()
-            .any(|known| known.recalibrate && known.active.id() == "coulomb_friction"),
+        friction_known: knows_friction(simulator),
         inertia,
         stiffness,
         resolution: records.iter().filter_map(|record| record.resolution).fold(0.0, f64::max),
@@ -428,6 +425,11 @@ fn facts(records: &[Observations], simulator: &NominalSimulator, period_s: Optio
         rate_error: records.iter().map(|record| record.rate_error).fold(0.0, f64::max),
         tolerance: Scales::UNKNOWN_NOISE,
     }
+}
+
+/// Whether the simulator has Coulomb friction whose torque is recalibrated.
+fn knows_friction(simulator: &NominalSimulator) -> bool {
+    simulator.effects().iter().any(|known| known.recalibrate && known.active.id() == "coulomb_friction")
 }
 
 /// How a driven motion repeats: at the line that holds most of its squares.
