@@ -9,7 +9,7 @@ use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
 use crate::model::matrices::element;
-use crate::noise::periodogram::{dominant_frequency, strongest_period};
+use crate::noise::periodogram::{dominant_frequency, share, strongest_period};
 use crate::noise::statistics::{median, quantile};
 use dynamics::{Coordinate, Hold, Input, NominalSimulator};
 use record::Quantity;
@@ -35,6 +35,9 @@ pub(crate) const MOST_SEARCHED: usize = 20_000;
 
 /// Samples in a period that a search looks at.
 const SEARCHED_PER_PERIOD: f64 = 20.0;
+
+/// Part of the input's squares that a line of it holds at least, where the motion repeats by it.
+const LINE_OF_INPUT: f64 = 0.1;
 
 /// Samples in which a driven motion's repetition is looked for, at most.
 const MOST_REPEATED: usize = 4000;
@@ -432,12 +435,15 @@ fn knows_friction(simulator: &NominalSimulator) -> bool {
     simulator.effects().iter().any(|known| known.recalibrate && known.active.id() == "coulomb_friction")
 }
 
-/// How a driven motion repeats: at the line that holds most of its squares.
+/// How a driven motion repeats: at the line that holds most of its squares, if the input has that line too. Otherwise it is
+/// something else's.
 fn repeats(record: &Observations) -> Option<Repeats> {
     let stride = record.len().div_ceil(MOST_REPEATED);
     let times: Vec<f64> = record.times_s.iter().copied().step_by(stride).collect();
     let values: Vec<f64> = record.values.iter().copied().step_by(stride).collect();
     let frequency = dominant_frequency(&times, &values)?;
+    let input: Vec<f64> = record.input.iter().flatten().copied().step_by(stride).collect();
+    (share(&times, &input, frequency) > LINE_OF_INPUT).then_some(())?;
     Some(Repeats { frequency, resolution: TAU / record.duration_s() })
 }
 

@@ -1,7 +1,6 @@
 use super::{Candidate, MainMode, Parameter, evidence_class, is_flexible};
 use crate::data::scales::{Repeats, Scales};
 use crate::model::candidates::flexible_coupling::FlexibleCoupling;
-use crate::model::candidates::hysteresis::Hysteresis;
 use crate::model::candidates::periodic_forcing::PeriodicForcing;
 use crate::model::candidates::{Along, Lines, Mode};
 use dynamics::{Coordinate, Hold, Input, Nominal, REGISTRY};
@@ -58,14 +57,8 @@ fn parameters_are_the_laws_own() {
 }
 
 /// A swing of 22 rad/s that decays at 0.1/s, released once.
-const SWING: MainMode = MainMode {
-    frequency: 22.0,
-    decay_rate: 0.1,
-    inertia: 1.0,
-    amplitude: 0.5,
-    starts_once: true,
-    repeats: None,
-};
+const SWING: MainMode =
+    MainMode { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true, repeats: None };
 
 /// Four repetitions of a driven motion at 1.01 rad/s: whatever depends on it has lines at 2.02, 3.03, ...
 #[test]
@@ -78,14 +71,6 @@ fn a_multiple_of_what_repeats_is_no_forcing() {
         assert_eq!(forcing.is_itself(&[1.0, frequency, 0.0], &driven), is_itself, "{frequency}");
         assert!(forcing.is_itself(&[1.0, frequency, 0.0], &SWING), "{frequency}");
     }
-}
-
-/// A contact that bends over half the swing hardly slides.
-#[test]
-fn a_contact_that_hardly_slides_is_no_friction() {
-    let hysteresis = Candidate::new(&Hysteresis);
-    assert!(hysteresis.is_itself(&[1.0, 0.1], &SWING));
-    assert!(!hysteresis.is_itself(&[1.0, 0.2], &SWING));
 }
 
 /// A light body of frequency 66 rad/s beside a swing of 22 rad/s that decays at 0.1/s: at its third

@@ -82,6 +82,17 @@ const FINER: f64 = 40.0;
 /// Part of the squares that a dominant line holds at least.
 const DOMINANT: f64 = 0.5;
 
+/// Part of the squares of values about their mean that a sine and a cosine of an angular frequency take away.
+pub(crate) fn share(times: &[f64], values: &[f64], frequency: f64) -> f64 {
+    let middle = mean(values);
+    let points: Vec<(f64, f64)> =
+        times.iter().zip(values).map(|(time, value)| (*time, value - middle)).collect();
+    let squares: f64 = points.iter().map(|(_, value)| value * value).sum();
+    let mut gain = [0.0];
+    add(&points, points.len() as f64, frequency, 0.0, &mut gain);
+    gain.iter().sum::<f64>() / squares.max(f64::MIN_POSITIVE)
+}
+
 /// Angular frequency of the line that holds most of the squares of values about their mean; none where there is no such line.
 pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
     let (first, last) = (times.first()?, times.last()?);
@@ -105,7 +116,7 @@ pub(crate) fn dominant_frequency(times: &[f64], values: &[f64]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::{add, dominant_frequency, peaks, strongest_period};
+    use super::{add, dominant_frequency, peaks, share, strongest_period};
 
     /// A swing of 0.4 s under noise of its own size.
     #[test]
@@ -129,6 +140,8 @@ mod tests {
         let repeated = of(&|time| (1.01 * time).sin() + 0.1 * (3.03 * time).cos());
         let found = dominant_frequency(&times, &repeated).unwrap();
         assert!((found - 1.01).abs() < 0.03, "{found}");
+        assert!((share(&times, &repeated, 1.01) - 0.99).abs() < 0.02);
+        assert!(share(&times, &repeated, 2.02) < 0.02);
         assert_eq!(dominant_frequency(&times, &of(&|time| ((1.0 + 0.3 * time) * time).sin())), None);
     }
 

@@ -1,7 +1,7 @@
 //! Friction with a pre-sliding spring.
 
 use super::coulomb_friction::CoulombFriction;
-use super::{Along, CandidateLaw, EvidenceClass, MainMode, Parameter, grid};
+use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
 use crate::model::candidate::Candidate;
 use crate::model::contact::bent;
@@ -10,7 +10,8 @@ use dynamics::{Effect, Moment, SystemEffect, Values};
 /// Displacements to begin with, relative to the amplitude.
 const BENDING: [f64; 4] = [0.005, 0.02, 0.06, 0.2];
 
-/// Displacement over the largest deflection from which on a contact hardly slides in most of a record.
+/// Displacement over the largest deflection, at most. What bends further hardly slides in most of a record: it is a spring and
+/// a loss that grow with the amplitude, which other laws are too.
 const MOST_BENT: f64 = 0.3;
 
 /// Friction with a pre-sliding spring: the torque once sliding, and the displacement over which it builds up.
@@ -30,17 +31,12 @@ impl CandidateLaw for Hysteresis {
         let amplitude = facts.amplitude;
         vec![
             Parameter::strength("torque"),
-            Parameter::shape("displacement", 1e-3 * amplitude, 0.5 * amplitude),
+            Parameter::shape("displacement", 1e-3 * amplitude, MOST_BENT * amplitude),
         ]
     }
 
     fn is_non_negative(&self) -> bool {
         true
-    }
-
-    /// What hardly slides is a spring and a loss that grow with the amplitude: other laws do that too, and no friction need act.
-    fn is_itself(&self, fitted: &[f64], swing: &MainMode) -> bool {
-        fitted.get(1).is_none_or(|displacement| *displacement <= MOST_BENT * swing.amplitude)
     }
 
     /// Hysteresis that builds up at once is Coulomb friction.

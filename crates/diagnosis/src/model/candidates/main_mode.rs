@@ -10,8 +10,6 @@ pub(crate) struct MainMode {
     /// Decay rate of its amplitude in 1/s.
     pub(crate) decay_rate: f64,
     pub(crate) inertia: f64,
-    /// Largest deflection.
-    pub(crate) amplitude: f64,
     /// Whether each record has one start state, at its beginning.
     pub(crate) starts_once: bool,
     /// How a driven motion repeats.
