@@ -118,6 +118,7 @@ def learn(
     baselines: Sequence[str] | None = None,
     seed: int = 0,
     max_steps: int | None = None,
+    ablations: bool = True,
     name: str = "records",
     data: Mapping[str, Any] | None = None,
     settings: Mapping[str, Mapping[str, Any]] | None = None,
@@ -130,6 +131,7 @@ def learn(
     workspace's. An object works in a process of its own, and is scored as the others are.
     nominal: the simulator, which the baselines ``nominal``, ``recalibrated`` and ``repaired`` need.
     baselines: which ones; left open, all. max_steps: cap on the steps of every fit.
+    ablations: judge each learner's model twice more, with everything that it learned at zero, and given noise.
     name: name of the data set, which seeds are drawn by. data: keys of the data set, such as ``{"split": "time"}``.
     settings: sections of the learners, such as ``{"neural-ode": {"hidden": [16]}}``.
 
@@ -151,6 +153,7 @@ def learn(
         "name": name,
         "seed": seed,
         "max_steps": max_steps,
+        "ablations": ablations,
         "data": "\n".join(lines),
         "settings": "\n".join(sections),
     }

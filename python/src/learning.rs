@@ -25,6 +25,7 @@ struct Wanted {
     name: String,
     seed: u64,
     max_steps: Option<u64>,
+    ablations: bool,
     data: String,
     settings: String,
 }
@@ -43,8 +44,9 @@ pub(crate) fn learn(
 ) -> PyResult<String> {
     let records = records.iter().map(|record| record.get().record(py)).collect::<PyResult<Vec<_>>>()?;
     let nominal = nominal.map(|nominal| nominal.get().nominal.clone());
-    let Wanted { learners, baselines, name, seed, max_steps, data, settings } = options("learn", wanted)?;
-    let options = LearnOptions { learners, baselines, name, seed, max_steps, data, settings };
+    let Wanted { learners, baselines, name, seed, max_steps, ablations, data, settings } =
+        options("learn", wanted)?;
+    let options = LearnOptions { learners, baselines, name, seed, max_steps, ablations, data, settings };
     let own: Vec<(String, PythonLearner)> =
         own.into_iter().map(|(id, object)| (id, PythonLearner { object })).collect();
     let found = beside(py, progress, move |watch| {

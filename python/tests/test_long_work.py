@@ -26,7 +26,13 @@ except KeyboardInterrupt:
 
 
 @pytest.mark.parametrize(
-    "work", ["rd.diagnose(record, nominal)", "rd.estimate(record, 'pinn')", "rd.learn([record] * 3, ['neural-ode'])"]
+    "work",
+    [
+        "rd.diagnose(record, nominal)",
+        # Wide enough to train for many seconds: a network of the default widths is done before the interruption.
+        "rd.estimate(record, 'pinn', settings={'hidden': [64, 64, 64]})",
+        "rd.learn([record] * 3, ['neural-ode'])",
+    ],
 )
 def test_ctrl_c_stops_long_work_at_once(work: str) -> None:
     told = subprocess.run(

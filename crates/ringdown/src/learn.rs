@@ -15,7 +15,7 @@ use settings::Document;
 use std::path::Path;
 use std::time::Instant;
 use workflow::learning::{
-    Method, Ready, check_record, described, method_of, methods, row, sort, trajectory, tried,
+    Method, Ready, ablation_rows, check_record, described, method_of, methods, row, sort, trajectory, tried,
 };
 
 /// Options of learning, with the defaults of the command line.
@@ -31,6 +31,8 @@ pub struct LearnOptions {
     pub seed: u64,
     /// Cap on the steps of every fit; `None` leaves them to the learners.
     pub max_steps: Option<u64>,
+    /// Whether each learner's model is judged twice more: with everything that it learned at zero, and given noise.
+    pub ablations: bool,
     /// Keys of the data set as lines of TOML, such as `split = "time"`.
     pub data: String,
     /// Sections of the learners as TOML, such as `[neural-ode]` with its keys.
@@ -45,6 +47,7 @@ impl Default for LearnOptions {
             name: "records".to_owned(),
             seed: 0,
             max_steps: None,
+            ablations: true,
             data: String::new(),
             settings: String::new(),
         }
@@ -102,10 +105,14 @@ pub fn learn(
     let each = |method: &Method<'_>| {
         let seed = root.child(method.id);
         let steps = |step: &Step| observe(method.id, step);
-        let found = tried(&ready, method, seed, study.settings.max_steps, cancel, &steps);
-        row(&problem.id, &ready, method, &found, None, None)
+        let found = tried(&ready, method, seed.clone(), study.settings.max_steps, cancel, &steps);
+        let ablated = match study.settings.ablations {
+            true => ablation_rows(&problem.id, &ready, method, &found, &seed),
+            false => Vec::new(),
+        };
+        [vec![row(&problem.id, &ready, method, &found, None, None)], ablated].concat()
     };
-    let mut rows: Vec<_> = asked.par_iter().map(each).collect();
+    let mut rows: Vec<_> = asked.par_iter().flat_map_iter(each).collect();
     sort(&mut rows);
     let told = described(&problem.id, &problem.title, &origin(records), Ok(&ready));
     Ok(LearnResult {
@@ -130,8 +137,9 @@ fn study(options: &LearnOptions) -> Result<LearnStudy, Error> {
     };
     let cap = options.max_steps.map_or_else(String::new, |cap| format!("max_steps = {cap}\n"));
     let configuration = format!(
-        "task = \"learn\"\nseed = {}\n[learn]\n{}{}{cap}[problem.{}]\nfolder = \".\"\nrecords = [\"*\"]\n{}\n{}\n",
+        "task = \"learn\"\nseed = {}\n[learn]\nablations = {}\n{}{}{cap}[problem.{}]\nfolder = \".\"\nrecords = [\"*\"]\n{}\n{}\n",
         options.seed,
+        options.ablations,
         names("learners", &options.learners),
         names("baselines", &options.baselines),
         text(&options.name),
