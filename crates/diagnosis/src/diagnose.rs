@@ -5,15 +5,13 @@ use crate::data::observations::Observations;
 use crate::error::DiagnosisError;
 use crate::measurement::clock_rates::ClockRates;
 use crate::settings::Settings;
+use crate::stages::Known;
 use crate::stages::{Judged, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer};
 use dynamics::NominalSimulator;
 use std::cell::OnceCell;
 
-/// What explains a part of the records already where clocks are asked for.
-enum Beside {
-    Nothing,
-    TheBest,
-}
+/// How often clocks are corrected: what a corrected search finds may leave a little more of them.
+const CORRECTIONS: usize = 2;
 
 /// Diagnoses the gap between a nominal simulator and records of one system.
 ///
@@ -50,26 +48,24 @@ pub fn diagnose_watched(
     let simulator = &simulator.into();
     let mut watch = Stopwatch::new(seconds, goes_on);
     let mut clocks = ClockRates::as_stamped(records);
-    let mut search = |clocks: &ClockRates| -> Result<_, DiagnosisError> {
+    let mut search = |clocks: &ClockRates, known: Option<Known>| -> Result<_, DiagnosisError> {
         let request = Request { records: &clocks.records, simulator, settings };
         let measured = watch.after("measurement chain", Measured::of(&request)?)?;
         let question = watch.after("calibration", Question::of(&request, &measured)?)?;
-        let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole))?;
+        let searched = watch.after("search", Searched::of(&request, &question, measured.is_whole, known))?;
         Ok((measured, question, searched))
     };
-    let (mut measured, mut question, mut searched) = search(&clocks)?;
-    // Clocks that show beside the calibrated simulator, and then those that the best set leaves.
-    for beside in [Beside::Nothing, Beside::TheBest] {
-        let (data, fit) = match beside {
-            Beside::Nothing => (&question.coarse, &question.coarse_base),
-            Beside::TheBest => (&searched.interval.data, searched.best()),
-        };
-        let Some(corrected) = clocks.corrected(data, fit)? else { continue };
-        let other = search(&corrected)?;
-        if other.2.is_closer(&searched, question.candidates.len(), corrected.price) {
-            (measured, question, searched) = other;
-            clocks = corrected;
+    let (mut measured, mut question, mut searched) = search(&clocks, None)?;
+    for _ in 0..CORRECTIONS {
+        let vocabulary = question.candidates.len();
+        let sets = (&searched.interval, &searched.found);
+        let Some((corrected, set)) = clocks.corrected(&question.coarse, sets, vocabulary)? else { break };
+        let other = search(&corrected, Some(Known { by: searched.interval.by, set }))?;
+        if !other.2.is_closer(&searched, vocabulary, corrected.price) {
+            break;
         }
+        (measured, question, searched) = other;
+        clocks = corrected;
     }
     measured.findings.extend(clocks.finding());
     let request = Request { records: &clocks.records, simulator, settings };

@@ -180,6 +180,15 @@ impl ShootingInterval {
         Some(Self { by, data, calibrated })
     }
 
+    /// Segments joined by a power of two; `None` where there are not so many to join or the fits fail.
+    pub(crate) fn joined(segments: &Data, calibrated: &Fit, by: usize) -> Option<Self> {
+        let mut interval = Self::shortest(segments, calibrated);
+        while interval.by < by {
+            interval = interval.doubled(segments)?;
+        }
+        Some(interval)
+    }
+
     /// The longest on which the recalibrated simulator is still a model to linearize at.
     pub(crate) fn longest(segments: &Data, calibrated: &Fit) -> Self {
         let mut horizon = Self::shortest(segments, calibrated);

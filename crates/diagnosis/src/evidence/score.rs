@@ -9,11 +9,15 @@ use crate::fit::levenberg_marquardt::Fit;
 /// get full power, a misfit that all hypotheses share is discounted. Start states are the same in number for all
 /// but hypotheses with a second body, whose further ones count among the parameters.
 pub(crate) fn score(fit: &Fit, autocorrelation_time: f64) -> f64 {
+    score_with(fit, fit.squares, 0, autocorrelation_time)
+}
+
+/// The [`score`] that a fit would have with so many further parameters and these squares.
+pub(crate) fn score_with(fit: &Fit, squares: f64, further: usize, autocorrelation_time: f64) -> f64 {
     let samples = fit.samples() as f64;
     let worth = samples / autocorrelation_time;
-    let extra = further_starts(fit);
-    let mean = (fit.squares / samples).max(f64::MIN_POSITIVE);
-    -0.5 * worth * mean.ln() - parameter_price(fit.globals() + extra, worth)
+    let mean = (squares / samples).max(f64::MIN_POSITIVE);
+    -0.5 * worth * mean.ln() - parameter_price(fit.globals() + further_starts(fit) + further, worth)
 }
 
 /// Start values that a hypothesis has beyond those of every one.

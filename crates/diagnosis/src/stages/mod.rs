@@ -14,7 +14,7 @@ pub(crate) use outcome::answer;
 pub(crate) use question::Question;
 pub(crate) use refined::Refined;
 pub(crate) use remaining::Remaining;
-pub(crate) use searched::Searched;
+pub(crate) use searched::{Known, Searched};
 
 use crate::answer::Stage;
 use crate::data::observations::Observations;

@@ -1,11 +1,12 @@
 //! Sets of effects that come into question, on the longest shooting interval that they follow.
 
 use super::{Question, Request};
+use crate::data::segments::Data;
 use crate::data::shooting_interval::ShootingInterval;
 use crate::evidence::left_over::unexplained;
 use crate::evidence::score::score;
 use crate::evidence::weights::{acts, price};
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
 use crate::search::archive::Archive;
 use crate::search::beam::{Asked, Breadth, Explored, WHITE, go_on, search};
 use crate::search::chains::chains;
@@ -18,6 +19,12 @@ const MOST_EFFECTS: usize = 5;
 /// Searches on longer shooting intervals at most.
 const MOST_INTERVALS: usize = 3;
 
+/// A set that a search goes on from, on segments joined by so many.
+pub(crate) struct Known {
+    pub(crate) by: usize,
+    pub(crate) set: Fit,
+}
+
 /// What a search has found.
 pub(crate) struct Searched {
     /// The coarse samples, joined as far as the best sets follow, and the calibrated simulator on them.
@@ -27,8 +34,13 @@ pub(crate) struct Searched {
 }
 
 impl Searched {
-    /// `is_whole` tells whether no segment was left out.
-    pub(crate) fn of(request: &Request<'_>, question: &Question, is_whole: bool) -> Self {
+    /// `is_whole` tells whether no segment was left out. Where a set is `known` the search goes on from it.
+    pub(crate) fn of(
+        request: &Request<'_>,
+        question: &Question,
+        is_whole: bool,
+        known: Option<Known>,
+    ) -> Self {
         let breadth = Breadth {
             most_effects: request.settings.most_effects.clamp(1, MOST_EFFECTS),
             singles: 8,
@@ -44,19 +56,13 @@ impl Searched {
             breadth: &breadth,
             threshold: *enough,
         };
-        let (interval, mut explored) = explore(&asked, is_whole);
+        let (interval, mut explored) = explore(&asked, is_whole, known);
         let ShootingInterval { data, calibrated, .. } = &interval;
         let asked = Asked { data, calibrated, ..asked };
         plain_family(data, calibrated, candidates, &mut explored.archive);
         further(&asked, &mut explored);
         let found = explored.archive;
         Self { interval, found, breadth }
-    }
-
-    /// The best set by what it gains.
-    pub(crate) fn best(&self) -> &Fit {
-        let ranked = self.found.ranked(self.found.autocorrelation_time());
-        ranked.first().map_or(&self.interval.calibrated, |best| *best)
     }
 
     /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
@@ -77,6 +83,21 @@ impl Searched {
     }
 }
 
+impl Known {
+    /// The interval that the set was found on, cut out of other segments, and the set on it where it is not the calibrated
+    /// simulator; none where these are not as many.
+    fn on(self, segments: &Data, calibrated: &Fit) -> Option<(ShootingInterval, Vec<Fit>)> {
+        let interval = ShootingInterval::joined(segments, calibrated, self.by)?;
+        if self.set.point.starts.len() != interval.data.segments.len() {
+            return None;
+        }
+        let Fit { hypothesis, point, .. } = self.set;
+        let set = fit(&interval.data, &hypothesis, point, Moving::All, Stopping::FINAL).ok()?;
+        let sets = if set.hypothesis.candidates.is_empty() { Vec::new() } else { vec![set] };
+        Some((interval, sets))
+    }
+}
+
 /// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
 fn further(asked: &Asked<'_>, explored: &mut Explored) {
     let found = &mut explored.archive;
@@ -93,7 +114,7 @@ fn further(asked: &Asked<'_>, explored: &mut Explored) {
 
 /// Searches, where the segments as they were cut are asked about, on the longest horizon on which the recalibrated simulator is a model to begin at, and goes on to
 /// longer ones for as long as what was found follows the motion there.
-fn explore(asked: &Asked<'_>, is_whole: bool) -> (ShootingInterval, Explored) {
+fn explore(asked: &Asked<'_>, is_whole: bool, known: Option<Known>) -> (ShootingInterval, Explored) {
     let &Asked { data: segments, calibrated, .. } = asked;
     let from = |horizon: &ShootingInterval, known: Vec<Fit>| {
         let ShootingInterval { data, calibrated, .. } = horizon;
@@ -106,8 +127,10 @@ fn explore(asked: &Asked<'_>, is_whole: bool) -> (ShootingInterval, Explored) {
         let pool = begin(&shortest);
         return (shortest, pool);
     }
-    let mut horizon = ShootingInterval::longest(segments, calibrated);
-    let mut pool = begin(&horizon);
+    let begun = known.and_then(|known| known.on(segments, calibrated));
+    let (mut horizon, sets) =
+        begun.unwrap_or_else(|| (ShootingInterval::longest(segments, calibrated), Vec::new()));
+    let mut pool = from(&horizon, sets);
     if horizon.by > 1 && !horizon.is_followed(segments, &pool.archive) {
         pool = begin(&shortest);
         horizon = shortest;
