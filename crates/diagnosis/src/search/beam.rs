@@ -283,14 +283,15 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         unmask(data, pool, unmasked);
         let time = pool.autocorrelation_time();
         let before = pool.highest(time);
-        let bases: Vec<Fit> = pool
-            .ranked(time)
-            .into_iter()
-            .filter(|fit| !fit.hypothesis.candidates.is_empty())
-            .take(breadth.beam)
-            .filter(|fit| before - score(fit, time) < FAR_BEHIND)
+        let ranked = pool.ranked(time);
+        let effects = || ranked.iter().filter(|fit| !fit.hypothesis.candidates.is_empty());
+        let near = effects().take(breadth.beam).filter(|fit| before - score(fit, time) < FAR_BEHIND);
+        // What can sit where it likes may stand in for a plain law, and has no use for what is missing beside that law.
+        let plain = effects().find(|fit| fit.hypothesis.is_plain());
+        let bases: Vec<Fit> = near
+            .chain(plain)
             .filter(|fit| expanded.insert(fit.hypothesis.ranks()))
-            .cloned()
+            .map(|fit| (*fit).clone())
             .collect();
         if bases.is_empty() {
             break;

@@ -4,7 +4,7 @@ use crate::data::segments::Data;
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
 use crate::model::candidate::Candidate;
-use crate::search::archive::{Archive, vanished};
+use crate::search::archive::{Archive, gone, vanished};
 use crate::search::proposals::{fit_all, generalized, proposal};
 use rayon::prelude::*;
 
@@ -71,12 +71,19 @@ pub(crate) fn refine(
             if let Some(known) = refined.find(&begun.hypothesis.candidates) {
                 return Some(known.clone());
             }
-            fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()
+            let found = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
+            // What does not count and has no size here takes nothing with it.
+            let gone = gone(data, &found);
+            if gone.is_empty() || gone.iter().any(|own| own.counts()) {
+                return Some(found);
+            }
+            let left = proposal(data, &found, &gone, &[]);
+            fit(data, &left.hypothesis, left.point, Moving::All, Stopping::FINAL).ok()
         };
         let fitted: Vec<Option<Fit>> = chosen.par_iter().map(|found| again(found)).collect();
-        let (gone, fits): (Vec<Fit>, Vec<Fit>) =
+        let (nothing, fits): (Vec<Fit>, Vec<Fit>) =
             fitted.into_iter().flatten().partition(|fit| vanished(data, fit));
-        rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
+        rejected.extend(nothing.into_iter().map(|fit| fit.hypothesis.candidates));
         all.extend(fits);
     }
     let mut refined = Archive { fits: all, rejected };
