@@ -54,7 +54,8 @@ impl<'a> Judged<'a> {
             }
         }
         let held = work.held_out(predictions, &chosen)?;
-        let considers = request.settings.considers("constant_torque");
+        let has_one = chosen.iter().any(|own| own.id() == "constant_torque");
+        let considers = request.settings.considers("constant_torque") && !has_one;
         let shift = if considers { work.shift(held.repaired) } else { None };
         Ok(Self { inclusion, classes, held, shift })
     }

@@ -1,8 +1,11 @@
 //! A constant torque.
+//!
+//! On a linear spring it is a shift of the rest angle, which is part of the calibration, and gains nothing beside it. It shows where
+//! something else keeps its place: a play, a stop, a spring that bends.
 
 use super::{CandidateLaw, EvidenceClass, Parameter};
 use crate::data::scales::Scales;
-use dynamics::{Effect, Nominal, SystemEffect};
+use dynamics::{Effect, SystemEffect};
 
 /// A constant torque.
 #[derive(Debug, Clone, Copy)]
@@ -23,10 +26,5 @@ impl CandidateLaw for ConstantTorque {
 
     fn is_non_negative(&self) -> bool {
         false
-    }
-
-    /// On a spring it is a shift of the rest angle, which is part of the calibration.
-    fn applies(&self, _facts: &Scales, nominal: &Nominal) -> bool {
-        nominal.stiffness() <= 0.0
     }
 }
