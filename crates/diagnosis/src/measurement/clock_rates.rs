@@ -10,7 +10,7 @@ use crate::data::observations::Observations;
 use crate::data::segments::Data;
 use crate::data::shooting_interval::{ShootingInterval, shortened};
 use crate::evidence::likelihood::{Likelihood, View};
-use crate::evidence::score::{parameter_price, score_with};
+use crate::evidence::score::{parameter_price, score, score_with};
 use crate::evidence::weights::price;
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit, solve};
 use crate::model::matrices::element;
@@ -52,7 +52,7 @@ impl ClockRates {
     }
 
     /// The records without the rates that a fitted set leaves, the set that is the best with its own, and this set fitted to them;
-    /// none where no set leaves any. What stands in for the rates of clocks leaves none itself, and the plain law beside
+    /// none where no set is better with rates than the best without. What stands in for the rates of clocks leaves none itself, and the plain law beside
     /// them is cheaper. `segments` are what the interval of the sets was joined from.
     ///
     /// # Errors
@@ -80,7 +80,11 @@ impl ClockRates {
             score_with(&own.fit, own.fit.squares, further, time) - price(data, &own.fit, vocabulary, 1.0)
         };
         let best = all.into_iter().flatten().max_by(|a, b| worth(a).total_cmp(&worth(b)));
-        let Some(Rated { rates, price, fit }) = best else { return Ok(None) };
+        let as_stamped = |fit: &Fit| score(fit, time) - price(data, fit, vocabulary, 1.0);
+        let known = sets.fits.iter().map(as_stamped).fold(f64::NEG_INFINITY, f64::max);
+        let Some(Rated { rates, price, fit }) = best.filter(|own| worth(own) - own.price > known) else {
+            return Ok(None);
+        };
         let mut records = self.records.clone();
         for (record, rate) in records.iter_mut().zip(&rates) {
             for time in &mut record.times_s {
