@@ -9,7 +9,7 @@ use crate::evidence::context::{Predicted, Predictions};
 use crate::evidence::half_swings::Witness;
 use crate::evidence::held_out::HeldOut;
 use crate::evidence::left_over::unexplained;
-use crate::evidence::probability::probability;
+use crate::evidence::probability::{Shown, probability};
 use crate::evidence::weighed_sets::{Basis, Left, Records, WeighedSets};
 use crate::evidence::weights::{DISTINCT_DISTANCE, Weighed, acts, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
@@ -100,8 +100,7 @@ impl<'a> Inclusion<'a> {
         Ok(Self { sets: sets.priced(&records, doubt), records })
     }
 
-    /// Every class that any of the sets has, the best supported first; probabilities and shares of the gap are left to
-    /// others.
+    /// Every class that any of the sets has, the best supported first, with its probability; shares of the gap are left to others.
     pub(crate) fn classes(&self, witness: Option<&Witness>, seed: &Seed) -> Vec<EffectClass> {
         let members = self.sets.weighed.iter().flat_map(|w| &w.fit.hypothesis.candidates);
         let (ids, mut rows): (Vec<EvidenceClass>, Vec<EffectClass>) = EvidenceClass::among(members)
@@ -109,6 +108,15 @@ impl<'a> Inclusion<'a> {
             .filter(|class| *class != EvidenceClass::Unnamed)
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
+        let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
+        for row in &mut rows {
+            let shown = Shown {
+                evidence: &row.evidence,
+                ratio: row.error_without / row.error_with,
+                leads: row.evidence.replacement > 0.0 && row.evidence.replacement >= most,
+            };
+            row.probability = probability(&shown, self.sets.left_over);
+        }
         let known: Vec<f64> = rows.iter().map(|row| row.probability).collect();
         for (place, (row, class)) in rows.iter_mut().zip(&ids).enumerate() {
             for (other, beside) in ids.iter().enumerate().filter(|(other, _)| *other != place) {
@@ -139,9 +147,10 @@ impl<'a> Inclusion<'a> {
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
-        let shown = ClassEvidence { replacement, half_swings: None };
+        let evidence = ClassEvidence { replacement, half_swings: None };
+        let shown = Shown { evidence: &evidence, ratio: error(neither) / error(best), leads: false };
         let left_over = self.sets.left_over;
-        Some((1.0 - left_over) * probability(&shown, error(neither) / error(best), left_over))
+        Some((1.0 - left_over) * probability(&shown, left_over))
     }
 
     fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {
@@ -150,7 +159,7 @@ impl<'a> Inclusion<'a> {
             (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
-        let mut class_row = EffectClass {
+        Some(EffectClass {
             id: class.id(),
             probability: 0.0,
             either: None,
@@ -164,10 +173,7 @@ impl<'a> Inclusion<'a> {
                 replacement: evidence(with) - evidence(without),
                 half_swings: witness.and_then(|witness| shown(witness, class)),
             },
-        };
-        let ratio = class_row.error_without / class_row.error_with;
-        class_row.probability = probability(&class_row.evidence, ratio, self.sets.left_over);
-        Some(class_row)
+        })
     }
 
     /// The best set of effects of some classes only.
