@@ -109,8 +109,7 @@ fn record_as_nominal(words: &[String]) -> Option<String> {
 fn nominal_as_plan(words: &[String]) -> Option<String> {
     let (word, path) = positional(words).next()?;
     let document = Document::parse("", &std::fs::read_to_string(path).ok()?).ok()?;
-    let states = |key: &str| document.get(key).is_some();
-    (is_nominal(path) && !states("inertia") && !states("nominal")).then(|| {
+    (is_nominal(path) && document.get("inertia").is_none()).then(|| {
         format!(
             "{word} describes a nominal simulator by its frequency; a simulation needs inertia, damping, stiffness and rest_angle \
              in [nominal], as in configs/default-record.toml and in the repaired.toml of a diagnosis"
