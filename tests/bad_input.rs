@@ -60,6 +60,21 @@ fn what_cannot_be_simulated_is_refused() {
     }
 }
 
+#[test]
+fn a_name_that_is_nearly_right_is_answered_with_the_right_one() {
+    let record = "experiments/default-record/record.csv";
+    let refused = trainer(&["diagnose", record, "--nominal", "nominal.toml", "--without", "coulomb"]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert!(message.contains("did you mean coulomb_friction?"), "{message}");
+    let message = refusal(&["no-such-configuration.toml"]);
+    assert!(message.contains("(looked for in "), "{message}");
+    let scratch = tempfile::tempdir().unwrap();
+    let guess = scratch.path().join("nominal.toml");
+    std::fs::write(&guess, "natural_frequency = 3.5\ndamping_ratio = 0.01\n").unwrap();
+    let message = refusal(&["simulate", guess.to_str().unwrap()]);
+    assert!(message.contains("describes a nominal simulator by its frequency"), "{message}");
+}
+
 /// A record of a decaying oscillation, one sample a line.
 fn decay(samples: usize) -> String {
     let mut text = "time_s,angle_rad\n".to_owned();

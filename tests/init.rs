@@ -83,6 +83,78 @@ fn walk(folder: &Path) -> Vec<String> {
     found
 }
 
+/// Two logs of one system in a folder: looked at together, and diagnosed as printed.
+#[test]
+fn a_folder_of_logs_is_one_system() {
+    let scratch = tempfile::tempdir().unwrap();
+    let logs = scratch.path().join("logs");
+    std::fs::create_dir(&logs).unwrap();
+    let of = |name: &str, text: &str| write(&logs, name, text);
+    of("README.txt", "two releases of the pendulum");
+    let files = files();
+    let plain = &files[0].1;
+    // The second release is seen from half a second on, so that it is another record.
+    let later: Vec<&str> = plain.lines().take(1).chain(plain.lines().skip(51)).collect();
+    of("one.csv", plain);
+    of("two.csv", &later.join("\n"));
+    let found = said(&shell("trainer init logs --json", scratch.path()));
+    assert_eq!(found["logs"].as_array().unwrap().len(), 2, "{found}");
+    let next = found["next"].as_array().unwrap();
+    assert_eq!(next[0], "trainer diagnose logs --nominal logs-nominal/nominal.toml");
+    let diagnosed = said(&shell(&format!("{} --json", next[0].as_str().unwrap()), scratch.path()));
+    assert_eq!(diagnosed["records"].as_array().unwrap().len(), 2, "{}", diagnosed["records"]);
+    let estimated = said(&shell(&format!("{} --json", next[1].as_str().unwrap()), scratch.path()));
+    assert!((number(&estimated, "/estimate/zeta") * 22.0 / 0.15 - 1.0).abs() < 0.01);
+    let shown = String::from_utf8(shell("trainer init logs/ --out again", scratch.path()).stdout).unwrap();
+    for words in ["logs/two.csv", "the surest of them: logs/", "trainer diagnose logs/ --nominal again/"] {
+        assert!(shown.contains(words), "{words}: {shown}");
+    }
+    // The simulator that lies with the records is the one that they are compared with.
+    std::fs::copy(scratch.path().join("again/nominal.toml"), logs.join("nominal.toml")).unwrap();
+    let beside = said(&shell("trainer diagnose logs --out beside --json", scratch.path()));
+    assert_eq!(beside["nominal"], "logs/nominal.toml", "{beside}");
+    let faster = plain.lines().skip(1).filter_map(|line| line.split_once(',')).enumerate();
+    let faster = faster.map(|(at, (_, angle))| format!("{},{angle}\n", at as f64 * 0.005));
+    of("three.csv", &format!("time_s,angle_rad\n{}", faster.collect::<String>()));
+    let shown = String::from_utf8(shell("trainer init logs --out third", scratch.path()).stdout).unwrap();
+    assert!(shown.contains("which records of one system hardly do"), "{shown}");
+}
+
+#[test]
+fn a_folder_that_is_none_of_logs_is_refused() {
+    let scratch = tempfile::tempdir().unwrap();
+    let refused = |line: &str, expected: &str| {
+        let output = shell(line, scratch.path());
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{line}: {message}");
+        assert_eq!(message.trim_end().lines().count(), 1, "{message}");
+        assert!(message.contains(expected), "{line}: no `{expected}` in {message}");
+    };
+    std::fs::create_dir(scratch.path().join("empty")).unwrap();
+    let (_, text, _, _) = files().swap_remove(0);
+    write(scratch.path(), "log.csv", &text);
+    write(scratch.path(), "nominal.toml", "natural_frequency_rad_s = 22.0\ndamping_ratio = 0.007\n");
+    for line in ["trainer init empty", "trainer diagnose empty --nominal nominal.toml"] {
+        refused(
+            line,
+            "empty: holds no log: no file in it ends in .csv, .tsv, .txt, .log or .dat; name the records",
+        );
+    }
+    std::fs::create_dir_all(scratch.path().join("day/morning")).unwrap();
+    write(&scratch.path().join("day/morning"), "log.csv", &text);
+    refused("trainer init day", "there are some in day/morning");
+    refused(
+        "trainer day/morning",
+        "is a folder of logs, not a configuration; look at them with `trainer init ",
+    );
+    refused("trainer diagnose day/morning", "`trainer init day/morning` makes a first guess");
+    write(&scratch.path().join("day/morning"), "diagnosis.json", "{}");
+    refused(
+        "trainer diagnose day/morning --nominal nominal.toml",
+        "day/morning: is the folder of a finished run",
+    );
+}
+
 #[test]
 fn nothing_is_overwritten_and_what_says_nothing_is_refused() {
     let scratch = tempfile::tempdir().unwrap();

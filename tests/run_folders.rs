@@ -160,11 +160,18 @@ fn a_report_made_again_is_the_same_to_the_byte() {
 }
 
 #[test]
-fn a_report_of_a_folder_that_is_no_run_names_the_file() {
+fn a_folder_that_is_no_run_is_told_as_one() {
     let folder = tempfile::tempdir().unwrap();
-    let output = trainer(&["report", folder.path().to_str().unwrap()]);
-    assert_eq!(output.status.code(), Some(2));
-    assert!(String::from_utf8(output.stderr).unwrap().contains("cannot read"));
+    let file = folder.path().join("record.csv");
+    std::fs::write(&file, "t,angle\n0,1\n").unwrap();
+    for (command, place) in
+        [("report", folder.path()), ("report", file.as_path()), ("verify", file.as_path())]
+    {
+        let output = trainer(&[command, place.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(2));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains("is not a finished run: it holds none of its files"), "{message}");
+    }
 }
 
 #[test]

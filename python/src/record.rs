@@ -210,14 +210,9 @@ impl NativeRecord {
     /// `position`, `velocity` or `acceleration`.
     #[getter]
     fn quantity(&self) -> &'static str {
-        let quantity = match &self.held {
-            Held::Arrays { about, .. } => about.observed_quantity(),
-            Held::Own(record) => record.quantity(),
-        };
-        match quantity {
-            Quantity::Position => "position",
-            Quantity::Velocity => "velocity",
-            Quantity::Acceleration => "acceleration",
+        match &self.held {
+            Held::Arrays { about, .. } => about.observed_quantity().name(),
+            Held::Own(record) => record.quantity().name(),
         }
     }
 

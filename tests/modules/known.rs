@@ -68,5 +68,4 @@ pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("record", "clock::decide", "one question after another, each with its sentence"),
     ("record", "csv_file::parse", "one header, its columns and its rows"),
     ("symbolic", "constants::fit_constants", "one iteration of a published method, in its order"),
-    ("workflow", "result::result", "one file, field by field"),
 ];

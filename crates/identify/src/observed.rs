@@ -1,10 +1,17 @@
 //! What a record says of its input and of what its sensor observes.
 
-use record::{Quantity, Record};
+use record::{Clock, Quantity, Record};
 
-/// The input where it drives anything: one that never changes tells no gain.
-pub(crate) fn input(record: &Record) -> Option<&[f64]> {
-    record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))
+/// Times and values of the input where it drives anything, with those of rows that hold no value of the sensor's; an input
+/// that never changes tells no gain.
+pub(crate) fn input(record: &Record, clock: &Clock) -> Option<Vec<(f64, f64)>> {
+    let own = record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))?;
+    let between =
+        clock.input_row_times_s(record).into_iter().zip(record.input_rows().iter().map(|row| row.input));
+    let mut input: Vec<(f64, f64)> =
+        clock.times_s.iter().copied().zip(own.iter().copied()).chain(between).collect();
+    input.sort_by(|one, other| one.0.total_cmp(&other.0));
+    Some(input)
 }
 
 /// How often the observed quantity was differentiated.

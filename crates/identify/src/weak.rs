@@ -95,7 +95,8 @@ struct Samples<'a> {
     /// Observed values without their mean, which only the shift would see.
     values: Vec<f64>,
     mean: f64,
-    input: Option<&'a [f64]>,
+    /// Times and values of the input, of rows between the samples too.
+    input: Option<Vec<(f64, f64)>>,
     /// Time derivatives that the sensor has taken already.
     order: usize,
     /// The usual step between samples, in seconds.
@@ -109,7 +110,7 @@ impl<'a> Samples<'a> {
             times: &clock.times_s,
             values: record.values().iter().map(|value| value - mean).collect(),
             mean,
-            input: input(record),
+            input: input(record, clock),
             order: order(record.quantity()),
             step: 1.0 / clock.sample_rate_hz,
         }
@@ -157,27 +158,37 @@ impl<'a> Samples<'a> {
         if times.len() < 8 || times.windows(2).any(|pair| matches!(pair, [a, b] if b - a > GAP * self.step)) {
             return None;
         }
-        let (mut target, mut entries) = (0.0, [0.0; 4]);
-        for (at, time) in times.iter().enumerate() {
-            // Trapezoids; the windows vanish at their ends, where one neighbor is missing.
-            let before = at.checked_sub(1).and_then(|at| times.get(at)).unwrap_or(time);
-            let after = times.get(at + 1).unwrap_or(time);
-            let weight = 0.5 * (after - before);
-            let derivatives = window(2.0 * (time - start) / width - 1.0, 2.0 / width);
-            let [phi, slope, curvature] = derivatives.map(|value| weight * value);
+        let (mut target, [mut damping, mut stiffness, mut shift, mut gain]) = (0.0, [0.0; 4]);
+        let derivatives = |time: f64| window(2.0 * (time - start) / width - 1.0, 2.0 / width);
+        for (at, (time, weight)) in trapezoids(times.iter().copied()).enumerate() {
+            let [phi, slope, curvature] = derivatives(time).map(|value| weight * value);
             let value = self.values.get(from + at)?;
             target += curvature * value;
-            let [damping, stiffness, shift, gain] = &mut entries;
-            *damping += slope * value;
-            *stiffness -= phi * (value + self.mean);
-            *shift += phi;
-            if let Some(input) = self.input {
-                let sign = if self.order == 1 { -1.0 } else { 1.0 };
-                *gain += sign * [phi, slope, curvature].get(self.order)? * input.get(from + at)?;
+            damping += slope * value;
+            stiffness -= phi * (value + self.mean);
+            shift += phi;
+        }
+        if let Some(input) = &self.input {
+            let from = input.partition_point(|(time, _)| *time < start);
+            let to = input.partition_point(|(time, _)| *time <= start + width);
+            let pushes = input.get(from..to)?;
+            let sign = if self.order == 1 { -1.0 } else { 1.0 };
+            for ((time, weight), (_, push)) in trapezoids(pushes.iter().map(|(time, _)| *time)).zip(pushes) {
+                gain += sign * weight * derivatives(time).get(self.order)? * push;
             }
         }
-        Some((target, entries))
+        Some((target, [damping, stiffness, shift, gain]))
     }
+}
+
+/// Each time with its weight in an integral by trapezoids; windows vanish at their ends, where one neighbor is missing.
+fn trapezoids(times: impl Iterator<Item = f64> + Clone) -> impl Iterator<Item = (f64, f64)> {
+    let before = std::iter::once(None).chain(times.clone().map(Some));
+    let after = times.clone().skip(1).map(Some).chain([None]);
+    let beside = before.zip(after);
+    times
+        .zip(beside)
+        .map(|(time, (before, after))| (time, 0.5 * (after.unwrap_or(time) - before.unwrap_or(time))))
 }
 
 /// The window φ(s) = (1 − s²)⁴ on −1 to 1 with its first two derivatives in time, where ds/dt = `rate`.

@@ -8,9 +8,9 @@
 use crate::error::Fault;
 use crate::line::Line;
 use crate::lost::Numbers;
-use crate::record::Record;
+use crate::record::{InputRow, Record};
 use crate::stamps::{StampStatistics, stamp_rounding, statistics};
-use crate::words::counted;
+use crate::words::{counted, two_digits};
 use serde::{Deserialize, Serialize};
 
 /// What a configuration asks for.
@@ -142,6 +142,28 @@ impl Clock {
         })
     }
 
+    /// Time of each of the record's [`Record::input_rows`], in seconds: by its stamp where stamps are believed, else by the number
+    /// of its row between those of the samples beside it.
+    #[must_use]
+    pub fn input_row_times_s(&self, record: &Record) -> Vec<f64> {
+        debug_assert_eq!(self.times_s.len(), record.len(), "a clock has a time for every sample");
+        // Where rows are not numbered none lies between.
+        let rows = record.rows().unwrap_or_default();
+        let time = |own: &InputRow| {
+            let after = rows.partition_point(|row| *row <= own.row);
+            let (before, beside) = (after.checked_sub(1)?, after);
+            let [first, last] = [before, beside].map(|at| Some((*rows.get(at)?, *self.times_s.get(at)?)));
+            let ((first, from), (last, to)) = first.zip(last)?;
+            Some(from + (to - from) * (own.row - first) as f64 / (last - first) as f64)
+        };
+        let placed = record.input_rows().iter().map(|own| match self.kind {
+            ClockKind::Host => own.stamp_s,
+            // Between two samples, as the record has checked.
+            _ => time(own).unwrap_or(own.stamp_s),
+        });
+        placed.collect()
+    }
+
     /// Time of the first sample, in seconds.
     #[must_use]
     pub fn start_s(&self) -> f64 {
@@ -194,26 +216,26 @@ fn decide(stamps: &[f64], found: &StampStatistics, line: &Line) -> (ClockKind, S
     }
     if let Some(rounding) = found.rounding_s.filter(|step| found.largest_deviation_s <= *step) {
         let reason = format!(
-            "an even clock of {rate:.4} Hz reproduces every stamp to within the {:.3} ms the stamps \
+            "an even clock of {rate:.4} Hz reproduces every stamp to within the {} ms the stamps \
              are rounded to",
-            1e3 * rounding
+            two_digits(1e3 * rounding)
         );
         return even(reason);
     }
     if let Some(rounding) = found.rounding_s.filter(|step| found.left_by_bend_s <= *step) {
         let reason = format!(
-            "the stamps bend away from an even clock of {rate:.4} Hz by {:.3} ms and lie within the {:.3} ms that they \
+            "the stamps bend away from an even clock of {rate:.4} Hz by {} ms and lie within the {} ms that they \
              are rounded to of a parabola: the logger's clock drifts against the sensor's",
-            1e3 * found.bend_s,
-            1e3 * rounding
+            two_digits(1e3 * found.bend_s),
+            two_digits(1e3 * rounding)
         );
         return even(reason);
     }
     if preference > SIGNIFICANT {
         let reason = format!(
             "the values run more smoothly on an even clock of {rate:.2} Hz than on the stamps ({preference:.1} \
-             standard errors), so the stamps' jitter of {:.3} ms is the host's",
-            1e3 * found.deviation_s
+             standard errors), so the stamps' jitter of {} ms is the host's",
+            two_digits(1e3 * found.deviation_s)
         );
         return even(reason);
     }

@@ -57,7 +57,8 @@ impl From<Filter> for String {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Missing {
-    /// A gap: the line is left out and its place in time stays empty. Clocks that are even in the index count it, and
+    /// A gap: the line is left out and its place in time stays empty; where the observed cell alone is missing its input is
+    /// kept ([`Record::input_rows`](crate::Record::input_rows)). Clocks that are even in the index count it, and
     /// samples on either side of it are no neighbors.
     #[default]
     Segment,

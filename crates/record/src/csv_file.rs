@@ -1,16 +1,19 @@
 //! The `csv` format: a header with column names, then numbers.
 
 use crate::columns::{Filter, Missing};
+use crate::copies::copies;
 use crate::dialect::{self, Layout, is_date, is_missing};
 use crate::error::Fault;
 use crate::heading::{Heading, Measure};
 use crate::options::ReadOptions;
 use crate::parsed::Parsed;
 use crate::reading::{ColumnReading, Reading};
+use crate::record::InputRow;
 use crate::roles::{Column, Kind, Pick, Roles, assumed_unit, quantity};
 use crate::statement::Statements;
 use crate::times::{Stamp, Times, Told, seconds};
 use crate::unit::{TimeUnit, Unit};
+use crate::words::counted;
 use std::collections::BTreeSet;
 
 /// Rows from which the kind of a column is told.
@@ -121,7 +124,8 @@ struct Samples {
     /// Numbers of the lines among those chosen.
     numbers: Vec<usize>,
     stamps: Vec<Stamp>,
-    values: Vec<f64>,
+    /// None on a line that lacks the observed cell alone: its input acts all the same.
+    values: Vec<Option<f64>>,
     input: Vec<f64>,
     missing_cells: usize,
     missing_lines: usize,
@@ -135,6 +139,14 @@ struct Chosen {
     nanoseconds: Option<usize>,
     value: Pick,
     input: Option<Pick>,
+}
+
+impl Chosen {
+    /// Their numbers, the value's first.
+    fn columns(&self) -> Vec<usize> {
+        let picks = [Some(self.value), self.input, self.time].map(|pick| pick.map(|pick| pick.at));
+        picks.into_iter().chain([self.nanoseconds]).flatten().collect()
+    }
 }
 
 /// Reads the text of a file of columns.
@@ -162,7 +174,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         input,
     };
     let rows = table.chosen(filter.as_ref())?;
-    let samples = read(&table, &chosen, &rows)?;
+    let samples = read(&table, &chosen, &rows, asked.missing)?;
     if let (Missing::Refuse, Some((line, at))) = (asked.missing, samples.first_missing) {
         let column = table.title(at).to_owned();
         return Err(Fault::MissingCells { line, column, count: samples.missing_cells });
@@ -201,17 +213,41 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         ..Reading::default()
     };
     let mut parsed = Parsed::new(unit, statements, reading);
-    for ((line, stamp), value) in samples.lines.iter().zip(&stamps).zip(&samples.values) {
-        let pushed = parsed.push(*line, *stamp, value * unit.to_si());
+    let copies =
+        if time.is_some() { copies(&stamps, &samples.values, &samples.input) } else { BTreeSet::new() };
+    findings.extend(copied(copies.len()));
+    let (mut numbers, mut left_out) = (Vec::new(), 0);
+    for (at, ((line, stamp), number)) in samples.lines.iter().zip(&stamps).zip(&samples.numbers).enumerate() {
+        if copies.contains(&at) {
+            left_out += 1;
+            continue;
+        }
+        let number = number - left_out;
+        let input = samples.input.get(at).map(|value| value * input_factor);
+        let Some(value) = samples.values.get(at).copied().flatten() else {
+            let row = |input| InputRow { row: number, stamp_s: *stamp, input };
+            parsed.input_rows.extend(input.map(row));
+            continue;
+        };
+        let pushed = parsed.push(*line, *stamp, value * unit.to_si(), input);
         // Stamps that run backward may be those of several series.
         pushed.map_err(|fault| filter.is_none().then(|| table.series(true)).flatten().unwrap_or(fault))?;
+        numbers.push(number);
     }
-    samples.input.iter().for_each(|value| parsed.push_input(value * input_factor));
-    parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(samples.numbers);
+    parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(numbers);
     let doubted = assumed && heading.unknown.is_none();
-    findings.extend(doubted.then(|| doubtful_unit(&samples.values, unit)).flatten());
+    let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
+    findings.extend(doubted.then(|| doubtful_unit(&values, unit)).flatten());
     parsed.findings = findings;
     Ok(parsed)
+}
+
+/// A sentence where lines were left out that stand in the file twice.
+fn copied(count: usize) -> Option<String> {
+    let which = if count == 1 { "repeats" } else { "repeat" };
+    (count > 0).then(|| {
+        format!("{} {which} the one before, stamp and all, and were read once", counted(count, "line"))
+    })
 }
 
 fn heading<'a>(table: &'a Table<'_>, at: usize) -> &'a Heading {
@@ -238,19 +274,16 @@ fn nanoseconds(columns: &[Column], time: usize) -> Option<usize> {
 }
 
 /// Reads the cells of the chosen columns.
-fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result<Samples, Fault> {
+fn read(
+    table: &Table<'_>,
+    chosen: &Chosen,
+    rows: &[(u64, Vec<&str>)],
+    treated: Missing,
+) -> Result<Samples, Fault> {
     let dialect = table.layout.dialect;
     let width = table.columns.len();
     let mut samples = Samples::default();
-    let columns: Vec<usize> = [
-        Some(chosen.value.at),
-        chosen.input.map(|pick| pick.at),
-        chosen.time.map(|pick| pick.at),
-        chosen.nanoseconds,
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
+    let columns = chosen.columns();
     // A value column is always among them.
     let needed = columns.iter().max().map_or(0, |at| at + 1);
     for (number, (line, row)) in rows.iter().enumerate() {
@@ -274,7 +307,10 @@ fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result
             samples.missing_cells += missing.len();
             samples.missing_lines += 1;
             samples.first_missing.get_or_insert((*line, *first));
-            continue;
+            let acts = chosen.input.is_some() && treated == Missing::Segment;
+            if !(acts && missing == [chosen.value.at]) {
+                continue;
+            }
         }
         if let Some(time) = chosen.time {
             let stamp = |at: usize| {
@@ -286,7 +322,7 @@ fn read(table: &Table<'_>, chosen: &Chosen, rows: &[(u64, Vec<&str>)]) -> Result
                 None => whole,
             });
         }
-        samples.values.push(read(chosen.value.at)?);
+        samples.values.push(if missing.is_empty() { Some(read(chosen.value.at)?) } else { None });
         if let Some(input) = chosen.input {
             samples.input.push(read(input.at)?);
         }

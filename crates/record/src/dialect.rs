@@ -29,7 +29,7 @@ pub(crate) struct Layout<'a> {
 }
 
 /// Ways of writing, in the order of trial: of two that read as many numbers the first is taken.
-const TRIED: [(char, bool); 8] = [
+const TRIED: [(char, bool); 10] = [
     (';', false),
     (';', true),
     ('\t', false),
@@ -38,6 +38,8 @@ const TRIED: [(char, bool); 8] = [
     (',', true),
     (' ', false),
     (' ', true),
+    ('|', false),
+    ('|', true),
 ];
 
 /// Lines from which the way of writing is told.
@@ -85,6 +87,7 @@ impl Dialect {
             ';' => "semicolon",
             '\t' => "tab",
             ' ' => "blank",
+            '|' => "bar",
             _ => "comma",
         }
     }
@@ -226,7 +229,8 @@ fn in_comment<'a>(
             && cells.iter().all(|cell| cell.contains(char::is_alphabetic) && !cell.contains(": "))
     };
     let Some((titles, line)) = found.map(titles).filter(is_header).last() else {
-        return Err(Fault::NoHeader { line: first, found: written.trim().chars().take(SHOWN).collect() });
+        let found = written.trim().chars().take(SHOWN).collect();
+        return Err(Fault::NoHeader { line: first, found, separator: dialect.separator });
     };
     Ok(Layout { dialect, line, titles, units: None, preamble: 0, rows: lines.to_vec() })
 }

@@ -31,6 +31,14 @@ pub enum Fault {
         /// Fewest samples that make a record.
         needed: usize,
     },
+    /// The file is of a kind that is known, and no text.
+    #[error("is {kind}, not a text file with columns; {remedy}")]
+    OtherFormat {
+        /// Kind of the file.
+        kind: &'static str,
+        /// How to get at its columns.
+        remedy: &'static str,
+    },
     /// The text is not UTF-8.
     #[error(
         "is not UTF-8 text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1"
@@ -52,13 +60,15 @@ pub enum Fault {
     /// Numbers where the columns' names should be.
     #[error(
         "the first line holds numbers, `{found}`; expected a header with the columns' names above them: put a line \
-         such as time_s,angle_rad in front"
+         such as time_s{separator}angle_rad in front"
     )]
     NoHeader {
         /// The first line's number, from 1.
         line: u64,
         /// The line as written, its beginning.
         found: String,
+        /// The sign between its cells.
+        separator: char,
     },
     /// A column is not there.
     #[error("there is no column `{wanted}`; the header has {found}. Set `{key}` to the column's name")]

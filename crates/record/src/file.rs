@@ -58,9 +58,30 @@ pub fn read_text(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<(Rec
     Ok((record, source))
 }
 
+/// Kinds of files that hold logs and are no text: how they begin, what they are, and how to get at their columns.
+const OTHERS: &[(&[u8], &str, &str)] = &[
+    (b"PK\x03\x04", "a ZIP archive, as Excel's workbooks (.xlsx) are", "save the sheet as CSV"),
+    (b"\xd0\xcf\x11\xe0", "an Excel workbook (.xls)", "save the sheet as CSV"),
+    (b"PAR1", "a Parquet file", "from Python, ringdown_lab.logs.read_parquet reads it"),
+    (b"MATLAB 5.0", "a MATLAB file", "from Python, ringdown_lab.logs.read_mat reads it"),
+    (b"\x89HDF", "an HDF5 file, as MATLAB's of version 7.3 are", "save the columns as CSV"),
+    (b"\x89MCAP", "an MCAP file", "from Python, ringdown_lab.logs.read_mcap reads it"),
+    (b"#ROSBAG", "a ROS bag", "from Python, ringdown_lab.logs.read_rosbag reads it"),
+    (
+        b"SQLite format 3",
+        "an SQLite database, as a ROS 2 bag is",
+        "from Python, ringdown_lab.logs.read_rosbag reads a bag",
+    ),
+];
+
 /// The text that bytes are in UTF-8, in UTF-16 where they begin with its byte-order mark, else in Latin-1, which older
 /// loggers and spreadsheets write. Bytes that no text holds are none.
 pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
+    if let Some((_, kind, remedy)) =
+        OTHERS.iter().copied().find(|(beginning, ..)| bytes.starts_with(beginning))
+    {
+        return Err(Fault::OtherFormat { kind, remedy });
+    }
     let error = match std::str::from_utf8(bytes) {
         Ok(text) => return Ok(Cow::Borrowed(text)),
         Err(error) => Fault::NotText { offset: error.valid_up_to() },

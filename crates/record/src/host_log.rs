@@ -38,7 +38,7 @@ pub(crate) fn parse(text: &str) -> Result<Parsed, Fault> {
         let stamp = number(elapsed, line, "Time_Elapsed(s)")?;
         let angle = number(angle, line, "Angle(deg)")?;
         wall.add(wall_clock_seconds(wall_clock, line)?, stamp);
-        parsed.push(line, stamp, angle * Unit::Degree.to_si())?;
+        parsed.push(line, stamp, angle * Unit::Degree.to_si(), None)?;
     }
     parsed.findings.extend(wall.finding());
     Ok(parsed)

@@ -9,6 +9,7 @@
 
 mod clock;
 mod columns;
+mod copies;
 mod csv_file;
 mod dialect;
 mod error;
@@ -41,11 +42,11 @@ pub use lattice::Lattice;
 pub use look::{ColumnLook, Look, look};
 pub use options::{Format, ReadOptions};
 pub use reading::{ColumnReading, Coordinate, Reading};
-pub use record::{Quantity, Record};
+pub use record::{InputRow, Quantity, Record};
 pub use stamps::StampStatistics;
 pub use statement::{Origin, Statements};
 pub use unit::{TimeUnit, Unit};
-pub use words::counted;
+pub use words::{counted, two_digits};
 
 /// Fewest samples that make a record.
 pub const FEWEST_SAMPLES: usize = 8;

@@ -3,7 +3,7 @@
 use crate::error::Fault;
 use crate::options::ReadOptions;
 use crate::reading::{Coordinate, Reading};
-use crate::record::Record;
+use crate::record::{InputRow, Record};
 use crate::statement::Statements;
 use crate::unit::{Dimension, Unit};
 
@@ -15,6 +15,8 @@ pub(crate) struct Parsed {
     input: Vec<f64>,
     /// Number of each sample's row, where rows hold no value and leave a gap.
     pub(crate) rows: Option<Vec<usize>>,
+    /// Input at rows that hold no value.
+    pub(crate) input_rows: Vec<InputRow>,
     statements: Statements,
     pub(crate) findings: Vec<String>,
     pub(crate) reading: Reading,
@@ -28,6 +30,7 @@ impl Parsed {
             values: Vec::new(),
             input: Vec::new(),
             rows: None,
+            input_rows: Vec::new(),
             statements,
             findings: Vec::new(),
             reading,
@@ -35,17 +38,20 @@ impl Parsed {
     }
 
     /// Adds a sample; here, and not in [`Record::new`], the line in the file is still known.
-    pub(crate) fn push(&mut self, line: u64, stamp: f64, value: f64) -> Result<(), Fault> {
+    pub(crate) fn push(
+        &mut self,
+        line: u64,
+        stamp: f64,
+        value: f64,
+        input: Option<f64>,
+    ) -> Result<(), Fault> {
         if let Some(&previous) = self.stamps_s.last().filter(|&&previous| stamp < previous) {
             return Err(Fault::TimeDecreases { line, previous, stamp });
         }
         self.stamps_s.push(stamp);
         self.values.push(value);
+        self.input.extend(input);
         Ok(())
-    }
-
-    pub(crate) fn push_input(&mut self, value: f64) {
-        self.input.push(value);
     }
 
     pub(crate) fn finish(
@@ -58,7 +64,7 @@ impl Parsed {
         let span = self.stamps_s.last().zip(self.stamps_s.first()).map_or(0.0, |(last, first)| last - first);
         let record = Record::new(self.stamps_s, self.values, input, quantity, self.unit.si())?;
         let record = match self.rows {
-            Some(rows) => record.with_rows(rows),
+            Some(rows) => record.with_rows(rows).with_input_rows(self.input_rows),
             None => record,
         };
         let rate_hz = (record.len() + record.empty_rows() - 1) as f64 / span;

@@ -86,12 +86,7 @@ impl Reading {
                 options.push(("missing", self.missing.name().to_owned()));
             }
         }
-        let quantity = match self.quantity {
-            Quantity::Position => "position",
-            Quantity::Velocity => "velocity",
-            Quantity::Acceleration => "acceleration",
-        };
-        options.push(("quantity", quantity.to_owned()));
+        options.push(("quantity", self.quantity.name().to_owned()));
         options
     }
 

@@ -18,6 +18,18 @@ pub enum Quantity {
     Acceleration,
 }
 
+impl Quantity {
+    /// The name as configurations and results write it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Position => "position",
+            Self::Velocity => "velocity",
+            Self::Acceleration => "acceleration",
+        }
+    }
+}
+
 /// A record in SI units, stamps as written.
 ///
 /// Invariants, checked when it is made: at least [`FEWEST_SAMPLES`] samples, every number finite,
@@ -32,6 +44,19 @@ pub struct Record {
     unit: &'static str,
     /// Number of each sample among the rows of its file; none where every row holds a sample.
     rows: Option<Vec<usize>>,
+    /// Input at rows between the samples, which hold an input and no value.
+    input_rows: Vec<InputRow>,
+}
+
+/// Input at a row of a file that holds no value: the sensor said nothing, and the input acted all the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InputRow {
+    /// Number of the row.
+    pub row: usize,
+    /// Its stamp as written, in seconds.
+    pub stamp_s: f64,
+    /// The input, in its own unit.
+    pub input: f64,
 }
 
 impl Record {
@@ -51,7 +76,7 @@ impl Record {
         unit: &'static str,
     ) -> Result<Self, Fault> {
         Self::check(&stamps_s, &values, input.as_deref())?;
-        Ok(Self { stamps_s, values, input, quantity, unit, rows: None })
+        Ok(Self { stamps_s, values, input, quantity, unit, rows: None, input_rows: Vec::new() })
     }
 
     /// Checks columns as [`Record::new`] does, without taking them.
@@ -97,6 +122,45 @@ impl Record {
         let increase = rows.iter().zip(rows.iter().skip(1)).all(|(one, next)| one < next);
         let usable = rows.len() == self.len() && increase;
         Self { rows: usable.then_some(rows), ..self }
+    }
+
+    /// The same with the input at rows that hold an input and no value. Those are kept that lie between samples whose rows are
+    /// numbered ([`Record::with_rows`]), by their number and by their stamp.
+    #[must_use]
+    pub fn with_input_rows(self, rows: Vec<InputRow>) -> Self {
+        // Without numbered rows, or an input, none lies between.
+        let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or_default();
+        let is_between = |row: &InputRow| {
+            let after = numbers.partition_point(|number| *number <= row.row);
+            let ends = after.checked_sub(1).and_then(|before| {
+                let stamps = self.stamps_s.get(before..=after)?;
+                Some((*numbers.get(before)?, *stamps.first()?, *stamps.last()?))
+            });
+            ends.is_some_and(|(number, from, to)| number < row.row && (from..=to).contains(&row.stamp_s))
+        };
+        let mut input_rows: Vec<InputRow> =
+            rows.into_iter().filter(|row| row.input.is_finite() && is_between(row)).collect();
+        input_rows.sort_by_key(|row| row.row);
+        input_rows.dedup_by_key(|row| row.row);
+        Self { input_rows, ..self }
+    }
+
+    /// Input at rows between the samples that hold an input and no value, by their numbers; empty where there are none.
+    #[must_use]
+    pub fn input_rows(&self) -> &[InputRow] {
+        &self.input_rows
+    }
+
+    /// The same with functions of its values and of its inputs, also of those between samples.
+    ///
+    /// # Errors
+    /// As [`Record::new`].
+    pub fn mapped(&self, value: impl Fn(f64) -> f64, input: impl Fn(f64) -> f64) -> Result<Self, Fault> {
+        let values = self.values.iter().copied().map(value).collect();
+        let own = self.input.as_ref().map(|own| own.iter().copied().map(&input).collect());
+        let mapped = Self::new(self.stamps_s.clone(), values, own, self.quantity, self.unit)?;
+        let input_rows = self.input_rows.iter().map(|row| InputRow { input: input(row.input), ..*row });
+        Ok(Self { rows: self.rows.clone(), input_rows: input_rows.collect(), ..mapped })
     }
 
     /// Number of each sample among the rows of its file, where rows between them hold no value.

@@ -53,6 +53,7 @@ fn files_of_other_programs_are_read_without_options() {
     let epoch = |index: usize| 1_714_564_800_000_000_000_u64 + 10_000_000 * index as u64;
     let files = [
         file("Zeit [ms];Winkel [deg]", |_, t, a| format!("{};{}", comma(1e3 * t, 1), comma(deg(a), 5))),
+        file("t|angle", |_, t, a| format!("{t:.2}|{a:.7}")),
         file("t\tangle", |_, t, a| format!("{t:.2}\t{a:.7}")),
         file("time   angle", |_, t, a| format!("  {t:.2}   {a:.7}")),
         file("# t angle", |_, t, a| format!("{t:.2} {a:.7}")),
@@ -179,6 +180,47 @@ fn rows_of_another_sensor_are_no_loss() {
     let (record, clock) = clock_with(&text, Missing::Segment, None, ClockChoice::Auto);
     assert_eq!((record.len(), clock.statistics.gaps, clock.statistics.lost), (1000, 0, 0));
     assert!((clock.times_s[999] - clock.times_s[0] - 9.99).abs() < 1e-9, "{}", clock.reason);
+}
+
+/// Lines that an export holds twice were taken for bursts, and the rate for half as high again.
+#[test]
+fn a_line_that_stands_twice_is_read_once() {
+    let text = file("time_s,angle_rad", |index, time, angle| {
+        let line = format!("{time:.2},{angle:.7}");
+        if index % 10 == 3 { format!("{line}\n{line}") } else { line }
+    });
+    let (record, source) = read(&text);
+    holds_the_swing(&(record.clone(), source.clone()), 1e-6);
+    assert!(source.findings[0].ends_with("lines repeat the one before, stamp and all, and were read once"));
+    let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+    assert_eq!((clock.statistics.repeated, clock.statistics.lost), (0, 0), "{}", clock.reason);
+}
+
+/// Where the sensor's cell alone is missing the input is known; a line without an input tells nothing of it.
+#[test]
+fn the_input_of_a_line_without_a_value_is_kept() {
+    let stamped = with_a_hole("time_s,angle_rad,torque [mN m]", |index, time, cell| match index {
+        310 => format!("{time:.2},{cell},"),
+        _ => format!("{time:.2},{cell},{}", 1000 * index),
+    });
+    let bare = stamped.lines().map(|line| line.split_once(',').unwrap().1).collect::<Vec<_>>().join("\n");
+    for (text, rate) in [(&stamped, None), (&bare, Some(100.0))] {
+        for choice in [ClockChoice::UniformIndex, ClockChoice::Host] {
+            let (record, clock) = clock_with(text, Missing::Segment, rate, choice);
+            assert_eq!((record.len(), record.input().unwrap().len()), (967, 967));
+            let rows: Vec<usize> = record.input_rows().iter().map(|own| own.row).collect();
+            assert_eq!(rows, (300..333).filter(|row| *row != 310).collect::<Vec<_>>());
+            for (own, time) in record.input_rows().iter().zip(clock.input_row_times_s(&record)) {
+                assert!((own.input - own.row as f64).abs() < 1e-9, "in N m: {own:?}");
+                assert!((time - own.row as f64 / 100.0).abs() < 1e-9, "{choice:?}: {own:?} at {time}");
+            }
+            let doubled = record.mapped(|value| value, |input| 2.0 * input).unwrap();
+            assert_eq!(doubled.input_rows()[0].input, 2.0 * record.input_rows()[0].input);
+            assert_eq!(doubled.rows(), record.rows());
+        }
+    }
+    let (record, _) = clock_with(&stamped, Missing::Drop, None, ClockChoice::Host);
+    assert!(record.input_rows().is_empty(), "a dropped line was never there");
 }
 
 /// Stamps of bursts with a hole: groups are numbered by rows, and nothing counts as lost beside these.
@@ -407,5 +449,23 @@ fn latin_and_utf_16_are_read() {
     for bytes in [latin, wide] {
         let read = read_text("r.csv", &bytes, &ReadOptions::default()).unwrap();
         holds_the_swing(&read, 1e-7);
+    }
+}
+
+#[test]
+fn files_that_are_no_text_are_told_by_their_beginning() {
+    let refused = |bytes: &[u8]| read_text("log", bytes, &ReadOptions::default()).unwrap_err().to_string();
+    let workbook = refused(b"PK\x03\x04\x14\x00");
+    assert_eq!(
+        workbook,
+        "log: is a ZIP archive, as Excel's workbooks (.xlsx) are, not a text file with columns; save the sheet as CSV"
+    );
+    for (bytes, words) in [
+        (&b"PAR1\x15\x04"[..], "logs.read_parquet"),
+        (b"MATLAB 5.0 MAT-file", "logs.read_mat"),
+        (b"\x89MCAP0\r\n", "logs.read_mcap"),
+        (b"#ROSBAG V2.0\n", "logs.read_rosbag"),
+    ] {
+        assert!(refused(bytes).contains(words), "{}", refused(bytes));
     }
 }

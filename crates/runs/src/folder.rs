@@ -291,14 +291,6 @@ impl RunFolder {
         self.disk.remove_file(&path).map_err(RunError::io(&path, "take away"))
     }
 
-    /// Takes a checkpoint away that another one supersedes; one that is not there is no error.
-    ///
-    /// # Errors
-    /// [`RunError::Io`] where the system refuses.
-    pub fn remove_checkpoint(&self, name: &str) -> Result<(), RunError> {
-        self.remove(&format!("{CHECKPOINTS}/{name}"))
-    }
-
     /// Takes all checkpoints away: the run is finished.
     ///
     /// # Errors

@@ -158,6 +158,10 @@ fn text_of(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| match nearest_file(path) {
         _ if path.is_dir() => "it is a folder".to_owned(),
         Some(other) => format!("{error} (did you mean {other}?)"),
+        None if path.is_relative() && !path.exists() => match std::env::current_dir() {
+            Ok(here) => format!("{error} (looked for in {})", here.display()),
+            Err(_) => error.to_string(),
+        },
         None => error.to_string(),
     })
 }

@@ -2,6 +2,7 @@
 
 use settings::{Document, nearest};
 use std::path::Path;
+use workflow::{is_log, logs};
 
 /// The message for a command line whose first words say what is meant, though no command takes them so; `None` where the
 /// command line is to be parsed as usual.
@@ -17,6 +18,9 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     }
     if first == "init" {
         return toml_as_log(rest).or_else(|| absent(rest));
+    }
+    if first == "simulate" {
+        return nominal_as_plan(rest);
     }
     if commands.contains(first) {
         return None;
@@ -34,7 +38,7 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
             "{first} describes a nominal simulator; compare records with it by `trainer diagnose RECORD --nominal {first}`"
         ));
     }
-    is_record(path).then(|| {
+    is_log(path).then(|| {
         format!(
             "{first} is a record, not a configuration; look at it with `trainer init {first}`, estimate its damping with \
              `trainer configs/ols.toml data.path={first}`, or diagnose a simulator with \
@@ -43,14 +47,19 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
     })
 }
 
-/// A finished run given as a configuration.
+/// A finished run, or a folder of logs, given as a configuration.
 fn folder(path: &Path, shown: &str) -> Option<String> {
     let holds = |name: &str| path.join(name).is_file();
-    let is_run = holds("result.json") || holds("diagnosis.json");
-    is_run.then(|| {
-        format!(
+    if holds("result.json") || holds("diagnosis.json") {
+        return Some(format!(
             "{shown} is the folder of a run; `trainer report {shown}` makes its report again, and its configuration is \
              {shown}/config.toml"
+        ));
+    }
+    logs(path).is_ok().then(|| {
+        format!(
+            "{shown} is a folder of logs, not a configuration; look at them with `trainer init {shown}`, or diagnose a \
+             simulator with `trainer diagnose {shown} --nominal NOMINAL.toml`"
         )
     })
 }
@@ -88,10 +97,22 @@ fn record_as_nominal(words: &[String]) -> Option<String> {
     let after = words.iter().zip(words.iter().skip(1)).find(|(option, _)| *option == "--nominal");
     let joined = words.iter().find_map(|word| word.strip_prefix("--nominal="));
     let file = after.map(|(_, file)| file.as_str()).or(joined)?;
-    is_record(Path::new(file)).then(|| {
+    is_log(Path::new(file)).then(|| {
         format!(
             "{file} is a record, not a nominal simulator; --nominal takes a TOML file with inertia, damping, stiffness and \
              rest_angle: `trainer init {file}` writes one"
+        )
+    })
+}
+
+/// A nominal simulator without an inertia, as `trainer init` writes it, in the place of a plan of records.
+fn nominal_as_plan(words: &[String]) -> Option<String> {
+    let (word, path) = positional(words).next()?;
+    let document = Document::parse("", &std::fs::read_to_string(path).ok()?).ok()?;
+    (is_nominal(path) && document.get("inertia").is_none()).then(|| {
+        format!(
+            "{word} describes a nominal simulator by its frequency; a simulation needs inertia, damping, stiffness and rest_angle \
+             in [nominal], as in configs/default-record.toml and in the repaired.toml of a diagnosis"
         )
     })
 }
@@ -114,7 +135,7 @@ fn absent(words: &[String]) -> Option<String> {
     let entries = std::fs::read_dir(own).ok()?;
     let mut known: Vec<String> = entries
         .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-        .filter(|name| is_record(&own.join(name)))
+        .filter(|name| is_log(&own.join(name)))
         .collect();
     known.sort();
     let shown = own.join(nearest(&path.file_name()?.to_string_lossy(), &known)?);
@@ -139,10 +160,4 @@ fn is_nominal(path: &Path) -> bool {
     Document::parse("", &text).is_ok_and(|document| {
         document.get("task").is_none() && known.iter().any(|key| document.get(key).is_some())
     })
-}
-
-/// Whether a file looks like a record: by its name, since a broken configuration is to be told as one.
-fn is_record(path: &Path) -> bool {
-    let extension = path.extension().and_then(|extension| extension.to_str()).unwrap_or_default();
-    path.is_file() && ["csv", "tsv", "txt", "log", "dat"].contains(&extension.to_lowercase().as_str())
 }

@@ -68,6 +68,16 @@ pub enum WorkflowError {
         /// The command that runs it.
         command: String,
     },
+    /// A folder that stands for no records.
+    #[error("{folder}: {problem}; {remedy}")]
+    NoLogs {
+        /// The folder.
+        folder: String,
+        /// Its fault.
+        problem: String,
+        /// What to name in its place.
+        remedy: String,
+    },
     /// One record given twice.
     #[error(
         "{first} and {second} are the same record ({digest}), which would count as two that agree; name each record once"

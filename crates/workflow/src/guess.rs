@@ -2,6 +2,7 @@
 
 use dynamics::Coordinate;
 use identify::{Basis, Estimated, LinearOscillator};
+use record::two_digits;
 use std::fmt::Write;
 
 /// A guess of a nominal simulator as a commented `nominal.toml`.
@@ -125,23 +126,12 @@ pub fn error(estimated: Estimated) -> String {
     two_digits(estimated.std_error)
 }
 
-/// An error to two significant digits: with a power of ten only where that is shorter.
-#[must_use]
-pub fn two_digits(value: f64) -> String {
-    let exponent = value.abs().log10().floor();
-    if (-2.0..4.0).contains(&exponent) {
-        let decimals = (1.0 - exponent).max(0.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.1e}")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::{configuration, digits, nominal_toml};
     use dynamics::Coordinate;
     use identify::{Basis, Estimated, LinearOscillator};
+    use record::two_digits;
 
     fn of(value: f64, std_error: f64) -> Estimated {
         Estimated { value, std_error }

@@ -4,11 +4,21 @@
 //! [`guess`]ed; together they are a [`Question`], whose [`Answer`] holds the diagnosis, the repaired simulator and the content
 //! of `diagnosis.json`. Nothing here parses a command line, prints, or writes a file.
 
-#![cfg_attr(test, allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::indexing_slicing))]
+#![cfg_attr(
+    test,
+    allow(
+        clippy::unwrap_used,
+        clippy::expect_used,
+        clippy::panic,
+        clippy::indexing_slicing,
+        clippy::disallowed_methods
+    )
+)]
 
 mod error;
 pub mod guess;
 pub mod learning;
+mod logs;
 pub mod nominal;
 mod question;
 pub mod read;
@@ -16,6 +26,7 @@ mod repair;
 mod result;
 
 pub use error::{WorkflowError, in_options};
+pub use logs::{is_log, logs};
 pub use question::{Answer, Question};
 pub use read::{Given, Loaded, Reading};
 pub use result::{series_rows, title};

@@ -1,6 +1,7 @@
 //! Records of one system, what is believed of it, and the answer.
 
 use crate::error::WorkflowError;
+use crate::logs::logs;
 use crate::nominal;
 use crate::read::{Given, Loaded, Reading};
 use crate::repair::repaired;
@@ -47,14 +48,15 @@ impl Question {
         Ok(Self { stated, given, nominal })
     }
 
-    /// Reads records and their nominal simulator from files.
+    /// Reads records and their nominal simulator from files; a folder stands for the [`logs`] in it.
     ///
     /// # Errors
     /// [`WorkflowError`] with the file, the place in it and the option to set.
     pub fn read(records: &[PathBuf], nominal: &Path, reading: &Reading) -> Result<Self, WorkflowError> {
         let stated = nominal::read(nominal)?;
         let reading = reading.clone().for_nominal(&stated);
-        let given = records.iter().map(|path| Loaded::read(path, &reading)?.given(&stated));
+        let paths = records.iter().map(|path| logs(path)).collect::<Result<Vec<_>, _>>()?.concat();
+        let given = paths.iter().map(|path| Loaded::read(path, &reading)?.given(&stated));
         let given = given.collect::<Result<Vec<_>, _>>()?;
         Self::new(given, stated, nominal.display().to_string())
     }

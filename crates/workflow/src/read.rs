@@ -232,21 +232,11 @@ fn check_unit(file: &str, record: &Record, coordinate: Coordinate) -> Result<(),
 /// # Errors
 /// As [`Record::new`], of numbers so large that their mean is not finite.
 pub fn centered(record: &Record) -> Result<Record, Fault> {
-    let center = |values: &[f64]| -> Vec<f64> {
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        values.iter().map(|value| value - mean).collect()
-    };
-    let centered = Record::new(
-        record.stamps_s().to_vec(),
-        center(record.values()),
-        record.input().map(center),
-        record.quantity(),
-        record.unit(),
-    )?;
-    Ok(match record.rows() {
-        Some(rows) => centered.with_rows(rows.to_vec()),
-        None => centered,
-    })
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let value = mean(record.values());
+    // Without an input nothing is taken from it.
+    let input = record.input().map_or(0.0, mean);
+    record.mapped(|own| own - value, |own| own - input)
 }
 
 /// Part of half their range that values have to pass, to either side, for a half swing to count.

@@ -31,37 +31,14 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     // Without a record nothing says what is observed: an angle, as everywhere.
     let quantity = first.map(|given| given.quantity).unwrap_or_default();
     let units = beside.repaired.units;
-    let effects = effects(found);
-    let chain = &found.measuring_chain;
     let mut result = DiagnosisResult {
         schema: DIAGNOSIS_SCHEMA.to_owned(),
-        verdict: DiagnosisVerdict {
-            status: found.verdict.status,
-            effects: owned(&found.verdict.effects),
-            confidence: found.verdict.confidence,
-            left_over: Some(found.verdict.left_over),
-            equivalent: found.verdict.equivalent.iter().map(|class| owned(class)).collect(),
-            summary: String::new(),
-        },
-        effects,
+        verdict: verdict(found),
+        effects: effects(found),
         gap: gap(found),
         place: place(found),
-        measuring_chain: ChainSummary {
-            clock: chain.clock.to_owned(),
-            // No record, no reason.
-            clock_reason: first.map(|given| given.row.clock_reason.clone()).unwrap_or_default(),
-            sample_rate_hz: chain.sample_rate_hz,
-            resolution: chain.resolution,
-            noise: chain.noise,
-            findings: chain
-                .findings
-                .iter()
-                .map(|finding| ChainFinding {
-                    effect: finding.effect.map(str::to_owned),
-                    text: finding.text.clone(),
-                })
-                .collect(),
-        },
+        // No record, no reason.
+        measuring_chain: chain(found, first.map_or("", |given| &given.row.clock_reason)),
         calibration: calibration(found, units),
         next_experiment: next_experiment(found),
         seconds: beside.seconds,
@@ -74,22 +51,9 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         nominal: beside.nominal.to_owned(),
         nominal_digest: beside.nominal_digest.to_owned(),
         seed: beside.seed,
-        quantity: match quantity {
-            record::Quantity::Position => "position",
-            record::Quantity::Velocity => "velocity",
-            record::Quantity::Acceleration => "acceleration",
-        }
-        .to_owned(),
+        quantity: quantity.name().to_owned(),
         samples_used: found.samples_used,
-        rivals: found
-            .rivals
-            .iter()
-            .map(|row| RivalRow {
-                effect: row.effect.to_owned(),
-                rival: row.rival.to_owned(),
-                distance: row.distance,
-            })
-            .collect(),
+        rivals: rivals(found),
         detectability: found
             .detectability
             .iter()
@@ -100,16 +64,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
             share_of_gap: found.left_over.share_of_gap,
             over_noise: found.left_over.over_noise,
         }),
-        sets: found
-            .sets
-            .iter()
-            .map(|set| SetRow {
-                effects: owned(&set.effects),
-                probability: set.probability,
-                rms: set.rms,
-                evidence: set.evidence,
-            })
-            .collect(),
+        sets: sets(found),
         rejected: found.rejected.iter().map(|set| owned(set)).collect(),
         equation: Equation { text: equation_text(beside.repaired), latex: equation_latex(beside.repaired) },
         units: [Quantity::Position, Quantity::Velocity, Quantity::Torque]
@@ -119,6 +74,54 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
     };
     result.verdict.summary = report::verdict_sentence(&result);
     result
+}
+
+/// The verdict; its sentence follows from the whole result.
+fn verdict(found: &Diagnosis) -> DiagnosisVerdict {
+    let own = &found.verdict;
+    DiagnosisVerdict {
+        status: own.status,
+        effects: owned(&own.effects),
+        confidence: own.confidence,
+        left_over: Some(own.left_over),
+        equivalent: own.equivalent.iter().map(|class| owned(class)).collect(),
+        summary: String::new(),
+    }
+}
+
+fn chain(found: &Diagnosis, clock_reason: &str) -> ChainSummary {
+    let chain = &found.measuring_chain;
+    let findings = chain.findings.iter().map(|finding| ChainFinding {
+        effect: finding.effect.map(str::to_owned),
+        text: finding.text.clone(),
+    });
+    ChainSummary {
+        clock: chain.clock.to_owned(),
+        clock_reason: clock_reason.to_owned(),
+        sample_rate_hz: chain.sample_rate_hz,
+        resolution: chain.resolution,
+        noise: chain.noise,
+        findings: findings.collect(),
+    }
+}
+
+fn rivals(found: &Diagnosis) -> Vec<RivalRow> {
+    let row = |row: &diagnosis::Rivalry| RivalRow {
+        effect: row.effect.to_owned(),
+        rival: row.rival.to_owned(),
+        distance: row.distance,
+    };
+    found.rivals.iter().map(row).collect()
+}
+
+fn sets(found: &Diagnosis) -> Vec<SetRow> {
+    let row = |set: &diagnosis::SetScore| SetRow {
+        effects: owned(&set.effects),
+        probability: set.probability,
+        rms: set.rms,
+        evidence: set.evidence,
+    };
+    found.sets.iter().map(row).collect()
 }
 
 /// Where the gap lies.

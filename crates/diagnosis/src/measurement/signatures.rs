@@ -9,7 +9,7 @@ pub(crate) use crate::measurement::outliers::kept;
 use crate::measurement::outliers::white_noise;
 use crate::noise::statistics::{mean, mean_and_error, median, normal_above};
 use dynamics::Nominal;
-use record::{ClockKind, StampStatistics, counted};
+use record::{ClockKind, StampStatistics, counted, two_digits};
 
 /// Equal samples in a row at an end of the range that make a flat top, and flat tops that no swing without a
 /// stop shows.
@@ -54,7 +54,7 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
             findings.push(Finding {
                 effect: None,
                 text: format!(
-                    "the values lie on steps of {found:.4e}, the nominal sensor resolves {stated:.4e}"
+                    "the values lie on steps of {found:.2e}, the nominal sensor resolves {stated:.2e}"
                 ),
             });
         }
@@ -157,9 +157,9 @@ fn errors_of_stamps(observations: &Observations, kept: &[bool]) -> Vec<Finding> 
         findings.push(Finding {
             effect: Some("clock_drift"),
             text: format!(
-                "the stamps bend away from an even clock by {:.3} ms ({:.0} standard errors): the logger's clock and the \
+                "the stamps bend away from an even clock by {} ms ({:.0} standard errors): the logger's clock and the \
                  sensor's drift apart",
-                1e3 * stamps.bend_s,
+                two_digits(1e3 * stamps.bend_s),
                 stamps.bend_standard_errors
             ),
         });
@@ -231,7 +231,7 @@ pub(crate) fn quantization(data: &Data, noise: f64, nominal: &Nominal) -> Option
     (matters(share, data.samples()) && !stated).then(|| Finding {
         effect: Some("sensor_quantization"),
         text: format!(
-            "the values lie on steps of {step:.4e}, whose rounding makes up {:.1} % of the noise variance",
+            "the values lie on steps of {step:.2e}, whose rounding makes up {:.1} % of the noise variance",
             100.0 * share.min(1.0)
         ),
     })

@@ -95,7 +95,7 @@ pub fn text_cells(table: &RunTable) -> (Vec<String>, Vec<Vec<String>>) {
     let short = |key: &String| key.rsplit('.').next().unwrap_or(key).to_owned();
     let mut header = vec!["run".to_owned(), "method".to_owned()];
     header.extend(table.columns.iter().map(short));
-    header.extend(["ζ", "±", "gap %", "worst %", "steps", "s", "state"].map(str::to_owned));
+    header.extend(["ζ", "±", "error %", "worst %", "steps", "s", "state"].map(str::to_owned));
     let rows = table.rows.iter().map(|row| {
         let view = cells::row(table, row);
         let mut line = vec![view.name];

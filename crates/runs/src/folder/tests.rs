@@ -111,8 +111,8 @@ fn what_a_killed_program_was_writing_is_taken_away_and_nothing_else() {
     assert_eq!(folder.read_checkpoint("other").unwrap(), None);
     let message = folder.read_checkpoint("tmp").unwrap_err().to_string();
     assert!(message.contains("checkpoints/tmp: the checkpoint is damaged"), "{message}");
-    folder.remove_checkpoint("tmp").unwrap();
-    folder.remove_checkpoint("tmp").unwrap();
+    folder.remove("checkpoints/tmp").unwrap();
+    folder.remove("checkpoints/tmp").unwrap();
     assert_eq!(folder.checkpoints().unwrap(), ["pinn-0.state"]);
     // What is there and cannot be read is not taken for absent.
     std::fs::create_dir(folder.checkpoint_path("a folder")).unwrap();

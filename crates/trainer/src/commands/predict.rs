@@ -9,6 +9,7 @@ use ::learn::data::Trajectory;
 use ::learn::learners::{LEARNERS, find};
 use ::learn::{Ahead, Past, Predicted, Stored};
 use clap::Args;
+use record::two_digits;
 use record::{Clock, Coordinate, Record};
 use results::LearnSeriesRow;
 use runs::{RunFolder, to_csv};
@@ -16,7 +17,6 @@ use serde::Deserialize;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use workflow::Loaded;
-use workflow::guess::two_digits;
 
 /// A learned model on a record.
 #[derive(Debug, Args)]

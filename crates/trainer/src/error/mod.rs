@@ -109,10 +109,6 @@ pub(crate) enum TrainerError {
          `trainer diagnose RECORD --nominal FILE`"
     )]
     OneRig { rig: String },
-    #[error(
-        "{log}: its name has no extension, so a folder of that name cannot be created beside it; name a folder with --out"
-    )]
-    NoFolder { log: String },
     #[error("the seeds from {seed} on do not fit a 64-bit whole number; lower seed or fit.seeds")]
     TooManySeeds { seed: u64 },
     #[error(transparent)]
@@ -174,7 +170,6 @@ impl TrainerError {
             | Self::Labels { .. }
             | Self::NoRig { .. }
             | Self::OneRig { .. }
-            | Self::NoFolder { .. }
             | Self::TooManySeeds { .. }
             | Self::Trials(_)
             | Self::Sweep(_)

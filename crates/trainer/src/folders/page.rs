@@ -4,6 +4,13 @@ use crate::error::TrainerError;
 use report::{RunTexts, comparison_markdown, prediction_markdown, render};
 use runs::RunFolder;
 use serde_json::Value;
+use std::path::Path;
+
+/// A place that holds no file of a run.
+pub(crate) fn no_run(run: &Path) -> TrainerError {
+    let problem = "it holds none of its files, such as result.json".to_owned();
+    TrainerError::NoRun { folder: run.display().to_string(), problem }
+}
 
 /// Writes `report.html` from the folder's other files.
 pub(crate) fn write_report(folder: &RunFolder) -> Result<(), TrainerError> {

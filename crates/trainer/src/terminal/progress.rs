@@ -3,10 +3,10 @@
 use crate::terminal::console;
 use estimator::Step;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use record::two_digits;
 use results::SeedRow;
 use std::fmt::Display;
 use std::io::IsTerminal;
-use workflow::guess::two_digits;
 
 /// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {

@@ -9,7 +9,8 @@ use results::{BarRow, Reliability, TrialsResult};
 use serde::Deserialize;
 use settings::{Document, Resolved, SettingsError};
 
-/// Least and largest values of scores; those that are absent are not asked for.
+/// Least and largest values of scores, the keys of a configuration's section `gate`, each from 0 to 1: `false_alarms` and
+/// `calibration_error` are at most what is stated, the others at least. Those that are absent are not asked for.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Deserialize)]
 pub struct Gate {
     leading_named: Option<f64>,

@@ -14,7 +14,7 @@ pub struct AnsweredCase {
     pub hidden: Hidden,
     /// The answer, or why there is none.
     pub answer: Result<DiagnosisResult, String>,
-    /// Closure of the answer's repaired simulator on the clean motion, or why there is none; see
+    /// Closure of the answer's repaired simulator on the clean motion, from −1 to 1, or why there is none; see
     /// [`true_closure`](crate::true_closure).
     pub true_closure: Result<f64, String>,
     /// Diagnoses this case alone again.

@@ -50,6 +50,13 @@ pub struct Trials {
 }
 
 /// Scores of all cases, in the order in which they were made.
+///
+/// An answer is right where status and named set are, nuisances struck ([`TrialsResult::right_means`] says it in full).
+/// Shares come with 95 % intervals by Clopper and Pearson, medians with intervals by order statistics, areas
+/// under the ROC with DeLong's; whether probabilities hold is told by bins of equal count and a bootstrap over cases, whose draws
+/// follow from [`Trials::seed`]: the same cases give the same numbers. What could not be measured is not a number.
+///
+/// `baselines` have an answer for each case, in the order of `cases`.
 #[must_use]
 pub fn score(trials: &Trials, cases: &[AnsweredCase], baselines: &[Baseline]) -> TrialsResult {
     let judged: Vec<Judgment<'_>> = cases.iter().map(Judgment::of).collect();

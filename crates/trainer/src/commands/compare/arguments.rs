@@ -16,7 +16,7 @@ Examples:
   trainer compare SWEEP --out DIR                          report.html, table.csv, table.md, result.json
 
 The columns are the configuration keys in which the runs differ, the estimate, its standard error,
-the gap (distance from closed-form least squares on the same envelope), steps, seconds and the state
+the error (distance from closed-form least squares on the same envelope), steps, seconds and the state
 in which the fit ended. A folder that cannot be read is a row with the reason; the others are shown.")]
 pub(crate) struct CompareArguments {
     /// Run folders, sweep folders, folders of runs, or quoted patterns with * ? [ ]

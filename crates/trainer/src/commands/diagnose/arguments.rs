@@ -10,6 +10,7 @@ use seed::Seed;
 use serde::de::IntoDeserializer;
 use serde::de::value::Error;
 use serde::{Deserialize, Serialize};
+use settings::nearest;
 use std::path::PathBuf;
 
 /// Where the gap between a nominal simulator and records lies, what causes it, and how far it closes.
@@ -19,6 +20,7 @@ Examples:
   trainer diagnose record.csv --nominal nominal.toml
   trainer diagnose near.csv far.csv --nominal nominal.toml --out DIR
                                    several records of one system, diagnosed together
+  trainer diagnose LOGS --nominal nominal.toml           every log in a folder, as records of one system
   trainer diagnose log.txt --nominal nominal.toml        a host log (wall clock, elapsed s, angle deg)
   trainer diagnose log.csv --time t --value theta --unit deg --nominal nominal.toml
   trainer diagnose drive.csv --value qm_m --input vir_V --unit m --nominal drive.toml
@@ -46,10 +48,10 @@ or force per unit of the input) and sensor_resolution.
 Exit codes: 0 diagnosed, whatever the verdict; 1 some case of a batch, or some rig, gave no answer; 2 wrong input
 or usage; 130 interrupted. With --as-task 0 instead of 1.")]
 pub(crate) struct DiagnoseArguments {
-    /// Records of one system
+    /// Records of one system: files, or a folder of them
     #[arg(value_name = "RECORD", required_unless_present_any = ["batch", "rigs"], conflicts_with_all = ["batch", "rigs"])]
     pub(crate) records: Vec<PathBuf>,
-    /// The simulator as it is: a nominal.toml
+    /// The simulator as it is: a nominal.toml [default: the one in a folder of records]
     #[arg(long, value_name = "FILE", conflicts_with_all = ["batch", "rigs"])]
     pub(crate) nominal: Option<PathBuf>,
     /// Diagnoses every folder CASES/<id>/ holding record-*.csv and nominal.toml
@@ -260,10 +262,11 @@ fn false_alarm(text: &str) -> Result<f64, String> {
 }
 
 fn effect(text: &str) -> Result<String, String> {
-    let known = dynamics::REGISTRY.iter().any(|effect| effect.id() == text);
-    if known {
-        Ok(text.to_owned())
-    } else {
-        Err("no effect of the vocabulary: see `trainer list effects`".to_owned())
+    let known: Vec<String> = dynamics::REGISTRY.iter().map(|effect| effect.id().to_owned()).collect();
+    if known.iter().any(|id| id == text) {
+        return Ok(text.to_owned());
     }
+    let meant = known.iter().find(|id| id.starts_with(text)).cloned().or_else(|| nearest(text, &known));
+    let meant = meant.map_or_else(String::new, |id| format!("; did you mean {id}?"));
+    Err(format!("no effect of the vocabulary: see `trainer list effects`{meant}"))
 }

@@ -26,7 +26,10 @@ pub(crate) fn command(arguments: &DiagnoseArguments) -> Result<Outcome, TrainerE
     if let (None, Some((option, _))) = (&arguments.batch, shared.into_iter().find(|(_, given)| *given)) {
         return Err(LaunchError::NoBatch { option }.into());
     }
-    match (&arguments.batch, &arguments.out, &arguments.nominal) {
+    // A folder of records may hold the simulator that they are compared with.
+    let beside =
+        arguments.records.first().map(|first| first.join("nominal.toml")).filter(|file| file.is_file());
+    match (&arguments.batch, &arguments.out, arguments.nominal.as_ref().or(beside.as_ref())) {
         (Some(cases), Some(answers), _) => batch::batch(arguments, cases, answers),
         _ if !arguments.rigs.is_empty() => rigs::rigs(arguments),
         (_, _, Some(nominal)) => single(arguments, nominal),

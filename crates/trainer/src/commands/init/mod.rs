@@ -9,13 +9,14 @@ use crate::terminal::table::table;
 use clap::Args;
 use dynamics::Coordinate;
 use identify::{Estimated, LinearOscillator, identify};
-use record::{Look, ReadOptions, look};
+use record::{Fault, Look, ReadOptions, look};
+use report::format::{significant, with_uncertainty};
 use runs::{RunError, RunFolder};
 use serde_json::{Value, json};
 use std::path::{Component, Path, PathBuf};
 use workflow::guess as files;
 use workflow::read::{bias, centered, coordinate_of};
-use workflow::{WorkflowError, in_options};
+use workflow::{WorkflowError, in_options, logs};
 
 /// A look at a log: columns, units, rate, clock, swing; writes nominal.toml and a configuration to start from.
 #[derive(Debug, Args)]
@@ -25,13 +26,16 @@ Examples:
   trainer init log.csv --out RIG               the same into RIG
   trainer init arm.csv --where joint=elbow     one of several series in a file
   trainer init log.csv --value phi --unit deg  where the file does not say it
+  trainer init LOGS                            every log in a folder, as records of one system: the surest of
+                                               them gives LOGS-nominal/nominal.toml
 
 It prints the `trainer diagnose` command to continue with. Nothing that exists is overwritten.")]
 pub(crate) struct InitArguments {
-    /// The log: any text file with columns
+    /// The log: any text file with columns, or a folder of logs of one system
     #[arg(value_name = "LOG")]
     log: PathBuf,
-    /// Folder for nominal.toml and estimate.toml: new or empty [default: the log's name without its ending]
+    /// Folder for nominal.toml and estimate.toml: new or empty [default: the log's name without its ending;
+    /// LOGS-nominal for a folder]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
@@ -40,16 +44,33 @@ pub(crate) struct InitArguments {
     output: Output,
 }
 
-/// What was found, and what comes of it.
-struct Found {
+/// A log and the oscillator nearest to it.
+struct Looked {
+    path: PathBuf,
     look: Look,
     oscillator: LinearOscillator,
+}
+
+/// What was found, and what comes of it.
+struct Found {
+    /// The log whose oscillator is written.
+    surest: Looked,
+    /// Frequency and damping of each log, where there are several.
+    each: Vec<EachLog>,
     coordinate: Coordinate,
     folder: PathBuf,
     /// Names of the files with their texts.
     files: Vec<(&'static str, String)>,
     /// What each command does, and the command.
     next: Vec<(&'static str, String)>,
+}
+
+/// One of several logs.
+struct EachLog {
+    path: String,
+    samples: usize,
+    natural_frequency_hz: Option<Estimated>,
+    damping_ratio: Option<Estimated>,
 }
 
 /// Looks at a log, writes the files and says what it found.
@@ -65,47 +86,100 @@ pub(crate) fn command(arguments: &InitArguments) -> Result<Outcome, TrainerError
 
 fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
     let InitArguments { log, out, reading, .. } = arguments;
-    let folder = out.clone().unwrap_or_else(|| PathBuf::from(log.file_stem().unwrap_or_default()));
-    if out.is_none() && folder == *log {
-        let log = log.display().to_string();
-        return Err(TrainerError::NoFolder { log });
-    }
+    let paths = logs(log)?;
+    let folder = out.clone().unwrap_or_else(|| folder_of(log));
     RunFolder::check_free(&folder).map_err(|error| match error {
         RunError::Occupied { path } => TrainerError::InitOccupied { folder: path.display().to_string() },
         other => other.into(),
     })?;
-    // An input that stands in the file drives the system, whatever its name.
-    let options = ReadOptions { driven: true, ..reading.plain().options };
-    let mut look = look(log, &options).map_err(WorkflowError::Record)?;
-    let name = log.display().to_string();
-    if reading.remove_mean {
-        look.record = centered(&look.record).map_err(|fault| WorkflowError::Record(fault.in_file(&name)))?;
-    }
-    let oscillator = identify(&look.record, &look.clock)
-        .map_err(|source| WorkflowError::Identify { file: name.clone(), source })?;
+    let mut looked = paths.into_iter().map(|path| looked(path, reading)).collect::<Result<Vec<_>, _>>()?;
+    let each = if looked.len() > 1 { looked.iter().map(Looked::each).collect() } else { Vec::new() };
+    let bias = looked.iter().any(|looked| bias(&looked.look.record).is_some());
+    let by_error = |one: &Looked, other: &Looked| {
+        one.oscillator.damping.std_error.total_cmp(&other.oscillator.damping.std_error)
+    };
+    looked.sort_by(by_error);
+    // A folder without logs was refused above.
+    let none = || WorkflowError::Record(Fault::Folder.in_file(&log.display().to_string()));
+    let surest = looked.into_iter().next().ok_or_else(none)?;
+    let Looked { path, look, oscillator } = &surest;
     let coordinate = coordinate_of(look.source.reading.coordinate);
-    let mut files = vec![("nominal.toml", files::nominal_toml(&name, &oscillator, coordinate))];
-    let nominal = folder.join("nominal.toml");
+    let name = path.display().to_string();
+    let mut files = vec![("nominal.toml", files::nominal_toml(&name, oscillator, coordinate))];
     let mut next = vec![(
         "what a linear oscillator with these numbers lacks",
         format!(
             "trainer diagnose {} --nominal {}{}{}",
-            word(&name),
-            path_word(&nominal),
+            path_word(log),
+            path_word(&folder.join("nominal.toml")),
             given(reading),
-            bias(&look.record).map_or("", |_| " --remove-mean")
+            if bias { " --remove-mean" } else { "" }
         ),
     )];
     // Only a free decay has an envelope to estimate a damping ratio from.
     if oscillator.input_gain.is_none() {
-        let path = path_from(&folder, log).display().to_string();
+        let path = path_from(&folder, path).display().to_string();
         files.push(("estimate.toml", files::configuration(&path, &look.source.reading.options())));
         next.push((
             "the damping ratio from the decay of the peaks",
             format!("trainer {}", path_word(&folder.join("estimate.toml"))),
         ));
     }
-    Ok(Found { look, oscillator, coordinate, folder, files, next })
+    Ok(Found { surest, each, coordinate, folder, files, next })
+}
+
+/// The folder for what is found in a log: its name without its ending, or with `-nominal` where that is its whole name.
+fn folder_of(log: &Path) -> PathBuf {
+    let stem = PathBuf::from(log.file_stem().unwrap_or_default());
+    let absolute = std::path::absolute(log).unwrap_or_else(|_| log.to_owned());
+    if log.is_file() && stem != *log {
+        return stem;
+    }
+    let name = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    PathBuf::from(format!("{name}-nominal"))
+}
+
+/// Looks at one log.
+fn looked(path: PathBuf, reading: &Reading) -> Result<Looked, TrainerError> {
+    // An input that stands in the file drives the system, whatever its name.
+    let options = ReadOptions { driven: true, ..reading.plain().options };
+    let mut look = look(&path, &options).map_err(WorkflowError::Record)?;
+    let file = path.display().to_string();
+    if reading.remove_mean {
+        look.record = centered(&look.record).map_err(|fault| WorkflowError::Record(fault.in_file(&file)))?;
+    }
+    let oscillator =
+        identify(&look.record, &look.clock).map_err(|source| WorkflowError::Identify { file, source })?;
+    Ok(Looked { path, look, oscillator })
+}
+
+impl Looked {
+    fn each(&self) -> EachLog {
+        EachLog {
+            path: self.path.display().to_string(),
+            samples: self.look.record.len(),
+            natural_frequency_hz: self.oscillator.natural_frequency_hz(),
+            damping_ratio: self.oscillator.damping_ratio(),
+        }
+    }
+}
+
+/// Ratio of the frequencies of two logs from which on they are doubtful as records of one system.
+const ANOTHER_SYSTEM: f64 = 1.5;
+
+/// A sentence where logs of a folder swing at frequencies that one system hardly has.
+fn apart(each: &[EachLog]) -> Option<String> {
+    let mut swinging: Vec<(f64, &str)> =
+        each.iter().filter_map(|log| Some((log.natural_frequency_hz?.value, log.path.as_str()))).collect();
+    swinging.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let ((slow, slowest), (fast, fastest)) = swinging.first().zip(swinging.last())?;
+    (*fast > ANOTHER_SYSTEM * slow).then(|| {
+        let [slow, fast] = [slow, fast].map(|frequency| significant(*frequency, 3));
+        format!(
+            "{slowest} swings at {slow} Hz and {fastest} at {fast} Hz, which records of one system hardly do: diagnose those \
+             of each system by themselves"
+        )
+    })
 }
 
 impl Found {
@@ -113,7 +187,7 @@ impl Found {
         let number = |estimated: Option<Estimated>| {
             estimated.map(|found| json!({ "value": found.value, "std_error": found.std_error }))
         };
-        let columns = self.look.columns.iter().map(|column| {
+        let columns = self.surest.look.columns.iter().map(|column| {
             json!({
                 "title": column.title, "unit": column.unit, "role": column.role, "holds": column.holds,
                 "because": column.because,
@@ -121,58 +195,63 @@ impl Found {
         });
         json!({
             "record": {
-                "path": self.look.source.path,
-                "digest": self.look.source.digest,
-                "samples": self.look.record.len(),
+                "path": self.surest.look.source.path,
+                "digest": self.surest.look.source.digest,
+                "samples": self.surest.look.record.len(),
                 "duration_s": self.duration_s(),
-                "sample_rate_hz": self.look.clock.sample_rate_hz,
-                "clock": self.look.clock.kind.name(),
-                "clock_reason": self.look.clock.reason,
+                "sample_rate_hz": self.surest.look.clock.sample_rate_hz,
+                "clock": self.surest.look.clock.kind.name(),
+                "clock_reason": self.surest.look.clock.reason,
                 "columns": columns.collect::<Vec<_>>(),
-                "reading": self.look.source.reading,
+                "reading": self.surest.look.source.reading,
                 "findings": self.findings(),
             },
             "oscillator": {
                 "coordinate": files::name(self.coordinate),
-                "natural_frequency_hz": number(self.oscillator.natural_frequency_hz()),
-                "damping_ratio": number(self.oscillator.damping_ratio()),
-                "damping_per_inertia": number(Some(self.oscillator.damping)),
-                "rest": number(self.oscillator.rest),
-                "input_gain_per_inertia": number(self.oscillator.input_gain),
-                "basis": files::basis(&self.oscillator),
+                "natural_frequency_hz": number(self.surest.oscillator.natural_frequency_hz()),
+                "damping_ratio": number(self.surest.oscillator.damping_ratio()),
+                "damping_per_inertia": number(Some(self.surest.oscillator.damping)),
+                "rest": number(self.surest.oscillator.rest),
+                "input_gain_per_inertia": number(self.surest.oscillator.input_gain),
+                "basis": files::basis(&self.surest.oscillator),
             },
+            "logs": self.each.iter().map(|log| json!({
+                "path": log.path, "samples": log.samples,
+                "natural_frequency_hz": number(log.natural_frequency_hz), "damping_ratio": number(log.damping_ratio),
+            })).collect::<Vec<_>>(),
             "files": self.files.iter().map(|(name, _)| self.folder.join(name)).collect::<Vec<_>>(),
             "next": self.next.iter().map(|(_, command)| command).collect::<Vec<_>>(),
         })
     }
 
     fn summary(&self) -> String {
-        let (record, clock) = (&self.look.record, &self.look.clock);
+        let (record, clock) = (&self.surest.look.record, &self.surest.look.clock);
         let row = |name: &str, value: String| vec![name.to_owned(), value];
         let mut rows = vec![
-            row("reading", self.look.source.reading.sentence.clone()),
+            row("reading", self.surest.look.source.reading.sentence.clone()),
             row(
                 "samples",
                 format!("{} in {:.3} s, {:.2} Hz", record.len(), self.duration_s(), clock.sample_rate_hz),
             ),
             row("clock", format!("{}: {}", clock.kind.name(), clock.reason)),
         ];
-        match (self.oscillator.natural_frequency_hz(), self.oscillator.damping_ratio()) {
+        match (self.surest.oscillator.natural_frequency_hz(), self.surest.oscillator.damping_ratio()) {
             (Some(frequency), Some(ratio)) => {
-                rows.push(row("natural frequency", format!("{} Hz, undamped", uncertain(frequency))));
+                rows.push(row("natural frequency, Hz", format!("{}, undamped", uncertain(frequency))));
                 rows.push(row("damping ratio", uncertain(ratio)));
             }
             _ => rows
                 .push(row("natural frequency", "none: nothing pulls it back to a rest position".to_owned())),
         }
-        rows.push(row("", files::basis(&self.oscillator)));
+        rows.push(row("", files::basis(&self.surest.oscillator)));
         rows.extend(self.findings().into_iter().map(|finding| row("note", finding)));
         let written = self.files.iter().map(|(name, _)| path_word(&self.folder.join(name)));
         let next: Vec<String> =
             self.next.iter().map(|(what, command)| format!("  {command}\n      {what}")).collect();
         format!(
-            "{}\n\n{}\n\nwrote {}\n\nnext{}:\n{}",
-            self.look.source.path,
+            "{}{}\n\n{}\n\nwrote {}\n\nnext{}:\n{}",
+            self.of_each(),
+            self.surest.look.source.path,
             table(&[], rows),
             written.collect::<Vec<_>>().join(" and "),
             if is_built_here() { " (for trainer, type cargo run -p trainer --)" } else { "" },
@@ -180,14 +259,32 @@ impl Found {
         )
     }
 
+    /// A table of the logs, where there are several, and which of them the rest is about.
+    fn of_each(&self) -> String {
+        if self.each.is_empty() {
+            return String::new();
+        }
+        let told = |found: Option<Estimated>| found.map_or_else(String::new, uncertain);
+        let rows = self.each.iter().map(|log| {
+            vec![
+                log.path.clone(),
+                log.samples.to_string(),
+                told(log.natural_frequency_hz),
+                told(log.damping_ratio),
+            ]
+        });
+        let heads = ["log", "samples", "natural frequency, Hz", "damping ratio"];
+        format!("{}\n\nthe surest of them: ", table(&heads, rows.collect()))
+    }
+
     fn duration_s(&self) -> f64 {
-        let times = &self.look.clock.times_s;
+        let times = &self.surest.look.clock.times_s;
         times.first().zip(times.last()).map_or(0.0, |(first, last)| last - first)
     }
 
     fn findings(&self) -> Vec<String> {
-        let read = self.look.source.findings.iter().map(|finding| in_options(finding));
-        read.chain(bias(&self.look.record)).collect()
+        let read = self.surest.look.source.findings.iter().map(|finding| in_options(finding));
+        read.chain(bias(&self.surest.look.record)).chain(apart(&self.each)).collect()
     }
 }
 
@@ -198,7 +295,7 @@ fn is_built_here() -> bool {
 }
 
 fn uncertain(estimated: Estimated) -> String {
-    format!("{} ± {} (standard error)", files::digits(estimated), files::error(estimated))
+    format!("{} (standard error)", with_uncertainty(estimated.value, estimated.std_error))
 }
 
 /// The reading options that were given, as the diagnosis takes them.

@@ -1,9 +1,9 @@
 //! The terminal's answer to `task = "learn"`: a table for each data set.
 
 use crate::terminal::table::table;
+use record::two_digits;
 use results::{LearnKind, LearnProblem, LearnResult, LearnRow};
 use std::path::Path;
-use workflow::guess::two_digits;
 
 const HEADER: [&str; 9] =
     ["method", "free run", "× noise", "horizon s", "one step", "in 95 %", "torque off", "numbers", "s"];

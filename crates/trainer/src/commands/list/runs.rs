@@ -7,11 +7,11 @@ use crate::run_table::RED;
 use crate::terminal::console;
 use crate::terminal::table::table;
 use record::counted;
+use record::two_digits;
 use results::{RunState, RunTableRow};
 use runs::{KeptRun, SweepFolder, default_root, list_runs as read_runs};
 use serde_json::{Value, json};
 use std::path::Path;
-use workflow::guess::two_digits;
 
 /// Lists the runs in a folder, or those of a sweep, newest first.
 pub(crate) fn list_runs(folder: Option<&Path>, output: Output) -> Result<Outcome, TrainerError> {

@@ -5,11 +5,11 @@ mod outliers;
 
 use crate::commands::sweep::finish;
 use crate::error::TrainerError;
-use crate::folders::page::write_report;
+use crate::folders::page::{no_run, write_report};
 use crate::options::Output;
 use crate::outcome::Outcome;
 use crate::terminal::console;
-use runs::{RunFolder, SweepFolder};
+use runs::{RunFolder, SweepFolder, has_run_files};
 use serde_json::json;
 use std::path::Path;
 
@@ -17,11 +17,15 @@ use std::path::Path;
 /// so nothing is lost. That of a sweep with its table, of what is there: its tasks may have been killed before they made
 /// one; that of a fleet from the answers of a batch.
 pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerError> {
+    if !run.is_dir() {
+        return Err(no_run(run));
+    }
     let folder = RunFolder::open(run);
     let sweep = SweepFolder::open(run);
     match sweep.manifest()? {
         Some(mut manifest) => drop(finish(&sweep, &mut manifest)?),
         None if fleet::is_one(run) => fleet::write(&folder)?,
+        None if !has_run_files(run) => return Err(no_run(run)),
         None => write_report(&folder)?,
     }
     let report = run.join("report.html").display().to_string();

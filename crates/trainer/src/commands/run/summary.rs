@@ -2,13 +2,13 @@
 
 use crate::terminal::table::table;
 use estimator::Ablation;
+use record::two_digits;
 use report::format;
 use results::{
     ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
-use workflow::guess::two_digits;
 
 /// The result as a person wants to read it.
 pub(crate) fn summary(result: &EstimationResult, folder: &Path) -> String {
@@ -47,21 +47,20 @@ fn headline(result: &EstimationResult) -> String {
 
 fn numbers(result: &EstimationResult) -> String {
     let row = |name: &str, value: String| vec![name.to_owned(), value];
-    let zeta = match result.estimate.zeta_std_error {
-        Some(error) => format!("{} ± {error:.1e} (standard error)", digits(result.estimate.zeta)),
-        None => digits(result.estimate.zeta),
-    };
+    let estimate = &result.estimate;
+    // The frequency is taken as known, so that the rate has the relative error of the ratio.
+    let error = estimate.zeta_std_error.unwrap_or_default();
+    let rate_error = error * estimate.decay_rate / estimate.zeta;
     let mut rows = vec![
         row("peaks", result.envelope.peaks.to_string()),
-        row("angular frequency ω", format!("{:.9} rad/s", result.envelope.omega_rad_s)),
-        row("decay rate λ", format!("{} 1/s", digits(result.estimate.decay_rate))),
-        row("damping ratio ζ", zeta),
+        row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
+        row("decay rate λ", format!("{} 1/s", format::with_uncertainty(estimate.decay_rate, rate_error))),
+        row("damping ratio ζ", ratio(estimate.zeta, error)),
         row(
             "ζ by closed-form least squares",
             format!(
-                "{} ± {:.1e} (standard error), R² {:.6}",
-                digits(result.oracle.zeta),
-                result.oracle.zeta_std_error,
+                "{}, R² {:.6}",
+                ratio(result.oracle.zeta, result.oracle.zeta_std_error),
                 result.oracle.r_squared
             ),
         ),
@@ -151,13 +150,10 @@ fn oscillation(result: &ComparisonResult) -> String {
     let mut rows = vec![
         row("peaks", result.envelope.peaks.to_string()),
         row("period", format!("{:.4} s, {:.4} Hz", derived.period_s, derived.frequency_hz)),
-        row("angular frequency ω", format!("{:.6} rad/s", result.envelope.omega_rad_s)),
-        row("decay rate λ", format!("{} 1/s", digits(oracle.decay_rate))),
+        row("angular frequency ω", format!("{} rad/s", format::significant(result.envelope.omega_rad_s, 7))),
+        row("decay rate λ", format!("{} 1/s", format::with_uncertainty(oracle.decay_rate, oracle.std_error))),
         row("R²", format!("{:.6}", oracle.r_squared)),
-        row(
-            "damping ratio ζ",
-            format!("{} ± {:.1e} (standard error)", digits(oracle.zeta), oracle.zeta_std_error),
-        ),
+        row("damping ratio ζ", ratio(oracle.zeta, oracle.zeta_std_error)),
         row("stiffness", format!("{:.4} {}", derived.stiffness_n_m_per_rad, unit("N m/rad", "1/s^2"))),
         row(
             "damping coefficient",
@@ -258,9 +254,10 @@ fn comparison_remarks(result: &ComparisonResult) -> String {
         .join("\n")
 }
 
-/// Ten significant digits.
-fn digits(value: f64) -> String {
-    format::significant(value, 10)
+/// A damping ratio with its standard error, where it has one.
+fn ratio(zeta: f64, std_error: f64) -> String {
+    let said = if std_error > 0.0 { " (standard error)" } else { "" };
+    format!("{}{said}", format::with_uncertainty(zeta, std_error))
 }
 
 fn pipelines(pipelines: &[PipelineRow]) -> String {

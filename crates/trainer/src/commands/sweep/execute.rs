@@ -17,6 +17,7 @@ use crate::terminal::progress::Progress;
 use estimator::Cancel;
 use experiment::CheckpointSettings;
 use experiment::sweep::Swept;
+use record::two_digits;
 use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
 use runs::{Disk, RunFolder, read_run};
 use serde_json::json;
@@ -26,7 +27,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
-use workflow::guess::two_digits;
 
 /// `sweep.json` is written again when this many times its own writing time has passed.
 const REST: u32 = 20;

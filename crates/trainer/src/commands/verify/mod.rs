@@ -4,7 +4,7 @@ mod difference;
 
 use crate::commands::run::run_until;
 use crate::error::{ResumeError, TrainerError};
-use crate::folders::page::tables;
+use crate::folders::page::{no_run, tables};
 use crate::folders::resume::{DataFile, check_data, config_of, is_finished, started};
 use crate::options::{ExperimentArguments, Output, RunOptions};
 use crate::outcome::Outcome;
@@ -21,6 +21,9 @@ const MOST_PRINTED: usize = 20;
 
 /// Runs again what a folder holds, in a folder that is then thrown away, and says where the two differ.
 pub(crate) fn command(run: &Path, threads: Option<u16>, output: Output) -> Result<Outcome, TrainerError> {
+    if !run.is_dir() {
+        return Err(no_run(run));
+    }
     let cancel = interrupt::watch()?;
     let folder = RunFolder::open(run);
     let shown = || run.display().to_string();

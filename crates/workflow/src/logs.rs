@@ -1,0 +1,133 @@
+//! Record files in a folder.
+
+use crate::error::WorkflowError;
+use std::path::{Path, PathBuf};
+
+/// Endings of the names of files that hold tables.
+const TABLES: &[&str] = &["csv", "tsv"];
+/// Endings of the names of files that may hold one.
+const TEXTS: &[&str] = &["txt", "log", "dat"];
+
+/// Whether a file is a log by its name: one that ends in `.csv`, `.tsv`, `.txt`, `.log` or `.dat`.
+#[must_use]
+pub fn is_log(path: &Path) -> bool {
+    path.is_file() && (ends_in(path, TABLES) || ends_in(path, TEXTS))
+}
+
+/// The logs that a path stands for: a file for itself, a folder for those that lie in it, by their names.
+///
+/// In a folder these are the files that end in `.csv` or `.tsv`; where there are none, those that end in `.txt`, `.log` or `.dat`.
+/// Hidden files and folders within it are left out.
+///
+/// # Errors
+/// [`WorkflowError::NoLogs`] for a folder without a log, and for the folder of a finished run, whose tables are no records.
+pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
+    if !path.is_dir() {
+        return Ok(vec![path.to_owned()]);
+    }
+    let folder = path.display().to_string();
+    let none =
+        |problem: String, remedy: String| WorkflowError::NoLogs { folder: folder.clone(), problem, remedy };
+    if ["result.json", "diagnosis.json"].iter().any(|file| path.join(file).is_file()) {
+        return Err(none(
+            "is the folder of a finished run, whose tables are no records".to_owned(),
+            format!("name the records themselves; `trainer report {folder}` makes its report again"),
+        ));
+    }
+    let entries = entries(path).map_err(|error| {
+        none(format!("cannot be listed: {error}"), "name the records themselves".to_owned())
+    })?;
+    let found = among(&entries);
+    if found.is_empty() {
+        let problem = "holds no log: no file in it ends in .csv, .tsv, .txt, .log or .dat".to_owned();
+        return Err(none(problem, elsewhere(&folder, &entries)));
+    }
+    Ok(found)
+}
+
+/// What lies in a folder and is not hidden, by name.
+fn entries(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder)? {
+        let entry = entry?;
+        if !entry.file_name().to_string_lossy().starts_with('.') {
+            found.push(entry.path());
+        }
+    }
+    found.sort();
+    Ok(found)
+}
+
+/// The logs among the entries of a folder.
+fn among(entries: &[PathBuf]) -> Vec<PathBuf> {
+    let of = |endings: &[&str]| -> Vec<PathBuf> {
+        entries.iter().filter(|path| path.is_file() && ends_in(path, endings)).cloned().collect()
+    };
+    let tables = of(TABLES);
+    if tables.is_empty() { of(TEXTS) } else { tables }
+}
+
+/// What to name in place of a folder that holds no log.
+fn elsewhere(folder: &str, entries: &[PathBuf]) -> String {
+    if entries.iter().any(|path| path.join("nominal.toml").is_file()) {
+        return format!(
+            "its folders are cases with a nominal.toml each, which `trainer diagnose --batch {folder} --out ANSWERS` takes"
+        );
+    }
+    if entries.iter().any(|path| ends_in(path, &["xlsx", "xls", "ods"])) {
+        return "save the sheets of its workbooks as CSV".to_owned();
+    }
+    let holds_some =
+        |path: &&PathBuf| path.is_dir() && self::entries(path).is_ok_and(|within| !among(&within).is_empty());
+    match entries.iter().find(holds_some) {
+        Some(within) => format!("there are some in {}", within.display()),
+        None => "name the records themselves".to_owned(),
+    }
+}
+
+fn ends_in(path: &Path, endings: &[&str]) -> bool {
+    // A name without an ending is no log's.
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    endings.contains(&ending.as_str())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::logs;
+    use std::path::Path;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let found = logs(folder).unwrap();
+        found.iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
+    }
+
+    fn refusal(folder: &Path) -> String {
+        logs(folder).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_folder_stands_for_its_logs() {
+        let scratch = tempfile::tempdir().unwrap();
+        let within = |folder: &str, files: &[&str]| {
+            let folder = scratch.path().join(folder);
+            std::fs::create_dir_all(&folder).unwrap();
+            files.iter().for_each(|file| std::fs::write(folder.join(file), "").unwrap());
+            folder
+        };
+        assert_eq!(names(&within("texts", &["notes.txt", "a.LOG", "x.png"])), ["a.LOG", "notes.txt"]);
+        let tables = ["b.CSV", "a.csv", "c.tsv", ".hidden.csv", "nominal.toml", "notes.txt"];
+        assert_eq!(names(&within("tables", &tables)), ["a.csv", "b.CSV", "c.tsv"]);
+        let file = scratch.path().join("x.csv");
+        assert_eq!(logs(&file).unwrap(), [file], "a file stands for itself");
+        let refused = |folder: &Path, expected: &str| {
+            let message = logs(folder).unwrap_err().to_string();
+            assert!(message.contains(expected), "{message}");
+        };
+        refused(&within("none", &["x.png"]), "name the records themselves");
+        refused(&within("sheets", &["Versuch 1.xlsx"]), "save the sheets of its workbooks as CSV");
+        refused(scratch.path(), "there are some in ");
+        within("cases/one", &["record-000.csv", "nominal.toml"]);
+        refused(&scratch.path().join("cases"), "--batch");
+        refused(&within("run", &["series.csv", "diagnosis.json"]), "trainer report ");
+    }
+}
