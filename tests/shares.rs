@@ -3,7 +3,9 @@
 
 use crate::diagnose::{decay, refusal, write};
 use crate::support::{NOMINAL, root, trainer};
-use crate::sweep::{SLOW, code, ends, events, json, results, said, scratch, start, states, sweep, wait_for};
+use crate::sweep::{
+    SLOW, code, ends, events, json, results, said, scratch, start, states, sweep, temporary, wait_for,
+};
 use serde_json::Value;
 use std::fs::File;
 use std::path::Path;
@@ -182,8 +184,14 @@ fn a_killed_batch_leaves_its_cases_to_the_next() {
     }
     first.kill().unwrap();
     first.wait().unwrap();
+    // As if it had been killed in the middle of writing.
+    let open = (0..4).map(|number| answers.join(format!("case-{number}")));
+    for place in open.filter(|place| !place.join("diagnosis.json").exists()) {
+        write(&place, ".tmpXYZ123", "half an ans");
+    }
     let (code, found) = batch_result(batch(&cases, &answers, &[]));
     assert_eq!(code, Some(0), "{found}");
+    assert!(temporary(&answers).is_empty(), "{:?}", temporary(&answers));
     assert_eq!(found["diagnosed"].as_u64().unwrap() + found["skipped"].as_u64().unwrap(), 4);
     assert!(found["skipped"].as_u64().unwrap() >= 1);
 }

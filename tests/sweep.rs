@@ -284,13 +284,32 @@ fn killed_at_any_moment_it_goes_on_where_it_was() {
         }
     }
     let before = ends(&out);
+    // As if it had been killed in the middle of writing each kind of file.
+    for place in ["", "configs", "state"] {
+        std::fs::write(Path::new(&out).join(place).join(".tmpXYZ123"), "half a fi").unwrap();
+    }
     let output = sweep(SLOW, &out, &["--resume"]);
     assert_eq!(code(&output), 0, "{}", said(&output));
+    assert_eq!(temporary(Path::new(&out)), Vec::<PathBuf>::new());
     let missing = format!("{} of them now", 6 - before.len());
     assert!(said(&output).contains(&missing), "{missing}: {}", said(&output));
     assert!(before.iter().all(|(path, time)| ends(&out)[path] == *time));
     assert_eq!(results(&out), results(&whole));
     assert_eq!(states(&out), ["done"; 6]);
+}
+
+/// Temporary files in a folder and below it.
+pub(crate) fn temporary(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            found.extend(temporary(&path));
+        } else if path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(".tmp")) {
+            found.push(path);
+        }
+    }
+    found
 }
 
 /// The lines of a run's log by name.

@@ -10,6 +10,7 @@
 Numbers are float64 in SI units unless a unit says otherwise. Errors are ``ValueError`` with the message of the command line.
 """
 
+from . import cluster, logs
 from ._batch import diagnose_batch, diagnose_rigs
 from ._diagnosis import Diagnosis, diagnose
 from ._estimate import Estimate, Estimator, estimate, methods
@@ -35,12 +36,14 @@ __all__ = [
     "RecordError",
     "RingdownError",
     "Stretch",
+    "cluster",
     "diagnose",
     "diagnose_batch",
     "diagnose_rigs",
     "effects",
     "estimate",
     "learn",
+    "logs",
     "methods",
     "simulate",
 ]

@@ -2,14 +2,11 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from collections.abc import Sequence
 from os import PathLike, fspath
 from typing import Any
 
-from ._native import RingdownError
+from ._command import result_of
 
 
 def diagnose_batch(
@@ -48,13 +45,4 @@ def diagnose_rigs(
 
 
 def _diagnosed(asked: list[str], threads: int | None, options: Sequence[str]) -> dict[str, Any]:
-    line = [sys.executable, "-m", "ringdown_lab", "diagnose", *asked, "--json", *options]
-    if threads is not None:
-        line += ["--threads", str(threads)]
-    done = subprocess.run(line, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False)
-    if done.returncode == 130:
-        raise KeyboardInterrupt
-    try:
-        return json.loads(done.stdout)  # type: ignore[no-any-return]
-    except json.JSONDecodeError:
-        raise RingdownError(done.stderr.strip().removeprefix("error: ")) from None
+    return result_of(["diagnose", *asked, *options, *([] if threads is None else ["--threads", str(threads)])])

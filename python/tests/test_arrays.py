@@ -111,6 +111,7 @@ def test_a_wrong_unit_names_those_there_are() -> None:
         ("time_s,angle_rad\n" + "".join(f"{10 - i},0.{i}\n" for i in range(9)), ()),
         ("t,v\n" + "".join(f"{i},0.{i}\n" for i in range(9)), ("--value", "nothing")),
         ("time_s,displacement_m\n" + "".join(f"{i / 10},0.{i}\n" for i in range(10)), ()),
+        ("time_s,angle_rad\n" + "".join(f"{i / 10},{'nan' if i == 7 else i}\n" for i in range(10)), ("--missing", "refuse")),
     ],
 )
 def test_the_message_of_a_file_is_the_command_lines(
@@ -125,6 +126,26 @@ def test_the_message_of_a_file_is_the_command_lines(
     with pytest.raises(rd.RingdownError) as raised:
         rd.diagnose(rd.Record.read(path, nominal=nominal, **reading), nominal)
     assert str(raised.value) in told.stderr.replace("\n", " ")
+
+
+@pytest.mark.parametrize(("unit", "heading", "at"), [("rad", "angle_rad", 50), ("m", "displacement_m", None)])
+def test_the_message_of_arrays_is_that_of_their_file(
+    tmp_path: Path, nominal: rd.Nominal, unit: str, heading: str, at: int | None
+) -> None:
+    time, values = columns()
+    if at is not None:
+        time[at] = time[at - 10]
+    rows = "".join(f"{when},{value}\n" for when, value in zip(time.tolist(), values.tolist(), strict=True))
+    (tmp_path / "log.csv").write_text(f"time_s,{heading}\n{rows}")
+    (tmp_path / "nominal.toml").write_text(nominal.to_toml())
+    told = ringdown("diagnose", "log.csv", "--nominal", "nominal.toml", cwd=tmp_path)
+    with pytest.raises(rd.RecordError) as raised:
+        rd.diagnose(rd.Record(time, values, unit=unit, name="log.csv"), nominal)
+    where, message = str(raised.value).split(": ", 1)
+    # The heading is the first line of the file.
+    assert where == ("log.csv" if at is None else f"log.csv:{at + 1}")
+    assert told.returncode == 2
+    assert told.stderr.strip() == f"error: log.csv{'' if at is None else f':{at + 2}'}: {message}"
 
 
 def test_a_nominal_simulators_message_says_where(tmp_path: Path) -> None:

@@ -100,30 +100,56 @@ def test_mcap(tmp_path: Path) -> None:
         logs.read_mcap(tmp_path / "log.mcap", "/joint", "speed")
 
 
-def test_ros_2_bags(tmp_path: Path) -> None:
-    pytest.importorskip("rosbags")
-    from rosbags.rosbag2 import Writer
-    from rosbags.typesys import Stores, get_typestore
-
-    store = get_typestore(Stores.ROS2_HUMBLE)
-    joint, header, stamp = (
-        store.types[f"{name}"] for name in ("sensor_msgs/msg/JointState", "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
+def write_joints(writer: Any, store: Any, encode: Any, **header: Any) -> None:
+    """The record as joint states, by a writer of rosbags."""
+    joint, head, stamp = (
+        store.types[name] for name in ("sensor_msgs/msg/JointState", "std_msgs/msg/Header", "builtin_interfaces/msg/Time")
     )
-    with Writer(tmp_path / "bag", version=9) as writer:
+    with writer:
         connection = writer.add_connection("/joints", joint.__msgtype__, typestore=store)
         for time, angle in zip(TIME, ANGLE, strict=True):
-            message: Any = joint(
-                header=header(stamp=stamp(sec=0, nanosec=0), frame_id=""),
+            message = joint(
+                header=head(stamp=stamp(sec=0, nanosec=0), frame_id="", **header),
                 name=["elbow"],
                 position=np.array([angle]),
                 velocity=np.array([]),
                 effort=np.array([]),
             )
             nanoseconds = 1_700_000_000_000_000_000 + round(1e9 * time)
-            writer.write(connection, nanoseconds, store.serialize_cdr(message, joint.__msgtype__))
+            writer.write(connection, nanoseconds, encode(message, joint.__msgtype__))
+
+
+def test_ros_1_bags(tmp_path: Path) -> None:
+    pytest.importorskip("rosbags")
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS1_NOETIC)
+    write_joints(Writer(tmp_path / "log.bag"), store, store.serialize_ros1, seq=0)
+    assert (tmp_path / "log.bag").read_bytes().startswith(b"#ROSBAG V2.0")
+    holds(logs.read_rosbag(tmp_path / "log.bag", "/joints", "position[0]"))
+    with pytest.raises(rd.RecordError, match="no topic /arm; the bag has /joints"):
+        logs.read_rosbag(tmp_path / "log.bag", "/arm", "position[0]")
+
+
+@pytest.mark.parametrize("storage", ["SQLITE3", "MCAP"])
+def test_ros_2_bags(tmp_path: Path, storage: str) -> None:
+    pytest.importorskip("rosbags")
+    from rosbags.rosbag2 import StoragePlugin, Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    store = get_typestore(Stores.ROS2_HUMBLE)
+    writer = Writer(tmp_path / "bag", version=9, storage_plugin=StoragePlugin[storage])
+    write_joints(writer, store, store.serialize_cdr)
     holds(logs.read_rosbag(tmp_path / "bag", "/joints", "position[0]"))
     with pytest.raises(rd.RecordError, match="no topic /arm; the bag has /joints"):
         logs.read_rosbag(tmp_path / "bag", "/arm", "position[0]")
+    if storage == "MCAP":
+        pytest.importorskip("mcap")
+        (file,) = (tmp_path / "bag").glob("*.mcap")
+        holds(logs.read_mcap(file, "/joints", "position[0]"))
+        with pytest.raises(rd.RecordError, match="no `speed` of `speed`; it has .*position"):
+            logs.read_mcap(file, "/joints", "speed")
 
 
 def test_matlab(tmp_path: Path) -> None:

@@ -4,8 +4,9 @@
 mod chromium;
 mod instruments;
 
-use crate::support::{measured, root, trainer};
+use crate::support::{measured, root, simulated, trainer};
 use chromium::{Chromium, VIEWS, View};
+use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
 
@@ -156,6 +157,71 @@ fn the_tables_of_runs() {
     }
     save(&mut browser, &sweep.join("report.html"), 2);
     instruments::sort(&mut browser, &table.join("report.html"));
+}
+
+/// A fleet of a thousand cases: the answers for three simulated systems, repeated with errors and closures apart.
+fn fleet_of_a_thousand(scratch: &Path) -> PathBuf {
+    let (cases, answers) = (scratch.join("cases"), scratch.join("answers"));
+    let friction = "name = \"arm\"\nrecord.rate_hz = 130.0\nrecord.seconds = 8.0\nstart.position = 0.7\nsensor.noise = 5e-4\n\
+                    [[effects]]\nid = \"coulomb_friction\"\nparameters.torque = 2.0\n";
+    let drag =
+        friction.replace("coulomb_friction", "quadratic_drag").replace("torque = 2", "coefficient = 1");
+    let plain = &friction[..friction.find("[[").unwrap()];
+    for (number, more) in [friction, &drag, plain].into_iter().enumerate() {
+        let case = cases.join(number.to_string());
+        std::fs::create_dir_all(&case).unwrap();
+        let file = simulated(&case, more, &[]);
+        for name in ["record-000.csv", "nominal.toml"] {
+            std::fs::copy(file(name), case.join(name)).unwrap();
+        }
+    }
+    let asked =
+        ["diagnose", "--batch", cases.to_str().unwrap(), "--out", answers.to_str().unwrap(), "--quiet"];
+    let output = trainer(&asked);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let json = |path: &Path| -> Value { serde_json::from_slice(&std::fs::read(path).unwrap()).unwrap() };
+    let fleet = scratch.join("fleet");
+    for number in 0..1000_u32 {
+        let from = answers.join((number % 3).to_string());
+        let case = fleet.join(format!("2026-11-{:02}-arm-{number:04}", number % 30 + 1));
+        std::fs::create_dir_all(&case).unwrap();
+        let write = |name: &str, value: &Value| std::fs::write(case.join(name), value.to_string()).unwrap();
+        if number % 100 == 50 {
+            let message =
+                format!("{}/record-000.csv:17:9: `zero` in column angle_rad is not a number", case.display());
+            write("failed.json", &json!({ "id": case.file_name().unwrap().to_str(), "message": message }));
+            continue;
+        }
+        let mut answer = json(&from.join("diagnosis.json"));
+        let apart = if number % 100 == 99 { 5.0 } else { 1.0 + 0.01 * f64::from(number % 7) };
+        for path in ["/gap/ratio_to_floor", "/gap/closure/value"] {
+            let value = answer.pointer_mut(path).unwrap();
+            *value = json!(value.as_f64().unwrap() * apart);
+        }
+        write("diagnosis.json", &answer);
+        let mut file = json(&from.join("case.json"));
+        file["labels"] = json!({ "robot": format!("r{}", number % 40), "date": format!("2026-11-{:02}", number % 30 + 1),
+                                 "joint": ["shoulder", "elbow", "wrist"][number as usize % 3] });
+        write("case.json", &file);
+    }
+    fleet
+}
+
+#[test]
+fn the_report_of_a_thousand_diagnoses() {
+    let scratch = tempfile::tempdir().unwrap();
+    let fleet = fleet_of_a_thousand(scratch.path());
+    let output = trainer(&["report", fleet.to_str().unwrap(), "--quiet"]);
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let page = fleet.join("report.html");
+    let Some(mut browser) = Chromium::start() else { return };
+    look_at(&mut browser, &page);
+    without_scripts(&mut browser, &page);
+    instruments::sort(&mut browser, &page);
+    let count = "(() => { const table = [...document.querySelectorAll('table.rows')].find((table) => table.tBodies[0].rows.length > 900);
+        const links = [...table.querySelectorAll('a')].filter((link) => link.getAttribute('href').endsWith('/diagnosis.json'));
+        return links.length; })()";
+    assert_eq!(browser.evaluate(count), 990);
 }
 
 /// Names as hostile as a file system lets them be, and as long.

@@ -109,20 +109,20 @@ impl RunFolder {
     /// [`RunError::Locked`] where another program works in it; [`RunError::Io`] where the system refuses.
     pub fn resume_on(disk: &Disk, path: &Path) -> Result<Self, RunError> {
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
-        let folder = Self::locked(disk, path.to_owned())?;
-        for place in ["", CHECKPOINTS, "model"] {
-            let place = if place.is_empty() { path.to_owned() } else { path.join(place) };
-            for name in names(&place)?.iter().filter(|name| name.starts_with(TEMPORARY)) {
-                let path = place.join(name);
-                disk.remove_file(&path).map_err(RunError::io(&path, "take away"))?;
-            }
+        Self::locked(disk, path.to_owned())?.cleaned()
+    }
+
+    /// Takes away what a killed program was about to write; the folder is this process's own.
+    fn cleaned(self) -> Result<Self, RunError> {
+        for place in [self.path.clone(), self.path.join(CHECKPOINTS), self.path.join("model")] {
+            remove_temporary(&self.disk, &place)?;
         }
-        Ok(folder)
+        Ok(self)
     }
 
     /// Makes this folder, or takes it as it is, and locks it as long as this or a copy lives; `None` where another
     /// program works in it. Of several programs that share the cases of one folder, each takes those that it can
-    /// claim; what a killed one had claimed is free.
+    /// claim; what a killed one had claimed is free, and what it was about to write is taken away.
     ///
     /// # Errors
     /// [`RunError::Io`] where the system refuses.
@@ -130,7 +130,8 @@ impl RunFolder {
         let disk = Disk::default();
         disk.make_folders(path).map_err(RunError::io(path, "create"))?;
         let lock = Lock::claim(&disk, &path.join(LOCK))?;
-        Ok(lock.map(|lock| Self { path: path.to_owned(), disk, _lock: Some(Arc::new(lock)) }))
+        lock.map(|lock| Self { path: path.to_owned(), disk, _lock: Some(Arc::new(lock)) }.cleaned())
+            .transpose()
     }
 
     /// As [`RunFolder::claim`], once whoever works in the folder lets go.
@@ -370,6 +371,15 @@ fn is_empty(path: &Path) -> Result<bool, RunError> {
 }
 
 /// Names of what a folder holds, sorted; none where there is no such folder.
+/// Takes away the temporary files of a folder in which no program is writing.
+pub(crate) fn remove_temporary(disk: &Disk, folder: &Path) -> Result<(), RunError> {
+    for name in names(folder)?.iter().filter(|name| name.starts_with(TEMPORARY)) {
+        let path = folder.join(name);
+        disk.remove_file(&path).map_err(RunError::io(&path, "take away"))?;
+    }
+    Ok(())
+}
+
 fn names(path: &Path) -> Result<Vec<String>, RunError> {
     if !path.exists() {
         return Ok(Vec::new());

@@ -86,6 +86,29 @@ impl Lock {
         }
     }
 
+    /// Shares the lock on a file, made where it is absent, with others who share it. Who comes while nobody has it has it
+    /// alone first, and does `alone`.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses; what `alone` gives.
+    pub(crate) fn share(
+        disk: &Disk,
+        path: &Path,
+        alone: impl FnOnce() -> Result<(), RunError>,
+    ) -> Result<Self, RunError> {
+        let shared = Self { file: open(disk, path)? };
+        match shared.file.try_lock() {
+            Ok(()) => {
+                alone()?;
+                shared.file.unlock().map_err(RunError::io(path, "unlock"))?;
+            }
+            Err(TryLockError::WouldBlock) => (),
+            Err(TryLockError::Error(error)) => return Err(RunError::io(path, "lock")(error)),
+        }
+        shared.file.lock_shared().map_err(RunError::io(path, "lock"))?;
+        Ok(shared)
+    }
+
     /// The lock on a file, with its holder's name in it.
     fn signed(disk: &Disk, path: &Path, mut file: File) -> Result<Self, RunError> {
         let holder = Holder { pid: std::process::id(), host: host(), since: Timestamp::now().to_string() };
@@ -180,6 +203,27 @@ mod tests {
         drop(first);
         assert!(Lock::claim(&disk, &path).unwrap().is_some());
         assert!(Lock::claim(&disk, &folder.path().join("absent/case.lock")).is_err());
+    }
+
+    #[test]
+    fn the_first_of_those_who_share_has_it_alone_for_a_moment() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("shared");
+        let disk = Disk::default();
+        let mut alone = 0;
+        let mut share = || {
+            Lock::share(&disk, &path, || {
+                alone += 1;
+                Ok(())
+            })
+            .unwrap()
+        };
+        let (first, second) = (share(), share());
+        drop(first);
+        let third = share();
+        drop((second, third));
+        drop(share());
+        assert_eq!(alone, 2);
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! | `config.toml`, `environment.json` | the configuration that every run starts from; what it was frozen with |
 //! | `state/<digest>.json` | one file for each run that came to its end ([`SweepEnd`]) |
 //! | `state/<digest>.lock` | who makes the run; the system's lock on it is what counts |
+//! | `state/.lock` | shared by the processes that work on the sweep |
 //! | `runs/NNNN-…/` | ordinary run folders |
 //!
 //! Every file is whole or absent, and `sweep.json` comes last when a sweep is frozen, so a crash leaves a sweep that
@@ -17,8 +18,8 @@
 use crate::atomic;
 use crate::disk::Disk;
 use crate::error::RunError;
-use crate::folder::RunFolder;
-use crate::lock::Lock;
+use crate::folder::{RunFolder, remove_temporary};
+use crate::lock::{LOCK, Lock};
 use results::{SWEEP_SCHEMA, SweepEnd, SweepLine, SweepManifest, SweepState};
 use std::collections::BTreeMap;
 use std::io::ErrorKind;
@@ -53,7 +54,8 @@ pub enum SweepFolderError {
     },
 }
 
-/// A run in this process's hands, until this is dropped or the process ends, however it ends.
+/// A run in this process's hands, or its place among those who work on a sweep, until this is dropped or the process ends,
+/// however it ends.
 #[derive(Debug)]
 pub struct Claim {
     _lock: Lock,
@@ -158,6 +160,20 @@ impl SweepFolder {
         }
         manifest.runs.extend(lines);
         self.refresh(manifest)
+    }
+
+    /// Says that this process works on the sweep, until what is returned is dropped or the process ends, however it ends.
+    /// Where no other process does, files that killed ones were about to write are taken away.
+    ///
+    /// # Errors
+    /// [`RunError::Io`] where the system refuses.
+    pub fn enter(&self) -> Result<Claim, RunError> {
+        let disk = Disk::default();
+        let (configs, state) = (self.path().join(CONFIGS), self.path().join(STATE));
+        disk.make_folders(&state).map_err(RunError::io(&state, "create"))?;
+        let clean =
+            || [self.path(), &configs, &state].iter().try_for_each(|place| remove_temporary(&disk, place));
+        Ok(Claim { _lock: Lock::share(&disk, &state.join(LOCK), clean)? })
     }
 
     /// Takes a run into this process's hands; `None` where another one has it.
@@ -435,6 +451,25 @@ mod tests {
         assert_eq!(sweep.manifest().unwrap().unwrap().runs[0].state, SweepState::Pending);
         sweep.end_run(&done(1, &name)).unwrap();
         assert_eq!(sweep.end_of(&digest), Some(done(1, &name)));
+    }
+
+    /// A live process may be writing: only who comes to an empty room cleans it.
+    #[test]
+    fn what_killed_processes_were_writing_is_taken_away_when_none_is_left() {
+        let root = tempfile::tempdir().unwrap();
+        let sweep = frozen(root.path(), 1);
+        let places = [".tmpX", "configs/.tmpX", "state/.tmpX"].map(|name| root.path().join(name));
+        let first = sweep.enter().unwrap();
+        for place in &places {
+            std::fs::write(place, "half a fi").unwrap();
+        }
+        let second = sweep.enter().unwrap();
+        drop(first);
+        assert!(places.iter().all(|place| place.exists()));
+        drop(second);
+        let _third = sweep.enter().unwrap();
+        assert!(!places.iter().any(|place| place.exists()));
+        assert!(root.path().join("configs/0001.toml").exists() && sweep.manifest().unwrap().is_some());
     }
 
     #[test]

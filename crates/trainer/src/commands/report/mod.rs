@@ -23,7 +23,10 @@ pub(crate) fn command(run: &Path, output: Output) -> Result<Outcome, TrainerErro
     let folder = RunFolder::open(run);
     let sweep = SweepFolder::open(run);
     match sweep.manifest()? {
-        Some(mut manifest) => drop(finish(&sweep, &mut manifest)?),
+        Some(mut manifest) => {
+            let _present = sweep.enter()?;
+            finish(&sweep, &mut manifest)?;
+        }
         None if fleet::is_one(run) => fleet::write(&folder)?,
         None if !has_run_files(run) => return Err(no_run(run)),
         None => write_report(&folder)?,

@@ -37,6 +37,7 @@ struct Answer<'a> {
 pub(crate) fn command(arguments: &SweepArguments) -> Result<Outcome, TrainerError> {
     let cancel = interrupt::watch()?;
     let mut sweep = frozen::settle(arguments)?;
+    let _present = sweep.folder.enter()?;
     let searches = sweep.manifest.search.clone().filter(looks_at_results);
     if let Some(search) = &searches
         && (arguments.share.launcher.is_some() || arguments.share.shard.is_some())
