@@ -92,6 +92,7 @@ impl From<WorkflowError> for Error {
             }
             E::Diagnosis { .. } => Self::Diagnosis(error),
             E::Record(_)
+            | E::NoLogs { .. }
             | E::MissingInput { .. }
             | E::OtherUnit { .. }
             | E::SameRecord { .. }
