@@ -118,3 +118,41 @@ impl LeastSquares for Objective<'_> {
         Ok(parameters)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    /// At their best the loss is flat along the linear parameters, and the layers below are where they were.
+    #[test]
+    fn a_projection_flattens_the_loss_along_the_linear_parameters_and_moves_no_other() {
+        let times: Vec<f64> = (0..30).map(|at| f64::from(at) / 14.5 - 1.0).collect();
+        let targets: Vec<f64> = times.iter().map(|time| (3.0 * time).sin() - 1.7 * time).collect();
+        let hidden = [5, 4];
+        let objective = Objective {
+            hidden: &hidden,
+            device: &neural::device().unwrap(),
+            times: &times,
+            targets: &targets,
+            collocation: &times,
+            physics_weight: 10.0,
+            network_at_zero: false,
+        };
+        let mut start = AffineSkipNetwork::draw_parameters(&hidden, 1.0, &mut StdRng::seed_from_u64(3));
+        start.push(0.2);
+        let start = DVector::from_vec(start);
+        let gradient = |at: &DVector<f64>| {
+            let Linearized { residuals, jacobian } = objective.linearize(at).unwrap();
+            (residuals.norm_squared(), jacobian.tr_mul(&residuals))
+        };
+        let projected = objective.project(start.clone()).unwrap();
+        let ((before, steep), (after, flat)) = (gradient(&start), gradient(&projected));
+        // The last layer's four weights and its bias, a, b, λ.
+        let linear = start.len() - 8;
+        assert_eq!(projected.rows(0, linear), start.rows(0, linear));
+        let [steep, flat] = [steep, flat].map(|gradient| gradient.rows(linear, 8).norm());
+        assert!(after < 0.5 * before && flat < 1e-9 * steep, "{before} {after} {steep} {flat}");
+    }
+}
