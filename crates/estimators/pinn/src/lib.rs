@@ -38,6 +38,7 @@ pub const ENTRY: Entry = Entry {
     citations: &[
         "Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686-707",
         "Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431-441",
+        "Golub, Pereyra, SIAM Journal on Numerical Analysis 10 (1973) 413-432",
     ],
     fields: config::FIELDS,
     build: |settings| {
