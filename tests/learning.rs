@@ -29,6 +29,8 @@ fn a_study_leaves_scores_models_tables_and_a_page() {
     let sindy = row(&result, "sindy");
     assert_eq!(sindy["kind"], "learner");
     assert_eq!(row(&result, "exact")["kind"], "reference");
+    // The simulator behind it names its coefficients in its own words; a law alone is beside the true terms.
+    assert!(row(&result, "exact")["coefficients"].get("sign(theta_dot)").is_none(), "{result}");
     let friction = &sindy["coefficients"]["sign(theta_dot)"];
     assert!(
         (number(friction, "/value") + 0.15).abs() < 0.01 && (number(friction, "/truth") + 0.15).abs() < 1e-6
@@ -96,6 +98,28 @@ fn a_sequence_model_beats_the_autoregression_and_predicts_a_record() {
     let output = trainer(&["predict", model.to_str().unwrap(), record.to_str().unwrap(), "--json"]);
     let said: Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(number(&said, "/free_run_rmse") < error("arx"), "{said}");
+}
+
+/// Devices compute in single precision at least: a training in it is that in doubles, but for its rounding.
+#[test]
+fn single_precision_learns_what_doubles_do_and_a_device_that_is_not_there_is_refused() {
+    let config = "configs/learn/temporal-convolution.toml";
+    let with = |precision: &str| {
+        let precision = format!("temporal-convolution.precision={precision}");
+        let few = ["temporal-convolution.epochs=1", "temporal-convolution.windows=64", "learn.baselines=arx"];
+        let (code, result, _) = result(&[&[config, precision.as_str()], &few[..]].concat());
+        assert_eq!(code, 0, "{result}");
+        number(row(&result, "temporal-convolution"), "/test/free_run_rmse")
+    };
+    let (single, double) = (with("f32"), with("f64"));
+    assert!(single != double && (single / double - 1.0).abs() < 1e-3, "{single} {double}");
+    for feature in ["wgpu", "cuda"] {
+        let device = format!("temporal-convolution.device={feature}");
+        let output = trainer(&["check", config, &device]);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains("built with (cpu)") && message.contains(&format!("--features {feature}")));
+    }
 }
 
 #[test]

@@ -193,6 +193,30 @@ fn a_new_effect_takes_three_files_and_is_diagnosed_and_hidden() {
     }
 }
 
+/// The recipe's own command writes the files that the recipe names, and nothing else, for each kind that it names.
+#[test]
+fn a_new_learner_takes_the_files_that_the_recipe_names() {
+    let text = fs::read_to_string(root().join("CONTRIBUTING.md")).unwrap();
+    let section = text.split("\n## Adding a learner\n").nth(1).unwrap().split("\n## ").next().unwrap();
+    let command = section.lines().find_map(|line| line.strip_prefix("    cargo run -p trainer -- ")).unwrap();
+    let words: Vec<String> =
+        section.split('`').skip(1).step_by(2).map(|word| word.replace("NAME", "own_learner")).collect();
+    let (source, registry, config) = (&words[0], format!("crates/learn/src/{}", words[1]), &words[2]);
+    for kind in ["sequence", "field", "regressor"] {
+        assert!(section.contains(kind), "the recipe does not name {kind}");
+        let scratch = workspace();
+        let home = scratch.path();
+        let command = command.replace("NAME", "own-learner").replace("sequence", kind);
+        let mut arguments: Vec<&str> = command.split(' ').collect();
+        arguments.extend(["--workspace", home.to_str().unwrap()]);
+        let written = trainer(&arguments);
+        assert!(written.status.success(), "{}", String::from_utf8_lossy(&written.stderr));
+        assert_eq!(added(home), (vec![source.clone()], vec![(registry.clone(), 2)]));
+        let config = fs::read_to_string(home.join(config.replace('_', "-"))).unwrap();
+        assert!(config.contains("learners = [\"own-learner\"]"), "{config}");
+    }
+}
+
 /// Learners of one's own, one of each kind, written by `trainer new`: they compile, train, come back from their files and
 /// give the same bits twice. Building a copy takes minutes; run it with
 /// `cargo test -p trainer --test acceptance recipe::a_new_learner -- --ignored`.

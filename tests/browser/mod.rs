@@ -200,8 +200,9 @@ fn fleet_of_a_thousand(scratch: &Path) -> PathBuf {
         }
         write("diagnosis.json", &answer);
         let mut file = json(&from.join("case.json"));
-        file["labels"] = json!({ "robot": format!("r{}", number % 40), "date": format!("2026-11-{:02}", number % 30 + 1),
-                                 "joint": ["shoulder", "elbow", "wrist"][number as usize % 3] });
+        let joint = ["shoulder", "elbow", "wrist"][number as usize % 3];
+        let (robot, date) = (format!("r{}", number % 40), format!("2026-11-{:02}", number % 30 + 1));
+        file["labels"] = json!({ "robot": robot, "date": date, "joint": joint });
         write("case.json", &file);
     }
     fleet

@@ -41,6 +41,13 @@ impl DeviceKind {
             Self::Cuda => cfg!(feature = "cuda"),
         }
     }
+
+    /// The names of all that the program was built with, for a message.
+    #[must_use]
+    pub fn all_built() -> String {
+        let built = [Self::Cpu, Self::Wgpu, Self::Cuda].into_iter().filter(|kind| kind.is_built());
+        built.map(Self::name).collect::<Vec<_>>().join(", ")
+    }
 }
 
 /// Width of the numbers that a network computes with.
@@ -134,15 +141,10 @@ pub fn device_of(kind: DeviceKind, precision: Precision) -> Result<Device, FitEr
 fn configured(kind: DeviceKind, precision: Precision) -> Result<(Device, Precision), String> {
     let name = kind.name();
     if !kind.is_built() {
-        let built: Vec<&str> = [DeviceKind::Cpu, DeviceKind::Wgpu, DeviceKind::Cuda]
-            .into_iter()
-            .filter(|kind| kind.is_built())
-            .map(DeviceKind::name)
-            .collect();
         return Err(format!(
             "device \"{name}\" was asked for, and this program was built without it: it has {}; build it with \
              `--features {name}`",
-            built.join(", ")
+            DeviceKind::all_built()
         ));
     }
     let Some(mut device) = first(kind) else {

@@ -34,6 +34,20 @@ pub trait LeastSquares {
     /// # Errors
     /// Whatever keeps the problem from being evaluated.
     fn linearize(&self, parameters: &DVector<f64>) -> Result<Linearized, Self::Error>;
+
+    /// Parameters after a step, with those that enter the residuals linearly at their best values (variable
+    /// projection); as they are, unless the problem knows better.
+    ///
+    /// From such a point the full step is that of the projected problem in Kaufman's form.
+    ///
+    /// References: Golub, Pereyra, SIAM J. Numer. Anal. 10 (1973) 413; Kaufman, BIT 15 (1975) 49; Ruhe, Wedin, SIAM
+    /// Review 22 (1980) 318.
+    ///
+    /// # Errors
+    /// Whatever keeps the problem from being evaluated.
+    fn project(&self, parameters: DVector<f64>) -> Result<DVector<f64>, Self::Error> {
+        Ok(parameters)
+    }
 }
 
 /// The method's settings.
@@ -250,6 +264,7 @@ impl LevenbergMarquardt {
         step: &DVector<f64>,
         damping: f64,
     ) -> Result<Option<Accepted>, P::Error> {
+        let trial = problem.project(trial)?;
         // ‖r‖² − ‖r + J·s‖² = sᵀ(μ·s − g) for the damped step s.
         let predicted = step.dot(&(step * damping - &point.gradient));
         if predicted <= ROUNDING_SHARE * point.loss {

@@ -79,6 +79,20 @@ impl PlainNetwork {
         self.output(of, t, &carried)
     }
 
+    /// Outputs of the last hidden layer, points by its width, or their derivatives: what the last layer's weights multiply.
+    #[must_use]
+    pub fn last_hidden(&self, of: Of, t: &[f64]) -> DMatrix<f64> {
+        let (_, mut inputs) = self.forward(of, t, true);
+        // There is an output layer always.
+        inputs.pop().map_or_else(
+            || DMatrix::zeros(t.len(), 0),
+            |last| match of {
+                Of::Value => last.value,
+                Of::Derivative => last.derivative,
+            },
+        )
+    }
+
     /// Values or derivatives at points, and `scale` times their derivatives with respect to every parameter, which go
     /// into `jacobian`, points by parameters; all of it is overwritten.
     #[must_use]

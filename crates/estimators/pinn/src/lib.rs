@@ -4,7 +4,8 @@
 //! measured ln A (data), and it obeys d ln A/dt + λ = 0 at collocation points (physics), the derivative
 //! taken exactly through the layers. It is trained by Levenberg–Marquardt on the exact Jacobian, which
 //! copes with a large physics weight from the first step; raising the weight in stages, as gradient
-//! methods need it, took three times the steps and gave no better rate.
+//! methods need it, took three times the steps and gave no better rate. The last layer, the line beside it and λ enter
+//! the residuals linearly: after every step they take their best values for the layers below (variable projection).
 //!
 //! A finite physics weight w leaves the network some freedom to bend, and λ a bias that falls as 1/w.
 //! That is part of the method, not of its numerics.
@@ -37,6 +38,7 @@ pub const ENTRY: Entry = Entry {
     citations: &[
         "Raissi, Perdikaris, Karniadakis, Journal of Computational Physics 378 (2019) 686-707",
         "Marquardt, SIAM Journal on Applied Mathematics 11 (1963) 431-441",
+        "Golub, Pereyra, SIAM Journal on Numerical Analysis 10 (1973) 413-432",
     ],
     fields: config::FIELDS,
     build: |settings| {

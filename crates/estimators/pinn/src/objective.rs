@@ -21,6 +21,10 @@ pub(crate) struct Objective<'a> {
 /// Parameters that stand beside the network's layers, the last ones: a and b of its skip, and λ.
 pub(crate) const BESIDE: usize = 3;
 
+/// Ridge of the linear parameters' step, as a share of the largest diagonal entry: hidden units that say nearly the same
+/// leave the normal matrix singular to rounding.
+const RIDGE: f64 = 1e-13;
+
 /// λ, and the network's parameters.
 fn split(parameters: &DVector<f64>) -> Result<(f64, &[f64]), FitError> {
     let none = || FitError::Backend { problem: "no parameters".to_owned() };
@@ -80,5 +84,75 @@ impl LeastSquares for Objective<'_> {
             jacobian.columns_mut(0, (weights + 1).saturating_sub(BESIDE)).fill(0.0);
         }
         Ok(Linearized { residuals: self.assemble(&fitted, &slopes, rate), jacobian })
+    }
+
+    /// The last layer's weights, a, b and λ enter linearly: they take the step that minimizes the loss, the layers below
+    /// held. The last layer's bias does what a does, and stays.
+    fn project(&self, mut parameters: DVector<f64>) -> Result<DVector<f64>, FitError> {
+        let residuals = self.residuals(&parameters)?;
+        let (network, _) = self.plain(&parameters)?;
+        let (values, slopes) = (
+            network.last_hidden(Of::Value, self.times) * self.data_scale(),
+            network.last_hidden(Of::Derivative, self.collocation) * self.physics_scale(),
+        );
+        let (above, below, width) = (values.nrows(), slopes.nrows(), values.ncols());
+        let mut basis = DMatrix::zeros(above + below, width + BESIDE);
+        basis.view_mut((0, 0), values.shape()).copy_from(&values);
+        basis.view_mut((above, 0), slopes.shape()).copy_from(&slopes);
+        basis.view_mut((0, width), (above, 1)).fill(self.data_scale());
+        let times = self.times.iter().map(|time| time * self.data_scale());
+        basis.view_mut((0, width + 1), (above, 1)).copy_from(&DVector::from_iterator(above, times));
+        basis.view_mut((above, width + 1), (below, 2)).fill(self.physics_scale());
+        let mut normal = basis.tr_mul(&basis);
+        let ridge = RIDGE * normal.diagonal().max();
+        normal.iter_mut().step_by(width + BESIDE + 1).for_each(|entry| *entry += ridge);
+        if let Some(factor) = normal.cholesky() {
+            let step = factor.solve(&basis.tr_mul(&residuals));
+            let (weights, beside) = step.as_slice().split_at(width);
+            let held = parameters.len() - BESIDE;
+            let last = parameters.rows_mut(held - width - 1, width);
+            last.into_iter().zip(weights).for_each(|(weight, step)| *weight -= step);
+            let last = parameters.rows_mut(held, BESIDE);
+            last.into_iter().zip(beside).for_each(|(weight, step)| *weight -= step);
+        }
+        Ok(parameters)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::SeedableRng;
+    use rand::rngs::StdRng;
+
+    /// At their best the loss is flat along the linear parameters, and the layers below are where they were.
+    #[test]
+    fn a_projection_flattens_the_loss_along_the_linear_parameters_and_moves_no_other() {
+        let times: Vec<f64> = (0..30).map(|at| f64::from(at) / 14.5 - 1.0).collect();
+        let targets: Vec<f64> = times.iter().map(|time| (3.0 * time).sin() - 1.7 * time).collect();
+        let hidden = [5, 4];
+        let objective = Objective {
+            hidden: &hidden,
+            device: &neural::device().unwrap(),
+            times: &times,
+            targets: &targets,
+            collocation: &times,
+            physics_weight: 10.0,
+            network_at_zero: false,
+        };
+        let mut start = AffineSkipNetwork::draw_parameters(&hidden, 1.0, &mut StdRng::seed_from_u64(3));
+        start.push(0.2);
+        let start = DVector::from_vec(start);
+        let gradient = |at: &DVector<f64>| {
+            let Linearized { residuals, jacobian } = objective.linearize(at).unwrap();
+            (residuals.norm_squared(), jacobian.tr_mul(&residuals))
+        };
+        let projected = objective.project(start.clone()).unwrap();
+        let ((before, steep), (after, flat)) = (gradient(&start), gradient(&projected));
+        // The last layer's four weights and its bias, a, b, λ.
+        let linear = start.len() - 8;
+        assert_eq!(projected.rows(0, linear), start.rows(0, linear));
+        let [steep, flat] = [steep, flat].map(|gradient| gradient.rows(linear, 8).norm());
+        assert!(after < 0.5 * before && flat < 1e-9 * steep, "{before} {after} {steep} {flat}");
     }
 }

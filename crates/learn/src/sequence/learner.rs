@@ -8,7 +8,7 @@ use crate::data::{DataSet, Trajectory, Window, windows};
 use crate::training::{Schedule, State, Training, train};
 use crate::{Context, Fitted, LearnError, Learner, Model, Stored};
 use estimator::Reached;
-use neural::device_of;
+use neural::{DeviceKind, device_of};
 use settings::{Resolved, SettingsError};
 
 /// An architecture with its settings.
@@ -31,10 +31,25 @@ const HELD_BLOCKS: usize = 40;
 /// The learner of an architecture, from its section.
 ///
 /// # Errors
-/// [`SettingsError`] for a section of another form.
+/// [`SettingsError`] for a section of another form, and for a device that the program was built without.
 pub fn build<A: Architecture>(resolved: &Resolved) -> Result<Box<dyn Learner>, SettingsError> {
     let architecture: A = resolved.section(A::ID)?;
-    Ok(Box::new(SequenceLearner { architecture, settings: resolved.section(A::ID)? }))
+    let settings: Settings = resolved.section(A::ID)?;
+    let name = settings.device.name();
+    if !settings.device.is_built() {
+        let device = resolved.setting(&format!("{}.device", A::ID))?;
+        let built = DeviceKind::all_built();
+        return Err(SettingsError::BadValue {
+            origin: device.origin.clone(),
+            key: device.key(),
+            found: format!("\"{name}\""),
+            expected: format!(
+                "what this program was built with ({built}); build it with `--features {name}`"
+            ),
+            unit: String::new(),
+        });
+    }
+    Ok(Box::new(SequenceLearner { architecture, settings }))
 }
 
 /// A model of an architecture, from its file.

@@ -122,16 +122,18 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
 
 fn score_row(row: &LearnRow) -> ScoreRow {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), |value| significant(value, 3));
+    // An ablation is a free run of a model that was trained already: it has no single steps and no time of its own.
+    let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     let cells = row.test.as_ref().map_or_else(Vec::new, |test| {
         vec![
             number(test.free_run_rmse),
             number(test.over_noise),
             significant(test.horizon_s, 3),
-            number(test.one_step_rmse),
+            own(number(test.one_step_rmse)),
             test.coverage_95.map_or_else(String::new, |share| format!("{} %", fixed(100.0 * share, 1))),
             row.torque_error.map_or_else(String::new, |error| format!("{} %", significant(100.0 * error, 2))),
             whole(row.parameters),
-            significant(row.seconds, 2),
+            own(significant(row.seconds, 2)),
         ]
     });
     let reason = row.failure.clone().unwrap_or_else(|| row.reached.name().to_owned());

@@ -103,6 +103,14 @@ fn an_ablation_is_a_row_and_in_no_plot() {
     // The result stands in the page too, with its quotes escaped.
     assert_eq!(page.matches(">Method sindy:at-zero<").count(), 1);
     assert!(page.matches(">Method arx<").count() > 1);
+    // Neither single steps nor a training of its own: both cells are empty, not infinite and not zero.
+    let cells = |title: &str| {
+        let row = page.split(&format!(">{title}<")).nth(1).unwrap().split("</tr>").next().unwrap();
+        row.split("<td>").skip(1).map(|cell| cell.split('<').next().unwrap().to_owned()).collect::<Vec<_>>()
+    };
+    let [ablation, baseline] = ["Method sindy:at-zero", "Method arx"].map(cells);
+    assert_eq!([&ablation[3], &ablation[7]], ["", ""], "{ablation:?}");
+    assert_eq!([&baseline[3], &baseline[7]], ["∞", "0.20"], "{baseline:?}");
 }
 
 #[test]

@@ -147,8 +147,9 @@ fn coefficients(
     if all.is_empty() {
         return None;
     }
-    for error in errors {
-        // A term of the truth that the law lacks stands with a value of 0.
+    // A term of the truth that the law lacks stands with a value of 0; a simulator's coefficients have other names.
+    let is_law = errors.iter().any(|error| all.contains_key(&error.name));
+    for error in errors.into_iter().filter(|_| is_law) {
         all.entry(error.name).or_insert(LearnCoefficient {
             value: error.value,
             unit: String::new(),

@@ -54,6 +54,7 @@ pub(super) const CITED: &[(&str, &[&str])] = &[
     ("Gentleman, J. Inst. Math. Appl. 12 (1973) 329", &["gentleman1973"]),
     ("Gilbert, Bell System Technical Journal 39 (1960) 1253", &["gilbert1960"]),
     ("Golub, Numerische Mathematik 7 (1965) 206", &["golub1965"]),
+    ("Golub, Pereyra, SIAM Journal on Numerical Analysis 10 (1973) 413-432", &["golub1973"]),
     ("Gragg, SIAM Journal on Numerical Analysis 2 (1965) 384-403", &["gragg1965"]),
     ("Hager, Zhang, SIAM J. Optim. 16 (2005) 170: acceptance near the optimum", &["hager2005"]),
     ("Hestenes, J. SIAM 6 (1958) 51", &["hestenes1958"]),

@@ -57,6 +57,8 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
 
 fn cells(row: &LearnRow) -> Vec<String> {
     let number = |value: Option<f64>| value.map_or_else(|| "∞".to_owned(), two_digits);
+    // An ablation is a free run of a model that was trained already: it has no single steps and no time of its own.
+    let own = |cell: String| if row.kind == LearnKind::Ablation { String::new() } else { cell };
     let name = match row.kind {
         LearnKind::Learner => row.id.clone(),
         kind => format!("{} ({})", row.id, kind.name()),
@@ -74,12 +76,12 @@ fn cells(row: &LearnRow) -> Vec<String> {
             number(test.free_run_rmse),
             number(test.over_noise),
             format!("{:.2}", test.horizon_s),
-            number(test.one_step_rmse),
+            own(number(test.one_step_rmse)),
             test.coverage_95.map_or_else(String::new, |share| format!("{:.1} %", 100.0 * share)),
         ]),
     }
     cells.push(row.torque_error.map_or_else(String::new, |error| format!("{} %", two_digits(100.0 * error))));
     cells.push(row.parameters.to_string());
-    cells.push(format!("{:.2}", row.seconds));
+    cells.push(own(format!("{:.2}", row.seconds)));
     cells
 }
