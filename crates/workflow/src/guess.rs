@@ -131,7 +131,6 @@ mod tests {
     use super::{configuration, digits, nominal_toml};
     use dynamics::Coordinate;
     use identify::{Basis, Estimated, LinearOscillator};
-    use record::two_digits;
 
     fn of(value: f64, std_error: f64) -> Estimated {
         Estimated { value, std_error }

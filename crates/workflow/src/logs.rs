@@ -101,10 +101,6 @@ mod tests {
         found.iter().map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
     }
 
-    fn refusal(folder: &Path) -> String {
-        logs(folder).unwrap_err().to_string()
-    }
-
     #[test]
     fn a_folder_stands_for_its_logs() {
         let scratch = tempfile::tempdir().unwrap();
