@@ -10,6 +10,17 @@ use serde::{Deserialize, Serialize};
 /// Numbers are in SI units (kg m², N m s/rad, N m/rad, rad for an angle; kg, N s/m, N/m, m for a
 /// displacement), or everything is divided by the inertia, which is then exactly 1 (1/s for damping, 1/s²
 /// for stiffness). A stiffness of 0 is a drive without a spring.
+///
+/// ```
+/// use dynamics::Nominal;
+/// // An arm of 5e-4 kg m² on a torsional spring; the same divided by its inertia swings alike.
+/// let arm = Nominal::new(5e-4, 1.1e-4, 0.2365, 0.0)?;
+/// let per_inertia = Nominal::new(1.0, 1.1e-4 / 5e-4, 0.2365 / 5e-4, 0.0)?;
+/// assert!((arm.angular_frequency() - 21.75).abs() < 0.01, "√(k/I) in rad/s");
+/// assert!((arm.angular_frequency() - per_inertia.angular_frequency()).abs() < 1e-12);
+/// assert!(Nominal::new(0.0, 0.1, 1.0, 0.0).is_err(), "an inertia is above 0");
+/// # Ok::<(), dynamics::DynamicsError>(())
+/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Raw", into = "Raw")]
 pub struct Nominal {

@@ -9,6 +9,8 @@ pub struct Observations {
     pub(crate) times_s: Vec<f64>,
     pub(crate) values: Vec<f64>,
     pub(crate) input: Option<Vec<f64>>,
+    /// Times and inputs of rows between the samples that hold an input and no value.
+    pub(crate) input_rows: Vec<(f64, f64)>,
     pub(crate) quantity: Quantity,
     pub(crate) unit: &'static str,
     /// Stamps as written, in seconds since the first.
@@ -27,7 +29,7 @@ pub struct Observations {
 /// Usual steps in rows that a gap is longer than: a row or two leave the samples beside them near enough.
 const STEPS: usize = 3;
 
-/// Samples that come after a gap in the rows.
+/// Samples that come after a gap in the rows; where an input acts, after one in which it is not known.
 fn after_gaps(record: &Record) -> Vec<usize> {
     let rows = record.rows().unwrap_or_default();
     let steps: Vec<usize> = rows.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
@@ -35,7 +37,13 @@ fn after_gaps(record: &Record) -> Vec<usize> {
     ordered.sort_unstable();
     // Without rows there is no step.
     let usual = ordered.get(ordered.len() / 2).copied().unwrap_or(1);
-    steps.iter().enumerate().filter(|(_, step)| **step > STEPS * usual).map(|(at, _)| at + 1).collect()
+    let mut known = [rows, &record.input_rows().iter().map(|own| own.row).collect::<Vec<_>>()].concat();
+    known.sort_unstable();
+    let gaps = known.windows(2).filter_map(|w| Some((w.first()?, w.last()?)));
+    let gaps = gaps.filter(|(from, to)| **to - **from > STEPS * usual);
+    let mut after: Vec<usize> = gaps.map(|(_, to)| rows.partition_point(|row| row < to)).collect();
+    after.dedup();
+    after
 }
 
 impl Observations {
@@ -48,6 +56,12 @@ impl Observations {
             times_s: clock.times_s.iter().map(|time| time - first).collect(),
             values: record.values().to_vec(),
             input: record.input().map(<[f64]>::to_vec),
+            input_rows: clock
+                .input_row_times_s(record)
+                .into_iter()
+                .zip(record.input_rows())
+                .map(|(time, own)| (time - first, own.input))
+                .collect(),
             quantity: record.quantity(),
             unit: record.unit(),
             stamps_s: record.stamps_s().iter().map(|time| time - stamp).collect(),

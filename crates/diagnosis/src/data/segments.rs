@@ -344,7 +344,10 @@ fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
     // Equal times carry no function of time; the last of each group stands.
     let mut times: Vec<f64> = Vec::new();
     let mut kept: Vec<f64> = Vec::new();
-    for (&time, &value) in record.times_s.iter().zip(values) {
+    let sampled = record.times_s.iter().copied().zip(values.iter().copied());
+    let mut all: Vec<(f64, f64)> = sampled.chain(record.input_rows.iter().copied()).collect();
+    all.sort_by(|one, other| one.0.total_cmp(&other.0));
+    for (time, value) in all {
         if times.last() == Some(&time) {
             times.pop();
             kept.pop();

@@ -87,7 +87,8 @@ impl ClockRates {
         };
         let mut records = self.records.clone();
         for (record, rate) in records.iter_mut().zip(&rates) {
-            for time in &mut record.times_s {
+            let input_rows = record.input_rows.iter_mut().map(|(time, _)| time);
+            for time in record.times_s.iter_mut().chain(input_rows) {
                 *time /= 1.0 + rate;
             }
         }

@@ -32,7 +32,8 @@ pub(crate) fn findings(observations: &Observations, kept: &[bool], nominal: &Nom
             ),
         });
     }
-    findings.extend(dropouts(stamps, observations.input.is_some()));
+    let is_blind = observations.input.is_some() && observations.input_rows.is_empty();
+    findings.extend(dropouts(stamps, is_blind));
     findings.extend(errors_of_stamps(observations, kept));
     let outliers = kept.iter().filter(|kept| !**kept).count();
     if outliers > 0 {

@@ -14,6 +14,26 @@
 //! costs five digits at a tolerance of 1e-12; none offers quadratures with the order of the step. Collocation
 //! gives the interpolant, the quadratures of the energy accounts and exact landing from one set of tables
 //! that is computed in sixty lines.
+//!
+//! # Example
+//! Dry friction stops a swing; what damping and friction took is the energy that it had:
+//!
+//! ```
+//! use dynamics::reference::{Happening, Tolerance, simulate};
+//! use dynamics::{Active, Nominal, Start, System};
+//!
+//! let friction = Active::named("coulomb_friction", &[("torque", 20.0)])?;
+//! let system = System::new(Nominal::new(1.0, 0.3, 484.0, 0.0)?, vec![friction])?;
+//! let times = [0.0, 1.0, 5.0];
+//! let motion = simulate(&system, Start::release(0.5), None, &times, &Tolerance::default())?;
+//!
+//! let at_rest = motion.events.iter().find(|event| event.happening == Happening::Stick);
+//! assert!(at_rest.is_some_and(|event| event.time < 5.0 && event.velocity == 0.0));
+//! let energy = |at: usize| 0.5 * motion.velocity[at].powi(2) + 0.5 * 484.0 * motion.position[at].powi(2);
+//! let work: f64 = motion.accounts.iter().map(|account| account.work[2]).sum();
+//! assert!((energy(2) - energy(0) - work).abs() < 1e-9, "the accounts are complete");
+//! # Ok::<(), dynamics::DynamicsError>(())
+//! ```
 
 mod gauss;
 mod landing;

@@ -55,7 +55,7 @@ pub struct Account {
     pub work: Vec<f64>,
 }
 
-/// A motion at the times asked for.
+/// A motion at the times asked for: each list has one entry for each of these times, but for [`Motion::events`].
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Motion {
     /// Positions in rad or m.

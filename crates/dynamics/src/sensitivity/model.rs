@@ -16,7 +16,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Settings {
-    /// Error of a step relative to the largest position, velocity and hidden state so far.
+    /// Error of a step relative to the largest position, velocity and hidden state so far; above 0, 1e-10 by default.
     pub tolerance: f64,
     /// Degree of the Taylor series, 2 to 19.
     pub degree: usize,
