@@ -267,12 +267,15 @@ mod tests {
     fn a_sensor_that_clips_the_first_peak_is_named() {
         let nominal = Nominal::new(1.0, 0.08, 110.0, 0.0).unwrap();
         let system = System::new(nominal, Vec::new()).unwrap();
-        let bound = Active::new("sensor_saturation", &[0.9912]).unwrap();
-        let chain = Chain::new(Observed::Position, 5e-4, vec![bound]).unwrap();
-        let record = record(&system, 1.0, 6500, &chain, 1);
-        let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
-        let answer =
-            diagnose(&[Observations::new(&record, &clock)], &nominal, &Settings::default(), &|| 0.0).unwrap();
-        assert_eq!(answer.verdict.effects, ["sensor_saturation"]);
+        // Ranges about zero and beside it; the second clips at both ends.
+        for range in [[0.9912, 0.0], [0.8, 0.1]] {
+            let bound = Active::new("sensor_saturation", &range).unwrap();
+            let chain = Chain::new(Observed::Position, 5e-4, vec![bound]).unwrap();
+            let record = record(&system, 1.0, 6500, &chain, 1);
+            let clock = Clock::new(&record, ClockChoice::Auto).unwrap();
+            let observations = [Observations::new(&record, &clock)];
+            let answer = diagnose(&observations, &nominal, &Settings::default(), &|| 0.0).unwrap();
+            assert_eq!(answer.verdict.effects, ["sensor_saturation"], "{range:?}");
+        }
     }
 }

@@ -7,7 +7,8 @@ pub(crate) struct Sensor {
     pub(crate) nonlinearity: Option<(f64, f64)>,
     pub(crate) drift: Option<f64>,
     pub(crate) clock: Option<f64>,
-    pub(crate) saturation: Option<f64>,
+    /// Half its range, and the center of it.
+    pub(crate) saturation: Option<(f64, f64)>,
     /// How far readings stay behind, in either direction: [`crate::measurement::encoder_hysteresis`]. Not a map of one value.
     pub(crate) reading: Option<f64>,
 }
@@ -19,17 +20,18 @@ pub(crate) struct Observed {
     /// With respect to the observed quantity, its first and its second time derivative.
     pub(crate) by_motion: [f64; 3],
     /// With respect to the parameters of what the sensor does, at the places below.
-    pub(crate) by_parameter: [f64; 6],
+    pub(crate) by_parameter: [f64; 7],
 }
 
 impl Observed {
-    /// Places in [`Self::by_parameter`]: a lag, a nonlinearity's amplitude and phase, a drift, a clock's change, a bound.
+    /// Places in [`Self::by_parameter`]: a lag, a nonlinearity's amplitude and phase, a drift, a clock's change, half a range and its center.
     pub(crate) const BY_LAG: usize = 0;
     pub(crate) const BY_AMPLITUDE: usize = 1;
     pub(crate) const BY_PHASE: usize = 2;
     pub(crate) const BY_DRIFT: usize = 3;
     pub(crate) const BY_CLOCK: usize = 4;
     pub(crate) const BY_BOUND: usize = 5;
+    pub(crate) const BY_CENTER: usize = 6;
 }
 
 impl Sensor {
@@ -45,8 +47,8 @@ impl Sensor {
     /// answer up to (ω·T)³.
     pub(crate) fn observe(&self, x: f64, rate: f64, curvature: f64, time: f64, start: f64) -> Observed {
         let mut by_motion = [1.0, 0.0, 0.0];
-        let mut by_parameter = [0.0; 6];
-        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, by_bound] = &mut by_parameter;
+        let mut by_parameter = [0.0; 7];
+        let [by_lag, by_amplitude, by_phase, by_drift, by_clock, ..] = &mut by_parameter;
         let mut value = x;
         if let Some(lag) = self.lag {
             value += -lag * rate + lag * lag * curvature;
@@ -69,14 +71,15 @@ impl Sensor {
             value += drift * time;
         }
         *by_drift = time;
-        if let Some(bound) = self.saturation {
-            if value.abs() > bound {
-                value = bound * value.signum();
-                by_motion = [0.0; 3];
-                by_parameter = [0.0, 0.0, 0.0, 0.0, 0.0, value.signum()];
-            } else {
-                *by_bound = 0.0;
-            }
+        if let Some((bound, center)) = self.saturation
+            && (value - center).abs() > bound
+        {
+            let side = (value - center).signum();
+            value = center + bound * side;
+            by_motion = [0.0; 3];
+            by_parameter = [0.0; 7];
+            let [.., by_bound, by_center] = &mut by_parameter;
+            (*by_bound, *by_center) = (side, 1.0);
         }
         Observed { value, by_motion, by_parameter }
     }
@@ -84,7 +87,7 @@ impl Sensor {
 
 #[cfg(test)]
 mod tests {
-    use super::Sensor;
+    use super::{Observed, Sensor};
 
     /// Derivatives of the sensor's map against central differences.
     #[test]
@@ -94,7 +97,7 @@ mod tests {
             nonlinearity: Some((0.02, 0.4)),
             drift: Some(0.003),
             clock: Some(1e-3),
-            saturation: Some(5.0),
+            saturation: Some((5.0, 0.1)),
             reading: None,
         };
         let (x, rate, curvature, time) = (0.3, -2.0, 40.0, 7.0);
@@ -115,6 +118,17 @@ mod tests {
                 .value
         };
         assert!((slope(phase(h), phase(-h)) - at.by_parameter[2]).abs() < 1e-8);
+        for side in [-1.0, 1.0] {
+            let clipped = |bound: f64, center: f64| {
+                Sensor { saturation: Some((bound, center)), ..full }.observe(side, rate, curvature, time, 0.0)
+            };
+            let at = clipped(0.2, 0.05);
+            let by_bound = slope(clipped(0.2 + h, 0.05).value, clipped(0.2 - h, 0.05).value);
+            let by_center = slope(clipped(0.2, 0.05 + h).value, clipped(0.2, 0.05 - h).value);
+            assert!((by_bound - at.by_parameter[Observed::BY_BOUND]).abs() < 1e-8);
+            assert!((by_center - at.by_parameter[Observed::BY_CENTER]).abs() < 1e-8);
+            assert_eq!(at.by_motion, [0.0; 3]);
+        }
         let stamp = full.true_time(time);
         assert!((stamp + 0.5 * 1e-3 * stamp * stamp - time).abs() < 1e-12);
     }

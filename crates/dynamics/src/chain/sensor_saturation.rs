@@ -12,16 +12,26 @@ const DESCRIPTION: Description = Description {
     title: "Sensor saturation",
     kind: Kind::MeasuringChain,
     class: Class::Sensor,
-    equation: "x clipped to ±b",
-    latex: r"\min(\max(x,-b),b)",
-    parameters: &[Parameter {
-        name: "bound",
-        symbol: "b",
-        quantity: Quantity::Observed,
-        range: Range::POSITIVE,
-        meaning: "largest reading to either side",
-        default: None,
-    }],
+    equation: "x clipped to c ± b",
+    latex: r"\min(\max(x,c-b),c+b)",
+    parameters: &[
+        Parameter {
+            name: "bound",
+            symbol: "b",
+            quantity: Quantity::Observed,
+            range: Range::POSITIVE,
+            meaning: "distance of the range's ends from its center",
+            default: None,
+        },
+        Parameter {
+            name: "center",
+            symbol: "c",
+            quantity: Quantity::Observed,
+            range: Range::ANY,
+            meaning: "center of the range",
+            default: Some(0.0),
+        },
+    ],
     tell_tale: "Flat tops at exactly one value, only while the amplitude is large.",
     confused_with: &["end_stop"],
     reference: "Doebelin, Measurement Systems, 5th ed., McGraw-Hill 2004, section 3.2 (span)",
@@ -30,7 +40,7 @@ const DESCRIPTION: Description = Description {
     smooth: false,
 };
 
-/// Readings clipped to ±b. Where it clips, the reading depends on the bound alone.
+/// Readings clipped to c ± b. Where it clips, the reading depends on the range alone.
 #[derive(Debug, Clone, Copy)]
 pub struct SensorSaturation;
 
@@ -39,23 +49,24 @@ impl Step for SensorSaturation {
     const DIFFERENTIABLE: bool = true;
 
     fn transform<S: Sampled>(
-        &[bound, ..]: &Values<S>,
+        &[bound, center, ..]: &Values<S>,
         _: &SampledMotion<'_, S>,
         _: Observed,
         samples: &mut Samples<S>,
     ) {
+        let (lowest, highest) = (center - bound, center + bound);
         for value in &mut samples.values {
-            if value.plain() > bound.plain() {
-                *value = bound;
-            } else if value.plain() < -bound.plain() {
-                *value = -bound;
+            if value.plain() > highest.plain() {
+                *value = highest;
+            } else if value.plain() < lowest.plain() {
+                *value = lowest;
             }
         }
     }
 
-    fn check(&[bound, ..]: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
-        // Where every value lies beyond the same bound, the reading never changes.
-        let nearest = extent.smallest.max(-extent.largest);
+    fn check(&[bound, center, ..]: &Values<f64>, extent: &Extent) -> Result<(), DynamicsError> {
+        // Where every value lies beyond the same end, the reading never changes.
+        let nearest = (extent.smallest - center).max(center - extent.largest);
         if bound > nearest {
             return Ok(());
         }
@@ -65,7 +76,7 @@ impl Step for SensorSaturation {
             value: bound,
             relation: "above",
             bound: nearest,
-            reason: "the smallest distance of the signal from the sensor's zero: below it every sample is clipped",
+            reason: "the smallest distance of the signal from the range's center: below it every sample is clipped",
         })
     }
 }

@@ -283,7 +283,7 @@ fn the_fits_side_agrees_with_the_simulators() {
         ("sensor_lag", &[5e-3]),
         ("sensor_nonlinearity", &[0.01, 0.4]),
         ("sensor_drift", &[1e-3]),
-        ("sensor_saturation", &[0.6]),
+        ("sensor_saturation", &[0.6, 0.05]),
         ("clock_drift", &[1e-3, 1e-5]),
     ];
     let cosine = Cosine::new(700);
@@ -296,7 +296,7 @@ fn the_fits_side_agrees_with_the_simulators() {
     assert!(chain.iter().all(|(effect, _)| effect.is_differentiable()));
     assert_eq!(transform(&chain, &cosine.sampled(), Observed::Position), seen);
 
-    // Derivatives with respect to all seven parameters, against central differences.
+    // Derivatives with respect to all eight parameters, against central differences.
     let shifted = |which: usize, by: f64| {
         let mut moved = chain.clone();
         let counts = moved.iter().map(|(effect, _)| effect.description().parameters.len());
@@ -306,11 +306,11 @@ fn the_fits_side_agrees_with_the_simulators() {
         moved[step].1[at] += by;
         transform(&moved, &cosine.sampled(), Observed::Position)
     };
-    let series = |list: &[f64]| list.iter().map(|&x| Dual::<7>::from(x)).collect::<Vec<_>>();
+    let series = |list: &[f64]| list.iter().map(|&x| Dual::<8>::from(x)).collect::<Vec<_>>();
     let (p, v, a) = (series(&cosine.position), series(&cosine.velocity), series(&cosine.acceleration));
     let motion = SampledMotion { times_s: &cosine.times, position: &p, velocity: &v, acceleration: &a };
     let mut index = 0;
-    let duals: Vec<(ChainEffect, Values<Dual<7>>)> = chain
+    let duals: Vec<(ChainEffect, Values<Dual<8>>)> = chain
         .iter()
         .map(|(effect, values)| {
             let mut own = values.map(Dual::from);
@@ -321,9 +321,9 @@ fn the_fits_side_agrees_with_the_simulators() {
             (*effect, own)
         })
         .collect();
-    assert_eq!(index, 7);
+    assert_eq!(index, 8);
     let exact = transform(&duals, &motion, Observed::Position);
-    for which in 0..7 {
+    for which in 0..8 {
         let h = 1e-6;
         let (above, below) = (shifted(which, h), shifted(which, -h));
         for at in 0..cosine.times.len() {
@@ -333,7 +333,7 @@ fn the_fits_side_agrees_with_the_simulators() {
             ] {
                 let difference = (above - below) / (2.0 * h);
                 // At a sample that just saturates the two sides differ.
-                let edge = (dual.value.abs() - 0.6).abs() < 1e-4;
+                let edge = ((dual.value - 0.05).abs() - 0.6).abs() < 1e-4;
                 assert!(edge || (dual.partials[which] - difference).abs() < 2e-3, "{which} {at}");
             }
         }

@@ -5,10 +5,10 @@ use crate::data::scales::Scales;
 use crate::model::sensor::{Observed, Sensor};
 use dynamics::{ChainEffect, Effect};
 
-/// Bounds to begin with, relative to the largest reading.
+/// Half ranges to begin with about the middle of the readings, relative to half of their span.
 const CLIPS: [f64; 6] = [0.998, 0.993, 0.98, 0.93, 0.85, 0.7];
 
-/// A sensor that clips, either way at the same value.
+/// A sensor that clips at both ends of its range, which need not have its center at zero.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SensorSaturation;
 
@@ -22,7 +22,7 @@ impl CandidateLaw for SensorSaturation {
     }
 
     fn parameters(&self, facts: &Scales) -> Vec<Parameter> {
-        vec![Parameter::shape("bound", 1e-3 * facts.reading, facts.reading)]
+        vec![Parameter::shape("bound", 1e-3 * facts.reading, facts.reading), Parameter::any("center")]
     }
 
     fn is_non_negative(&self) -> bool {
@@ -30,12 +30,17 @@ impl CandidateLaw for SensorSaturation {
     }
 
     fn shapes(&self, facts: &Scales) -> Vec<Vec<f64>> {
-        grid(facts.reading, &CLIPS, |bound| vec![bound])
+        // Readings that are positions are in their own unit already.
+        let largest = facts.highest.abs().max(facts.lowest.abs()).max(f64::MIN_POSITIVE);
+        let unit = facts.reading / largest;
+        let (half, middle) = (0.5 * (facts.highest - facts.lowest), 0.5 * (facts.highest + facts.lowest));
+        grid(unit * half, &CLIPS, |bound| vec![bound, unit * middle])
     }
 
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
-        let &[bound] = shape else { return Vec::new() };
-        vec![along.observed.iter().map(|x| x.clamp(-bound, bound) - x).collect()]
+        let &[bound, center] = shape else { return Vec::new() };
+        let clipped = |x: &f64| x.clamp(center - bound, center + bound) - x;
+        vec![along.observed.iter().map(clipped).collect()]
     }
 
     /// The shape is the parameter itself.
@@ -44,10 +49,10 @@ impl CandidateLaw for SensorSaturation {
     }
 
     fn read(&self, values: &[f64], sensor: &mut Sensor) {
-        sensor.saturation = values.first().copied();
+        sensor.saturation = values.first().copied().zip(values.get(1).copied());
     }
 
-    fn sensor_derivative(&self, _parameter: usize) -> Option<usize> {
-        Some(Observed::BY_BOUND)
+    fn sensor_derivative(&self, parameter: usize) -> Option<usize> {
+        [Observed::BY_BOUND, Observed::BY_CENTER].get(parameter).copied()
     }
 }
