@@ -8,7 +8,9 @@ pub(crate) fn copies(stamps: &[f64], values: &[Option<f64>], input: &[f64]) -> B
     let repeats = |at: &usize| stamps.get(*at) == stamps.get(at - 1);
     let is_copy = |at: &usize| values.get(*at) == values.get(at - 1) && input.get(*at) == input.get(at - 1);
     let repeated: BTreeSet<usize> = (1..stamps.len()).filter(repeats).collect();
-    if repeated.iter().all(is_copy) { repeated } else { BTreeSet::new() }
+    // A clock that stands still writes no copies.
+    let stands_still = repeated.len() + 1 >= stamps.len();
+    if !stands_still && repeated.iter().all(is_copy) { repeated } else { BTreeSet::new() }
 }
 
 #[cfg(test)]
@@ -22,6 +24,10 @@ mod tests {
         assert!(copies(&[0.0, 0.0, 0.0, 2.0, 2.0], &values, &[]).is_empty(), "a burst");
         assert!(copies(&[0.0, 0.0, 1.0, 2.0, 2.0], &values, &[1.0, 2.0, 1.0, 1.0, 1.0]).is_empty());
         assert!(copies(&[0.0, 1.0, 2.0, 3.0, 4.0], &values, &[]).is_empty());
+        assert!(
+            copies(&[1.0, 1.0, 1.0], &[0.1, 0.1, 0.1].map(Some), &[]).is_empty(),
+            "a clock that stands still"
+        );
         assert!(copies(&[], &[], &[]).is_empty());
     }
 }

@@ -167,7 +167,7 @@ fn resuming_survives_every_operation_of_the_disk_failing() {
 fn killed_again_and_again_it_gets_there() {
     let root = scratch();
     let (sound, out) = (root.path().join("sound"), root.path().join("out"));
-    let long = [ESTIMATION, &["fit.max_steps=20"]].concat();
+    let long = [ESTIMATION, &["fit.max_steps=20", "fit.seeds=4"]].concat();
     let outcome = run(&long, &sound, false, &Disk::default()).unwrap();
     let mut attempts = 0;
     let reached = loop {
