@@ -137,7 +137,7 @@ fn an_event_file_holds_the_trace_by_step_and_the_result() {
     for name in ["loss", "decay_rate"] {
         let expected: Vec<(i64, f32)> =
             column(folder.path(), name).into_iter().map(|(step, value)| (step, value as f32)).collect();
-        assert!(expected.len() > 10);
+        assert!(expected.len() > 4);
         assert_eq!(found[&format!("trace/{name}")], expected);
     }
     let zeta = result["estimate"]["zeta"].as_f64().unwrap() as f32;

@@ -11,7 +11,7 @@ use crate::error::DiagnosisError;
 use crate::model::matrices::element;
 use crate::noise::periodogram::{dominant_frequency, share, strongest_period};
 use crate::noise::statistics::{median, quantile};
-use dynamics::{Coordinate, DynamicsError, Hold, Input, NominalSimulator};
+use dynamics::{Coordinate, Hold, Input, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -171,27 +171,6 @@ impl Data {
         let values = || self.segments.iter().flat_map(|segment| segment.values.iter().copied());
         let span = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
         Self { facts: self.facts.with_noise(noise, 0.5 * span), ..self.clone() }
-    }
-
-    /// The same by clocks without these rates: by how much each record's is fast.
-    ///
-    /// # Errors
-    /// None for rates above −1: the times of an input go on rising.
-    pub(crate) fn without_rates(&self, rates: &[f64]) -> Result<Self, DynamicsError> {
-        let true_time =
-            |record: usize, time: &f64| time / (1.0 + rates.get(record).copied().unwrap_or_default());
-        let segments = self.segments.iter().map(|own| Segment {
-            times: own.times.iter().map(|time| true_time(own.record, time)).collect(),
-            ..own.clone()
-        });
-        let inputs = self.inputs.iter().enumerate().map(|(record, input)| {
-            let slower = |own: &Input| {
-                let times = own.times().iter().map(|time| true_time(record, time)).collect();
-                Input::new(times, own.values().to_vec(), own.hold())
-            };
-            input.as_ref().map(slower).transpose()
-        });
-        Ok(Self { segments: segments.collect(), inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
     }
 
     pub(crate) fn driven(&self) -> bool {

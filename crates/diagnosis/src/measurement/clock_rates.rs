@@ -7,7 +7,7 @@
 
 use crate::answer::Finding;
 use crate::data::observations::Observations;
-use crate::data::segments::Data;
+use crate::data::segments::{Data, Segment};
 use crate::data::shooting_interval::{ShootingInterval, shortened};
 use crate::evidence::likelihood::{Likelihood, View};
 use crate::evidence::score::{parameter_price, score, score_with};
@@ -18,7 +18,7 @@ use crate::model::projection::Projection;
 use crate::model::tangent::{Path, matrix};
 use crate::noise::floor;
 use crate::search::archive::Archive;
-use dynamics::DynamicsError;
+use dynamics::{DynamicsError, Input};
 use nalgebra::DVector;
 use rayon::prelude::*;
 
@@ -107,6 +107,29 @@ impl ClockRates {
             told.join(", ")
         );
         (largest > 0.0).then_some(Finding { effect: None, text })
+    }
+}
+
+impl Data {
+    /// The same by clocks without these rates: by how much each record's is fast.
+    ///
+    /// # Errors
+    /// None for rates above −1: the times of an input go on rising.
+    fn without_rates(&self, rates: &[f64]) -> Result<Self, DynamicsError> {
+        let true_time =
+            |record: usize, time: &f64| time / (1.0 + rates.get(record).copied().unwrap_or_default());
+        let segments = self.segments.iter().map(|own| Segment {
+            times: own.times.iter().map(|time| true_time(own.record, time)).collect(),
+            ..own.clone()
+        });
+        let inputs = self.inputs.iter().enumerate().map(|(record, input)| {
+            let slower = |own: &Input| {
+                let times = own.times().iter().map(|time| true_time(record, time)).collect();
+                Input::new(times, own.values().to_vec(), own.hold())
+            };
+            input.as_ref().map(slower).transpose()
+        });
+        Ok(Self { segments: segments.collect(), inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
     }
 }
 

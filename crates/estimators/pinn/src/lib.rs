@@ -4,8 +4,8 @@
 //! measured ln A (data), and it obeys d ln A/dt + λ = 0 at collocation points (physics), the derivative
 //! taken exactly through the layers. It is trained by Levenberg–Marquardt on the exact Jacobian, which
 //! copes with a large physics weight from the first step; raising the weight in stages, as gradient
-//! methods need it, took three times the steps and gave no better rate. The last layer, the line beside it and λ enter
-//! the residuals linearly: after every step they take their best values for the layers below (variable projection).
+//! methods need it, took three times the steps and gave no better rate. After every step the last layer's weights, which enter the
+//! residuals linearly, take their best values for everything else (variable projection).
 //!
 //! A finite physics weight w leaves the network some freedom to bend, and λ a bias that falls as 1/w.
 //! That is part of the method, not of its numerics.
