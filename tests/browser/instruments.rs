@@ -146,6 +146,6 @@ pub(super) fn sort(browser: &mut Chromium, page: &Path) {
         return document.activeElement === button; })()";
     assert_eq!(browser.evaluate(focused), true);
     browser.press("Enter");
-    let sorted = browser.evaluate("document.querySelector('table.rows thead th').getAttribute('aria-sort')");
+    let sorted = browser.evaluate("document.activeElement.closest('th').getAttribute('aria-sort')");
     assert_eq!(sorted, "ascending");
 }
