@@ -30,6 +30,9 @@ pub struct DotRows {
     pub level: Option<(String, f64)>,
 }
 
+/// Letters of the longest number on an axis.
+const LONGEST_NUMBER: f64 = 9.0;
+
 /// One name and its values; `None`, and what the axis cannot show, has no mark.
 #[derive(Debug, Clone, PartialEq)]
 pub struct DotRow {
@@ -173,7 +176,9 @@ impl Form {
         let letters = rows.iter().map(|row| shortened(&row.name).chars().count()).max().unwrap_or(0);
         let names = letters as f64 * LETTER * self.canvas.tick_size;
         let left = if self.above { 24.0 } else { names + GAP + 4.0 };
-        Margins { left, top: TOP, right: 24.0, bottom: svg::below(self.canvas) }
+        // The last number of the axis stands half beyond its end.
+        let right = (0.5 * LONGEST_NUMBER * LETTER * self.canvas.tick_size).max(24.0);
+        Margins { left, top: TOP, right, bottom: svg::below(self.canvas) }
     }
 }
 
