@@ -206,6 +206,7 @@ fn a_new_learner_takes_the_files_that_the_recipe_names() {
         assert!(section.contains(kind), "the recipe does not name {kind}");
         let scratch = workspace();
         let home = scratch.path();
+        copy(&root().join("configs"), &home.join("configs"));
         let command = command.replace("NAME", "own-learner").replace("sequence", kind);
         let mut arguments: Vec<&str> = command.split(' ').collect();
         arguments.extend(["--workspace", home.to_str().unwrap()]);

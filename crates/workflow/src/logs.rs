@@ -121,7 +121,8 @@ mod tests {
         };
         refused(&within("none", &["x.png"]), "name the records themselves");
         refused(&within("sheets", &["Versuch 1.xlsx"]), "save the sheets of its workbooks as CSV");
-        refused(scratch.path(), "there are some in ");
+        within("outer/inner", &["a.csv"]);
+        refused(&scratch.path().join("outer"), "there are some in ");
         within("cases/one", &["record-000.csv", "nominal.toml"]);
         refused(&scratch.path().join("cases"), "--batch");
         refused(&within("run", &["series.csv", "diagnosis.json"]), "trainer report ");
