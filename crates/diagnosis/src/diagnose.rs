@@ -5,8 +5,9 @@ use crate::data::observations::Observations;
 use crate::error::DiagnosisError;
 use crate::measurement::clock_rates::ClockRates;
 use crate::settings::Settings;
-use crate::stages::Known;
-use crate::stages::{Judged, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer};
+use crate::stages::{
+    Judged, Known, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer,
+};
 use dynamics::NominalSimulator;
 use std::cell::OnceCell;
 

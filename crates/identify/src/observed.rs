@@ -6,10 +6,8 @@ use record::{Clock, Quantity, Record};
 /// that never changes tells no gain.
 pub(crate) fn input(record: &Record, clock: &Clock) -> Option<Vec<(f64, f64)>> {
     let own = record.input().filter(|input| input.windows(2).any(|pair| pair.first() != pair.last()))?;
-    let between =
-        clock.input_row_times_s(record).into_iter().zip(record.input_rows().iter().map(|row| row.input));
-    let mut input: Vec<(f64, f64)> =
-        clock.times_s.iter().copied().zip(own.iter().copied()).chain(between).collect();
+    let sampled = clock.times_s.iter().copied().zip(own.iter().copied());
+    let mut input: Vec<(f64, f64)> = sampled.chain(clock.inputs_between(record)).collect();
     input.sort_by(|one, other| one.0.total_cmp(&other.0));
     Some(input)
 }

@@ -8,7 +8,7 @@
 use crate::error::Fault;
 use crate::line::Line;
 use crate::lost::Numbers;
-use crate::record::{InputRow, Record};
+use crate::record::{InputRow, Record, beside};
 use crate::stamps::{StampStatistics, stamp_rounding, statistics};
 use crate::words::{counted, two_digits};
 use serde::{Deserialize, Serialize};
@@ -142,26 +142,23 @@ impl Clock {
         })
     }
 
-    /// Time of each of the record's [`Record::input_rows`], in seconds: by its stamp where stamps are believed, else by the number
-    /// of its row between those of the samples beside it.
+    /// Time in seconds and input of each of the record's [`Record::input_rows`]: by its stamp where stamps are believed, else by the
+    /// number of its row between those of the samples beside it.
     #[must_use]
-    pub fn input_row_times_s(&self, record: &Record) -> Vec<f64> {
+    pub fn inputs_between(&self, record: &Record) -> Vec<(f64, f64)> {
         debug_assert_eq!(self.times_s.len(), record.len(), "a clock has a time for every sample");
         // Where rows are not numbered none lies between.
         let rows = record.rows().unwrap_or_default();
-        let time = |own: &InputRow| {
-            let after = rows.partition_point(|row| *row <= own.row);
-            let (before, beside) = (after.checked_sub(1)?, after);
-            let [first, last] = [before, beside].map(|at| Some((*rows.get(at)?, *self.times_s.get(at)?)));
-            let ((first, from), (last, to)) = first.zip(last)?;
+        let by_number = |own: &InputRow| {
+            let [(first, from), (last, to)] = beside(rows, &self.times_s, own.row)?;
             Some(from + (to - from) * (own.row - first) as f64 / (last - first) as f64)
         };
-        let placed = record.input_rows().iter().map(|own| match self.kind {
+        let time = |own: &InputRow| match self.kind {
             ClockKind::Host => own.stamp_s,
             // Between two samples, as the record has checked.
-            _ => time(own).unwrap_or(own.stamp_s),
-        });
-        placed.collect()
+            _ => by_number(own).unwrap_or(own.stamp_s),
+        };
+        record.input_rows().iter().map(|own| (time(own), own.input)).collect()
     }
 
     /// Time of the first sample, in seconds.

@@ -59,6 +59,13 @@ pub struct InputRow {
     pub input: f64,
 }
 
+/// Row numbers and times of the samples before and after a row, the one before perhaps in it; none beyond the first and the last.
+pub(crate) fn beside(rows: &[usize], times: &[f64], row: usize) -> Option<[(usize, f64); 2]> {
+    let after = rows.partition_point(|number| *number <= row);
+    let at = |sample: usize| Some((*rows.get(sample)?, *times.get(sample)?));
+    Some([at(after.checked_sub(1)?)?, at(after)?])
+}
+
 impl Record {
     /// Makes a record from columns in SI units.
     ///
@@ -131,12 +138,10 @@ impl Record {
         // Without numbered rows, or an input, none lies between.
         let numbers = self.rows.as_deref().filter(|_| self.input.is_some()).unwrap_or_default();
         let is_between = |row: &InputRow| {
-            let after = numbers.partition_point(|number| *number <= row.row);
-            let ends = after.checked_sub(1).and_then(|before| {
-                let stamps = self.stamps_s.get(before..=after)?;
-                Some((*numbers.get(before)?, *stamps.first()?, *stamps.last()?))
-            });
-            ends.is_some_and(|(number, from, to)| number < row.row && (from..=to).contains(&row.stamp_s))
+            let ends = beside(numbers, &self.stamps_s, row.row);
+            ends.is_some_and(|[(number, from), (_, to)]| {
+                number < row.row && (from..=to).contains(&row.stamp_s)
+            })
         };
         let mut input_rows: Vec<InputRow> =
             rows.into_iter().filter(|row| row.input.is_finite() && is_between(row)).collect();

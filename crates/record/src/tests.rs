@@ -210,7 +210,7 @@ fn the_input_of_a_line_without_a_value_is_kept() {
             assert_eq!((record.len(), record.input().unwrap().len()), (967, 967));
             let rows: Vec<usize> = record.input_rows().iter().map(|own| own.row).collect();
             assert_eq!(rows, (300..333).filter(|row| *row != 310).collect::<Vec<_>>());
-            for (own, time) in record.input_rows().iter().zip(clock.input_row_times_s(&record)) {
+            for (own, (time, _)) in record.input_rows().iter().zip(clock.inputs_between(&record)) {
                 assert!((own.input - own.row as f64).abs() < 1e-9, "in N m: {own:?}");
                 assert!((time - own.row as f64 / 100.0).abs() < 1e-9, "{choice:?}: {own:?} at {time}");
             }

@@ -370,7 +370,6 @@ fn is_empty(path: &Path) -> Result<bool, RunError> {
     Ok(entries.all(|entry| entry.is_ok_and(|entry| entry.file_name() == LOCK)))
 }
 
-/// Names of what a folder holds, sorted; none where there is no such folder.
 /// Takes away the temporary files of a folder in which no program is writing.
 pub(crate) fn remove_temporary(disk: &Disk, folder: &Path) -> Result<(), RunError> {
     for name in names(folder)?.iter().filter(|name| name.starts_with(TEMPORARY)) {
@@ -380,6 +379,7 @@ pub(crate) fn remove_temporary(disk: &Disk, folder: &Path) -> Result<(), RunErro
     Ok(())
 }
 
+/// Names of what a folder holds, sorted; none where there is no such folder.
 fn names(path: &Path) -> Result<Vec<String>, RunError> {
     if !path.exists() {
         return Ok(Vec::new());

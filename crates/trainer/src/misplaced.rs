@@ -2,7 +2,7 @@
 
 use settings::{Document, nearest};
 use std::path::Path;
-use workflow::{is_log, logs};
+use workflow::{is_log, is_run, logs};
 
 /// The message for a command line whose first words say what is meant, though no command takes them so; `None` where the
 /// command line is to be parsed as usual.
@@ -49,8 +49,7 @@ pub(crate) fn remedy(words: &[String], commands: &[String]) -> Option<String> {
 
 /// A finished run, or a folder of logs, given as a configuration.
 fn folder(path: &Path, shown: &str) -> Option<String> {
-    let holds = |name: &str| path.join(name).is_file();
-    if holds("result.json") || holds("diagnosis.json") {
+    if is_run(path) {
         return Some(format!(
             "{shown} is the folder of a run; `trainer report {shown}` makes its report again, and its configuration is \
              {shown}/config.toml"

@@ -104,8 +104,7 @@ pub fn basis(oscillator: &LinearOscillator) -> String {
 }
 
 /// A number to the second digit of its standard error, as TOML reads it.
-#[must_use]
-pub fn digits(estimated: Estimated) -> String {
+fn digits(estimated: Estimated) -> String {
     let Estimated { value, std_error } = estimated;
     // Sixteen digits hold any double; an error of zero, or none, asks for all that are worth reading.
     let wanted = if std_error > 0.0 && value != 0.0 {
@@ -121,8 +120,7 @@ pub fn digits(estimated: Estimated) -> String {
 }
 
 /// A standard error to two digits.
-#[must_use]
-pub fn error(estimated: Estimated) -> String {
+fn error(estimated: Estimated) -> String {
     two_digits(estimated.std_error)
 }
 

@@ -14,6 +14,12 @@ pub fn is_log(path: &Path) -> bool {
     path.is_file() && (ends_in(path, TABLES) || ends_in(path, TEXTS))
 }
 
+/// Whether a folder is that of a finished run or diagnosis.
+#[must_use]
+pub fn is_run(folder: &Path) -> bool {
+    ["result.json", "diagnosis.json"].iter().any(|file| folder.join(file).is_file())
+}
+
 /// The logs that a path stands for: a file for itself, a folder for those that lie in it, by their names.
 ///
 /// In a folder these are the files that end in `.csv` or `.tsv`; where there are none, those that end in `.txt`, `.log` or `.dat`.
@@ -28,7 +34,7 @@ pub fn logs(path: &Path) -> Result<Vec<PathBuf>, WorkflowError> {
     let folder = path.display().to_string();
     let none =
         |problem: String, remedy: String| WorkflowError::NoLogs { folder: folder.clone(), problem, remedy };
-    if ["result.json", "diagnosis.json"].iter().any(|file| path.join(file).is_file()) {
+    if is_run(path) {
         return Err(none(
             "is the folder of a finished run, whose tables are no records".to_owned(),
             format!("name the records themselves; `trainer report {folder}` makes its report again"),

@@ -57,10 +57,9 @@ impl Observations {
             values: record.values().to_vec(),
             input: record.input().map(<[f64]>::to_vec),
             input_rows: clock
-                .input_row_times_s(record)
+                .inputs_between(record)
                 .into_iter()
-                .zip(record.input_rows())
-                .map(|(time, own)| (time - first, own.input))
+                .map(|(time, input)| (time - first, input))
                 .collect(),
             quantity: record.quantity(),
             unit: record.unit(),

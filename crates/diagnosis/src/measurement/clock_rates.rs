@@ -52,8 +52,8 @@ impl ClockRates {
     }
 
     /// The records without the rates that a fitted set leaves, the set that is the best with its own, and this set fitted to them;
-    /// none where no set is better with rates than the best without. What stands in for the rates of clocks leaves none itself, and the plain law beside
-    /// them is cheaper. `segments` are what the interval of the sets was joined from.
+    /// none where no set is better with rates than the best without. What stands in for the rates of clocks leaves none itself,
+    /// and the plain law beside them is cheaper. `segments` are what the interval of the sets was joined from.
     ///
     /// # Errors
     /// What the dynamics refuse.
@@ -89,7 +89,7 @@ impl ClockRates {
         for (record, rate) in records.iter_mut().zip(&rates) {
             let input_rows = record.input_rows.iter_mut().map(|(time, _)| time);
             for time in record.times_s.iter_mut().chain(input_rows) {
-                *time /= 1.0 + rate;
+                *time = true_time(*time, *rate);
             }
         }
         let rates: Vec<f64> = self.rates.iter().zip(&rates).map(|(old, new)| both(*old, *new)).collect();
@@ -116,21 +116,25 @@ impl Data {
     /// # Errors
     /// None for rates above −1: the times of an input go on rising.
     fn without_rates(&self, rates: &[f64]) -> Result<Self, DynamicsError> {
-        let true_time =
-            |record: usize, time: &f64| time / (1.0 + rates.get(record).copied().unwrap_or_default());
-        let segments = self.segments.iter().map(|own| Segment {
-            times: own.times.iter().map(|time| true_time(own.record, time)).collect(),
-            ..own.clone()
-        });
+        let slower = |times: &[f64], record: usize| -> Vec<f64> {
+            // A record without a rate is on the clock of the first.
+            let rate = rates.get(record).copied().unwrap_or_default();
+            times.iter().map(|time| true_time(*time, rate)).collect()
+        };
+        let segments =
+            self.segments.iter().map(|own| Segment { times: slower(&own.times, own.record), ..own.clone() });
         let inputs = self.inputs.iter().enumerate().map(|(record, input)| {
-            let slower = |own: &Input| {
-                let times = own.times().iter().map(|time| true_time(record, time)).collect();
-                Input::new(times, own.values().to_vec(), own.hold())
-            };
-            input.as_ref().map(slower).transpose()
+            let own = input.as_ref();
+            own.map(|own| Input::new(slower(own.times(), record), own.values().to_vec(), own.hold()))
+                .transpose()
         });
         Ok(Self { segments: segments.collect(), inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
     }
+}
+
+/// The time that it is where a clock that is fast by a rate shows another.
+fn true_time(shown: f64, rate: f64) -> f64 {
+    shown / (1.0 + rate)
 }
 
 /// The rate of a clock that is fast by one rate on a clock that is fast by another.
@@ -152,10 +156,9 @@ struct Rated {
 fn rated(segments: &Data, data: &Data, found: &Fit) -> Result<Option<Rated>, DynamicsError> {
     let mut rates = vec![0.0; data.inputs.len()];
     let mut least = None;
-    let short = shortened(segments, data, found)?;
-    let starts = [(segments, short), (data, found.clone())];
-    let mut last = found.clone();
-    for (data, mut fit) in starts {
+    let mut fit = shortened(segments, data, found)?;
+    for (data, begun) in [(segments, fit.clone()), (data, found.clone())] {
+        fit = begun;
         for turn in 0..TURNS {
             let slower = data.without_rates(&rates)?;
             if turn > 0 || least.is_some() {
@@ -170,10 +173,10 @@ fn rated(segments: &Data, data: &Data, found: &Fit) -> Result<Option<Rated>, Dyn
                 return Ok(None);
             }
         }
-        last = fit;
     }
-    let fit = again(&data.without_rates(&rates)?, &last)?;
-    Ok(least.map(|price| Rated { rates, price, fit }))
+    let Some(price) = least else { return Ok(None) };
+    let fit = again(&data.without_rates(&rates)?, &fit)?;
+    Ok(Some(Rated { rates, price, fit }))
 }
 
 fn again(data: &Data, found: &Fit) -> Result<Fit, DynamicsError> {

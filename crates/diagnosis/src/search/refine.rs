@@ -4,8 +4,8 @@ use crate::data::segments::Data;
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
 use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
 use crate::model::candidate::Candidate;
-use crate::search::archive::{Archive, gone, vanished};
-use crate::search::proposals::{fit_all, generalized, proposal};
+use crate::search::archive::{Archive, vanished};
+use crate::search::proposals::{fit_all, generalized, left_over, proposal};
 use rayon::prelude::*;
 
 /// Sets that are refined in any case.
@@ -73,17 +73,16 @@ pub(crate) fn refine(
             }
             let found = fit(data, &begun.hypothesis, begun.point, Moving::All, Stopping::FINAL).ok()?;
             // What does not count and has no size here takes nothing with it.
-            let gone = gone(data, &found);
-            if gone.is_empty() || gone.iter().any(|own| own.counts()) {
-                return Some(found);
+            let left = left_over(data, &found);
+            match left.filter(|left| left.hypothesis.counted().eq(found.hypothesis.counted())) {
+                Some(left) => fit(data, &left.hypothesis, left.point, Moving::All, Stopping::FINAL).ok(),
+                None => Some(found),
             }
-            let left = proposal(data, &found, &gone, &[]);
-            fit(data, &left.hypothesis, left.point, Moving::All, Stopping::FINAL).ok()
         };
         let fitted: Vec<Option<Fit>> = chosen.par_iter().map(|found| again(found)).collect();
-        let (nothing, fits): (Vec<Fit>, Vec<Fit>) =
+        let (gone, fits): (Vec<Fit>, Vec<Fit>) =
             fitted.into_iter().flatten().partition(|fit| vanished(data, fit));
-        rejected.extend(nothing.into_iter().map(|fit| fit.hypothesis.candidates));
+        rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
         all.extend(fits);
     }
     let mut refined = Archive { fits: all, rejected };
