@@ -31,6 +31,15 @@ fn wait_for(child: &mut Child, path: &Path) {
     }
 }
 
+/// Waits until so many events of a run are written, each line to its end: the log is there before its first line is.
+fn wait_for_events(child: &mut Child, out: &Path, events: usize) {
+    let written = || std::fs::read_to_string(out.join("events.jsonl")).map_or(0, |log| log.matches('\n').count());
+    while written() < events {
+        assert!(child.try_wait().unwrap().is_none(), "ended before {events} events were there");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
 /// Amortized networks, which train for a second each here; several finished fits, one in progress.
 const TRAINING: &[&str] = &[
     "configs/lstm-amortized.toml",
@@ -125,14 +134,14 @@ fn killed_a_hundred_times_and_resumed_it_ends_as_in_one_go() {
     killed_and_resumed(100, &Seed::new(100));
 }
 
-/// Fits that take minutes each.
+/// Fits that take minutes together.
 const LONG: &[&str] = &[
     "configs/pinn.toml",
     "estimator.hidden=[32,32]",
     "estimator.loss_tolerance=0",
     "estimator.max_steps=1000000",
     "estimator.collocation_points=500",
-    "fit.seeds=5",
+    "fit.seeds=1000",
 ];
 
 #[test]
@@ -140,7 +149,7 @@ fn a_folder_is_one_programs_at_a_time() {
     let scratch = tempfile::tempdir().unwrap();
     let out = scratch.path().join("run");
     let mut first = start(LONG, &out);
-    wait_for(&mut first, &out.join("events.jsonl"));
+    wait_for_events(&mut first, &out, 1);
     for arguments in [LONG.to_vec(), [LONG, &["--resume"]].concat()] {
         let second = start(&arguments, &out).wait_with_output().unwrap();
         let message = String::from_utf8(second.stderr).unwrap();
@@ -152,8 +161,7 @@ fn a_folder_is_one_programs_at_a_time() {
     first.kill().unwrap();
     first.wait().unwrap();
     let mut third = start(&[LONG, &["--resume"]].concat(), &out);
-    std::thread::sleep(Duration::from_millis(300));
-    assert!(third.try_wait().unwrap().is_none());
+    wait_for_events(&mut third, &out, 2);
     signal(&third, "-TERM");
     assert_eq!(third.wait().unwrap().code(), Some(130));
 }
@@ -240,7 +248,7 @@ fn another_record_is_refused_with_both_digests() {
     let path = format!("data.path={}", record.display());
     let all = [LONG, &[&path]].concat();
     let mut child = start(&all, &out);
-    wait_for(&mut child, &out.join("events.jsonl"));
+    wait_for_events(&mut child, &out, 1);
     child.kill().unwrap();
     child.wait().unwrap();
     let text = std::fs::read_to_string(&record).unwrap();
