@@ -33,7 +33,8 @@ fn wait_for(child: &mut Child, path: &Path) {
 
 /// Waits until so many events of a run are written, each line to its end: the log is there before its first line is.
 fn wait_for_events(child: &mut Child, out: &Path, events: usize) {
-    let written = || std::fs::read_to_string(out.join("events.jsonl")).map_or(0, |log| log.matches('\n').count());
+    let written =
+        || std::fs::read_to_string(out.join("events.jsonl")).map_or(0, |log| log.matches('\n').count());
     while written() < events {
         assert!(child.try_wait().unwrap().is_none(), "ended before {events} events were there");
         std::thread::sleep(Duration::from_millis(5));
