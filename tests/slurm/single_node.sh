@@ -34,7 +34,13 @@ take_down() {
     for daemon in "${daemons[@]}"; do
         kill "$daemon" 2>/dev/null || true
     done
+    # slurmd waits for its tasks' last words, for minutes where a task is gone without any.
+    for _ in $(seq 50); do
+        kill -0 "${daemons[@]}" 2>/dev/null || break
+        sleep 0.1
+    done
     for daemon in "${daemons[@]}"; do
+        kill -KILL "$daemon" 2>/dev/null || true
         wait "$daemon" 2>/dev/null || true
     done
     rm -rf "$place"

@@ -353,6 +353,8 @@ mod tests {
         for seed in 1..=6 {
             let answer = diagnosed(0.24, seed);
             assert_eq!(answer.verdict.effects, ["constant_torque", "timestamp_batching"], "{seed}");
+            let rows = answer.effects.iter().filter(|row| row.id == "constant_torque");
+            assert_eq!(rows.count(), 1, "{seed}");
             let answer = diagnosed(0.0, seed);
             assert_eq!(answer.verdict.effects, ["timestamp_batching"], "{seed}");
         }
