@@ -50,6 +50,6 @@ pub use evidence::weights::DISTINCT_DISTANCE;
 pub use explain::backbone::{SurfaceCell, Swing, backbone, surface};
 pub use explain::repaired::rounded;
 pub use explain::single_effect::single_effect;
-pub use model::candidate::{evidence_class, has_fitted_hidden_start, is_flexible};
+pub use model::vocabulary::{evidence_class, has_fitted_hidden_start, is_flexible};
 pub use noise::floor::NoiseFloor;
 pub use settings::Settings;

@@ -5,7 +5,8 @@
 //! of a fit: as many as change its prediction by no more than a small part of what it leaves.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, residuals};
+use crate::fit::fitted::Fit;
+use crate::fit::levenberg_marquardt::residuals;
 
 /// Samples that are averaged at most.
 const MOST: usize = 32;

@@ -7,7 +7,9 @@
 //! at the end a record has one start state.
 
 use crate::data::segments::{Data, Segment};
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
+use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::predictor::{Derivatives, Simulator};
 use crate::search::archive::{Archive, vanished};
 use dynamics::DynamicsError;

@@ -4,13 +4,14 @@ use crate::answer::{
     ClassEvidence, EffectClass, EffectProbability, Finding, Interval, Kind, ParameterEstimate, Rivalry,
     Status, Verdict,
 };
-use crate::evidence::context::{Context, OFF_BY_CHANCE, Shift};
+use crate::evidence::context::{Context, Shift};
 use crate::evidence::inclusion::Inclusion;
-use crate::evidence::weights::DISTINCT_DISTANCE;
+use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE};
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
-use crate::fit::levenberg_marquardt::Fit;
-use crate::model::candidate::{Candidate, evidence_class};
+use crate::fit::fitted::Fit;
+use crate::model::candidate::Candidate;
+use crate::model::vocabulary::evidence_class;
 
 /// Probability that a shifted rest angle that does what the whole calibration does is a constant torque, and
 /// no calibration.

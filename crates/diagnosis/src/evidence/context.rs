@@ -5,10 +5,12 @@ use crate::data::segments::Data;
 use crate::data::shooting_interval::shortened;
 use crate::error::DiagnosisError;
 use crate::evidence::held_out::{Both, HeldOut};
-use crate::evidence::weights::{ratio, significant};
+use crate::evidence::weights::{OFF_BY_CHANCE, ratio, significant};
 use crate::explain::attribution::shapley;
 use crate::fit::calibrate::Baseline;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::fit::fitted::{Fit, Point};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::model::hypothesis::{Calibrated as Coefficient, Hypothesis};
@@ -19,9 +21,7 @@ use crate::search::refine::without;
 use crate::settings::Settings;
 use rayon::prelude::*;
 
-/// Probability with which a right calibration is called off, and a right rest angle shifted: the latter is an effect's
-/// name and adds to the false alarms.
-pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
+/// Probability with which a right rest angle is called shifted: that is an effect's name and adds to the false alarms.
 const SHIFTED_BY_CHANCE: f64 = 0.001;
 
 /// Standard errors of a clock's rate, squared in the stiffness, within which a stiffness may be the clock's doing.

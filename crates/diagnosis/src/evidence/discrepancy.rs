@@ -6,9 +6,9 @@
 //! nothing smooth is left.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, solve};
+use crate::fit::fitted::Fit;
 use crate::model::dictionary::{Acting, Smooth, columns_of};
-use crate::model::matrices::ridged;
+use crate::model::matrices::{ridged, solve};
 use crate::model::projection::{Projection, jacobians};
 use crate::model::tangent::{Path, matrix};
 use dynamics::DynamicsError;

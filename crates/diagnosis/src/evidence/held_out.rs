@@ -1,7 +1,9 @@
 //! How well a hypothesis predicts what it was not fitted to.
 
 use crate::data::segments::{Data, Segment};
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, residuals};
+use crate::fit::fitted::{Fit, Point};
+use crate::fit::levenberg_marquardt::{Moving, fit, residuals};
+use crate::fit::stopping::Stopping;
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;
 use nalgebra::DVector;

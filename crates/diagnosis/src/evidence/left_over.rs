@@ -13,7 +13,7 @@
 use crate::data::scales::below_images;
 use crate::data::segments::{Data, PERIODS};
 use crate::evidence::discrepancy::basis;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::model::dictionary::{Acting, columns_of};
 use crate::model::matrices::{element, entry};
 use crate::model::projection::Projection;

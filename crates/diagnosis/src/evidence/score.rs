@@ -1,6 +1,6 @@
 //! How well a set of effects is supported by the data.
 
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 
 /// Tempered log evidence S = −(N/2τ)·ln(SS/N) − (p/2)·ln(N/τ), up to a constant common to all hypotheses on the same
 /// data.

@@ -11,7 +11,7 @@ use crate::evidence::held_out::HeldOut;
 use crate::evidence::likelihood::{BANDS, Likelihood, View};
 use crate::evidence::score::{further_starts, parameter_price};
 use crate::evidence::weights::{Weighed, price, share};
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::noise::floor;
 use nalgebra::DVector;
 

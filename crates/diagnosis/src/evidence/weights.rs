@@ -3,7 +3,7 @@
 use crate::data::segments::Data;
 use crate::evidence::likelihood::{Likelihood, View};
 use crate::evidence::score::{further_starts, parameter_price};
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
 use crate::noise::statistics::chi_squared_above;
 use crate::search::archive::Archive;
@@ -156,6 +156,9 @@ pub(crate) fn unknown(acts: f64, share: f64) -> f64 {
     let odds = (share.max(0.0) / UNKNOWN_SHARE).powf(UNKNOWN_STEEPNESS);
     acts * odds / (1.0 + odds)
 }
+
+/// Probability with which a right calibration is called off.
+pub(crate) const OFF_BY_CHANCE: f64 = 0.01;
 
 /// Whether fitting `parameters` coefficients improves a fit more than chance does with a given probability.
 pub(crate) fn significant(better: &Fit, worse: &Fit, time: f64, parameters: usize, chance: f64) -> bool {

@@ -1,9 +1,8 @@
 //! The gap budget: shares by cause that add up.
 
 use crate::answer::Budget;
-use crate::fit::levenberg_marquardt::solve;
 use crate::model::dictionary::Dictionary;
-use crate::model::matrices::{element, ridged};
+use crate::model::matrices::{element, ridged, solve};
 use dynamics::Class;
 use nalgebra::DMatrix;
 

@@ -3,7 +3,8 @@
 use crate::answer::{Calibrated, Interval, KnownRow, ParameterEstimate};
 use crate::evidence::context::Context;
 use crate::evidence::determined::says_something;
-use crate::fit::levenberg_marquardt::{Fit, UNBOUNDED};
+use crate::fit::fitted::Fit;
+use crate::fit::normal_equations::UNBOUNDED;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated as Coefficient, Known};
 use crate::model::matrices::{entry, set};

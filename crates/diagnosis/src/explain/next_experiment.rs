@@ -2,7 +2,9 @@
 
 use crate::answer::Experiment;
 use crate::data::segments::{Data, Segment};
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::fit::fitted::{Fit, Point};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::{DynamicsError, Input};
 use rayon::prelude::*;

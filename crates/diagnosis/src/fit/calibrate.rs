@@ -2,9 +2,10 @@
 
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
-use crate::evidence::context::OFF_BY_CHANCE;
-use crate::evidence::weights::significant;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, first_starts, fit};
+use crate::evidence::weights::{OFF_BY_CHANCE, significant};
+use crate::fit::fitted::{Fit, Point, first_starts};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::hypothesis::{Calibrated, Hypothesis, Known};
 use dynamics::{Hold, Nominal, NominalSimulator};
 

@@ -1,7 +1,9 @@
-use super::{Fit, Moving, Point, Stopping, fit};
+use super::{Moving, fit};
 use crate::data::observations::Observations;
 use crate::data::segments::{Data, cut};
 use crate::fit::calibrate::baseline;
+use crate::fit::fitted::{Fit, Point};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::backlash::Backlash;
 use crate::model::candidates::coulomb_friction::CoulombFriction;

@@ -1,6 +1,8 @@
 //! Nonlinear least squares: the solver, when it stops, where it begins again, and the recalibrated simulator.
 
 pub(crate) mod calibrate;
+pub(crate) mod fitted;
 pub(crate) mod levenberg_marquardt;
+pub(crate) mod normal_equations;
 pub(crate) mod restart;
 pub(crate) mod stopping;

@@ -6,7 +6,7 @@
 //! is, where its first samples point, at rest at its mean value, or where the segment before it arrives.
 
 use crate::data::segments::{Data, Segment};
-use crate::fit::levenberg_marquardt::{Point, extended};
+use crate::fit::fitted::{Point, extended};
 use crate::fit::stopping::SHORT;
 use crate::model::hypothesis::Hypothesis;
 use crate::model::matrices::raised;

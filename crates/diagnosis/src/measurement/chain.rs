@@ -3,7 +3,7 @@
 use crate::answer::{Finding, MeasuringChain};
 use crate::data::observations::Observations;
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::measurement::signatures;
 use crate::model::candidate::Candidate;
 use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};

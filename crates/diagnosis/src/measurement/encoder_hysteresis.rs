@@ -10,7 +10,7 @@
 
 use crate::answer::Finding;
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 
 /// What is said where a fit has it.
 pub(crate) fn finding(data: &Data, fit: &Fit) -> Option<Finding> {

@@ -4,7 +4,7 @@ use crate::answer::Finding;
 use crate::data::observations::Observations;
 use crate::data::period::swing;
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 pub(crate) use crate::measurement::outliers::kept;
 use crate::measurement::outliers::white_noise;
 use crate::noise::statistics::{mean, mean_and_error, median, normal_above};

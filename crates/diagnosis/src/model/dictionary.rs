@@ -1,10 +1,10 @@
 //! What every candidate would add to the observed values, to first order, at a fit.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, solve};
+use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::{Lines, Mode};
-use crate::model::matrices::{element, entry};
+use crate::model::matrices::{element, entry, solve};
 use crate::model::projection::Projection;
 use crate::model::tangent::{Path, matrix, stack};
 use crate::noise::periodogram::Line;

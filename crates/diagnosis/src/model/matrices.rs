@@ -46,6 +46,19 @@ pub(crate) fn ridged(
     ridged
 }
 
+/// Solves a symmetric system, scaled to a unit diagonal first: parameters differ by many orders of magnitude.
+pub(crate) fn solve(matrix: &DMatrix<f64>, right: &DMatrix<f64>) -> Option<DMatrix<f64>> {
+    let scale: Vec<f64> =
+        matrix.diagonal().iter().map(|d| if *d > 0.0 { 1.0 / d.sqrt() } else { 1.0 }).collect();
+    let at = |i: usize| scale.get(i).copied().unwrap_or(1.0);
+    let scaled = DMatrix::from_fn(matrix.nrows(), matrix.ncols(), |i, j| {
+        entry(matrix, i, j) * at(i) * at(j) + if i == j { 1e-13 } else { 0.0 }
+    });
+    let scaled_right = DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(right, i, j) * at(i));
+    let solution = scaled.cholesky()?.solve(&scaled_right);
+    Some(DMatrix::from_fn(right.nrows(), right.ncols(), |i, j| entry(&solution, i, j) * at(i)))
+}
+
 #[cfg(test)]
 mod tests {
     use super::raised;

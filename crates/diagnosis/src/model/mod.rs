@@ -10,3 +10,4 @@ pub(crate) mod predictor;
 pub(crate) mod projection;
 pub(crate) mod sensor;
 pub(crate) mod tangent;
+pub(crate) mod vocabulary;

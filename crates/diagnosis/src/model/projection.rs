@@ -1,7 +1,7 @@
 //! The complement of what a fit may still move.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, Point};
+use crate::fit::fitted::{Fit, Point};
 use crate::model::hypothesis::Hypothesis;
 use crate::model::predictor::{Derivatives, Simulator};
 use dynamics::DynamicsError;

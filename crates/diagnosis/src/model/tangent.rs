@@ -8,7 +8,7 @@
 
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::model::candidate::Candidate;
 use crate::model::candidates::{Along, held, padded};
 use crate::model::predictor::{Derivatives, Motion, Simulator};

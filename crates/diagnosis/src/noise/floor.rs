@@ -2,7 +2,7 @@
 
 use crate::data::segments::Data;
 use crate::noise::rounding;
-use crate::noise::statistics::normal_above;
+use crate::noise::statistics::{normal_above, sixths};
 use nalgebra::DVector;
 use serde::Serialize;
 
@@ -60,13 +60,4 @@ pub(crate) fn squares(data: &Data, residuals: &[DVector<f64>]) -> Vec<Vec<Option
         }
     }
     squares
-}
-
-/// For each sample but the outermost, a sixth of the squared second difference of the errors about it.
-pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
-    let inner = errors.windows(3).map(|e| match e {
-        &[a, b, c] => Some((a - 2.0 * b + c).powi(2) / 6.0),
-        _ => None,
-    });
-    std::iter::once(None).chain(inner).chain([None]).take(errors.len()).collect()
 }

@@ -5,7 +5,7 @@
 //! motion and on the size of the noise beneath the steps; so the sensor is played through: this motion, white
 //! Gaussian noise, rounding.
 
-use crate::noise::floor::sixths;
+use crate::noise::statistics::sixths;
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;
 
@@ -89,7 +89,7 @@ pub(crate) fn factor(pieces: &[(&[f64], &[f64])], step: f64, measured: f64) -> f
 #[cfg(test)]
 mod tests {
     use super::factor;
-    use crate::noise::floor::sixths;
+    use crate::noise::statistics::sixths;
     use rand_distr::{Distribution, StandardNormal};
 
     /// Rounded decaying swings: what a floor is off by without the factor, and with it. Chance alone makes 1 %.

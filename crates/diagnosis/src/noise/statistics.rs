@@ -72,6 +72,15 @@ pub(crate) fn mean_and_error(values: &[f64]) -> (f64, f64) {
     (center, (variance / count.max(1.0)).sqrt())
 }
 
+/// For each sample but the outermost, a sixth of the squared second difference of the errors about it.
+pub(crate) fn sixths(errors: &[f64]) -> Vec<Option<f64>> {
+    let inner = errors.windows(3).map(|e| match e {
+        &[a, b, c] => Some((a - 2.0 * b + c).powi(2) / 6.0),
+        _ => None,
+    });
+    std::iter::once(None).chain(inner).chain([None]).take(errors.len()).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::{autocorrelation_time, chi_squared_above, normal_above, quantile, student_above};

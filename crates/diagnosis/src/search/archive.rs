@@ -2,7 +2,7 @@
 
 use crate::data::segments::Data;
 use crate::evidence::score::score;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::model::candidate::{Candidate, MainMode};
 
 /// Every set that was fitted, best fit of each.
@@ -131,7 +131,7 @@ pub(crate) fn vanished(data: &Data, fit: &Fit) -> bool {
 mod tests {
     use super::Archive;
     use crate::evidence::score::calibrated_swing;
-    use crate::fit::levenberg_marquardt::Fit;
+    use crate::fit::fitted::Fit;
     use crate::model::candidate::Candidate;
     use crate::model::candidates::flexible_coupling::FlexibleCoupling;
     use crate::model::candidates::gravity::Gravity;

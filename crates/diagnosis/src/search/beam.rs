@@ -7,7 +7,9 @@
 
 use crate::data::segments::Data;
 use crate::evidence::score::{score, squares_at};
-use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::fit::fitted::Fit;
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
 use crate::noise::spectrum::DECAYS;

@@ -5,7 +5,9 @@
 //! leads, and takes at every step what gains most to first order.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Stopping, fit};
+use crate::fit::fitted::Fit;
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;

@@ -8,7 +8,9 @@
 use crate::data::segments::Data;
 use crate::evidence::weights::{EVEN, Weighed, Weighing};
 use crate::explain::position_torque::beside;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit};
+use crate::fit::fitted::{Fit, Point};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use rayon::prelude::*;

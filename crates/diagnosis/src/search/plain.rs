@@ -5,7 +5,8 @@
 //! made the record. So all sets of plain laws are fitted before any is judged.
 
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, Stopping};
+use crate::fit::fitted::Fit;
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;

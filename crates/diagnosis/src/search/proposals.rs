@@ -2,7 +2,9 @@
 
 use crate::data::scales::Scales;
 use crate::data::segments::Data;
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit, squares};
+use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::levenberg_marquardt::{Moving, fit, squares};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
 use crate::model::hypothesis::Hypothesis;
@@ -163,7 +165,9 @@ mod tests {
     use super::{begins_closer, left_over, proposal, simplified};
     use crate::data::segments::Data;
     use crate::evidence::score::calibrated_swing;
-    use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, fit, squares};
+    use crate::fit::fitted::{Fit, Point};
+    use crate::fit::levenberg_marquardt::{Moving, fit, squares};
+    use crate::fit::stopping::Stopping;
     use crate::model::candidate::Candidate;
     use crate::model::candidates::coulomb_friction::CoulombFriction;
     use crate::model::candidates::hysteresis::Hysteresis;

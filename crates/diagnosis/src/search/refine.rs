@@ -2,7 +2,9 @@
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
-use crate::fit::levenberg_marquardt::{Fit, Moving, Point, Stopping, extended, fit};
+use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::archive::{Archive, vanished};
 use crate::search::proposals::{fit_all, generalized, left_over, proposal};

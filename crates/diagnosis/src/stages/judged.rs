@@ -8,7 +8,7 @@ use crate::evidence::context::{Context, Held, Shift};
 use crate::evidence::half_swings::half_swings;
 use crate::evidence::inclusion::{Inclusion, asked};
 use crate::evidence::weighed_sets::Records;
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use std::cell::OnceCell;
 
 /// Log evidence by which the set of all likely classes may predict worse than the best set of some of them.

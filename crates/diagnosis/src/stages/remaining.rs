@@ -10,7 +10,7 @@ use crate::evidence::left_over::unexplained;
 use crate::evidence::weights::{acts, unknown};
 use crate::explain::gap::{Stages, gap};
 use crate::explain::position_torque::{Unnamed, unnamed};
-use crate::fit::levenberg_marquardt::Fit;
+use crate::fit::fitted::Fit;
 use crate::model::tangent::Path;
 use crate::noise::floor;
 

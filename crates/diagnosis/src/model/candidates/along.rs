@@ -1,8 +1,7 @@
 //! A fitted motion, as a candidate sees it that asks what it would add.
 
-use super::law::padded;
 use crate::data::scales::Scales;
-use dynamics::{Coefficients, Hold, Input, MOST_HIDDEN, Moment, SystemEffect};
+use dynamics::{Coefficients, Hold, Input, MOST_HIDDEN, MOST_PARAMETERS, Moment, SystemEffect, Values};
 
 /// A motion on one segment, with the response of what is observed to small torques along it.
 ///
@@ -98,4 +97,13 @@ pub(crate) struct Mode {
     pub(crate) inertia: Option<f64>,
     /// What it would take away of the squares.
     pub(crate) gain: f64,
+}
+
+/// An effect's values, filled up to the length that laws take.
+pub(crate) fn padded(values: &[f64]) -> Values<f64> {
+    let mut all = [0.0; MOST_PARAMETERS];
+    for (slot, value) in all.iter_mut().zip(values) {
+        *slot = *value;
+    }
+    all
 }

@@ -1,8 +1,5 @@
 //! Classes of effects that explain alike.
 
-use crate::model::candidate::Candidate;
-use dynamics::{Class, Effect};
-
 /// A class of effects that explain alike: a record tells classes apart before it tells kinds within one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum EvidenceClass {
@@ -48,30 +45,6 @@ impl EvidenceClass {
             Self::Sensor => "sensor",
             Self::Stamps => "stamps",
             Self::Unnamed => "unknown",
-        }
-    }
-
-    /// The classes of candidates that take a place in a set, each once, in the order in which they come.
-    pub(crate) fn among<'a>(candidates: impl IntoIterator<Item = &'a Candidate>) -> Vec<Self> {
-        let mut classes = Vec::new();
-        for own in candidates.into_iter().filter(|own| own.counts()) {
-            if !classes.contains(&own.evidence_class()) {
-                classes.push(own.evidence_class());
-            }
-        }
-        classes
-    }
-
-    /// The class of an effect: what its candidate's file says, or, for an effect of the measuring chain that no fit
-    /// follows, what its part of a gap budget says; none for an effect of the system that no fit follows.
-    pub(crate) fn of(effect: Effect) -> Option<Self> {
-        if let Some(candidate) = Candidate::that_fits(effect) {
-            return Some(candidate.evidence_class());
-        }
-        match effect.description().class {
-            Class::Clock => Some(Self::Stamps),
-            Class::Sensor => Some(Self::Sensor),
-            Class::Dissipative | Class::Conservative | Class::TimeDependent => None,
         }
     }
 }

@@ -3,7 +3,6 @@
 use super::coulomb_friction::CoulombFriction;
 use super::{Along, CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
-use crate::model::candidate::Candidate;
 use crate::model::contact::bent;
 use dynamics::{Effect, Moment, SystemEffect, Values};
 
@@ -40,8 +39,8 @@ impl CandidateLaw for Hysteresis {
     }
 
     /// Hysteresis that builds up at once is Coulomb friction.
-    fn tends_to(&self) -> Option<Candidate> {
-        Some(Candidate::new(&CoulombFriction))
+    fn tends_to(&self) -> Option<&'static dyn CandidateLaw> {
+        Some(&CoulombFriction)
     }
 
     fn bending_displacement(&self) -> Option<usize> {

@@ -2,10 +2,9 @@
 
 use super::{Along, EvidenceClass, Lines, MainMode, Parameter};
 use crate::data::scales::Scales;
-use crate::model::candidate::Candidate;
 use crate::model::sensor::Sensor;
 use dynamics::scalar::Dual;
-use dynamics::{Active, Coefficients, Effect, MOST_PARAMETERS, Moment, Nominal, Quantity, Values};
+use dynamics::{Active, Coefficients, Effect, Moment, Nominal, Quantity, Values};
 
 /// An effect as a diagnosis fits it.
 ///
@@ -71,13 +70,13 @@ pub(crate) trait CandidateLaw: Sync {
     }
 
     /// The candidate that it is at one of its own sizes. A set never holds both. Default: none.
-    fn generalizes(&self) -> Option<Candidate> {
+    fn generalizes(&self) -> Option<&'static dyn CandidateLaw> {
         None
     }
 
     /// The simpler candidate that it tends to at an end of its shape, with the same first parameter. Default: the one
     /// that it generalizes.
-    fn tends_to(&self) -> Option<Candidate> {
+    fn tends_to(&self) -> Option<&'static dyn CandidateLaw> {
         self.generalizes()
     }
 
@@ -245,15 +244,6 @@ fn differentiated(moment: &Moment<f64>, region: i8) -> Moment<Dual<2>> {
         direction: moment.direction,
         region,
     }
-}
-
-/// An effect's values, filled up to the length that laws take.
-pub(crate) fn padded(values: &[f64]) -> Values<f64> {
-    let mut all = [0.0; MOST_PARAMETERS];
-    for (slot, value) in all.iter_mut().zip(values) {
-        *slot = *value;
-    }
-    all
 }
 
 /// Values on a grid relative to a scale, each made into a shape.

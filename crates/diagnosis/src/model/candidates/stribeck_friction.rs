@@ -3,7 +3,6 @@
 use super::coulomb_friction::CoulombFriction;
 use super::{CandidateLaw, EvidenceClass, Parameter, grid};
 use crate::data::scales::Scales;
-use crate::model::candidate::Candidate;
 use dynamics::{Effect, SystemEffect};
 
 /// Stribeck velocities to begin with, relative to the largest speed.
@@ -37,8 +36,8 @@ impl CandidateLaw for StribeckFriction {
     }
 
     /// Without its excess it is Coulomb friction.
-    fn generalizes(&self) -> Option<Candidate> {
-        Some(Candidate::new(&CoulombFriction))
+    fn generalizes(&self) -> Option<&'static dyn CandidateLaw> {
+        Some(&CoulombFriction)
     }
 
     fn values(&self, fitted: &[f64]) -> Vec<f64> {

@@ -1,5 +1,6 @@
-use super::{Candidate, MainMode, Parameter, evidence_class, is_flexible};
+use super::{evidence_class, is_flexible};
 use crate::data::scales::{Repeats, Scales};
+use crate::model::candidate::{Candidate, MainMode, Parameter};
 use crate::model::candidates::flexible_coupling::FlexibleCoupling;
 use crate::model::candidates::periodic_forcing::PeriodicForcing;
 use crate::model::candidates::{Along, Lines, Mode};

@@ -1,0 +1,162 @@
+//! The normal equations of all segments, an arrow: each segment's start state meets only its own samples, the global
+//! parameters meet all. Start states are eliminated segment by segment (Schur complement).
+
+use crate::fit::fitted::Point;
+use crate::model::candidate::Parameter;
+use crate::model::matrices::{element, entry, raised, set, solve};
+use crate::model::predictor::Prediction;
+use nalgebra::{DMatrix, DVector};
+
+/// Blocks of the normal equations of one segment.
+struct Block {
+    own: DMatrix<f64>,
+    shared: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+/// Normal equations of segments, start states apart from global parameters.
+pub(crate) struct NormalEquations {
+    blocks: Vec<Block>,
+    globals: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl NormalEquations {
+    /// Those of weighted segments.
+    pub(crate) fn of(predictions: &[Prediction], weights: &[f64], starts: usize, globals: usize) -> Self {
+        let mut total = DMatrix::zeros(globals, globals);
+        let mut right = DVector::zeros(globals);
+        let mut blocks = Vec::with_capacity(predictions.len());
+        for (prediction, &weight) in predictions.iter().zip(weights) {
+            let own = prediction.jacobian.columns(0, starts);
+            let shared = prediction.jacobian.columns(starts, globals);
+            total += weight * shared.tr_mul(&shared);
+            right += weight * shared.tr_mul(&prediction.residual);
+            blocks.push(Block {
+                own: weight * own.tr_mul(&own),
+                shared: weight * own.tr_mul(&shared),
+                right: weight * own.tr_mul(&prediction.residual),
+            });
+        }
+        Self { blocks, globals: total, right }
+    }
+
+    /// The reduced system of the global parameters that are free.
+    fn reduced(&self, damping: f64) -> Option<(DMatrix<f64>, DVector<f64>)> {
+        let mut matrix = raised(&self.globals, damping);
+        let mut right = self.right.clone();
+        for block in &self.blocks {
+            let eliminated = raised(&block.own, damping).cholesky()?;
+            let solved = eliminated.solve(&block.shared);
+            matrix -= block.shared.tr_mul(&solved);
+            right -= solved.tr_mul(&block.right);
+        }
+        Some((matrix, right))
+    }
+
+    /// The step of everything, with some global parameters held.
+    fn step(&self, damping: f64, held: &[bool]) -> Option<(DVector<f64>, Vec<DVector<f64>>)> {
+        let (matrix, right) = self.reduced(damping)?;
+        let free: Vec<usize> =
+            held.iter().enumerate().filter(|(_, held)| !**held).map(|(index, _)| index).collect();
+        let part = matrix.select_rows(&free).select_columns(&free);
+        let part_right = DMatrix::from_iterator(free.len(), 1, free.iter().map(|&i| element(&right, i)));
+        let mut step = DVector::zeros(right.len());
+        if !free.is_empty() {
+            let solution = solve(&part, &part_right)?;
+            for (value, &index) in solution.iter().zip(&free) {
+                if let Some(slot) = step.get_mut(index) {
+                    *slot = *value;
+                }
+            }
+        }
+        let mut starts = Vec::with_capacity(self.blocks.len());
+        for block in &self.blocks {
+            let right = &block.right - &block.shared * &step;
+            starts.push(raised(&block.own, damping).cholesky()?.solve(&right));
+        }
+        Some((step, starts))
+    }
+
+    /// Where a step leads from a point, every parameter within its range, and by how much it would decrease the squares
+    /// if the motion were linear in everything; no point where the system cannot be solved.
+    pub(crate) fn trial(
+        &self,
+        from: &Point,
+        damping: f64,
+        parameters: &[Parameter],
+        mut held: Vec<bool>,
+    ) -> (Option<Point>, f64) {
+        let mut promised = f64::INFINITY;
+        // Each round holds at least one parameter more.
+        for _ in 0..=parameters.len() {
+            let Some((step, own)) = self.step(damping, &held) else { break };
+            promised = self.promised(&step, &own);
+            let mut next = from.clone();
+            let mut fresh = false;
+            let moves = next.globals.iter_mut().zip(step.iter()).zip(parameters).zip(&mut held);
+            for (((value, step), parameter), held) in moves {
+                let wanted = *value + step;
+                let outside = wanted < parameter.lower || wanted > parameter.upper;
+                if outside && !*held {
+                    let end = if wanted < parameter.lower { parameter.lower } else { parameter.upper };
+                    // At the end already: hold it and solve again. Otherwise go there.
+                    if *value == end {
+                        (*held, fresh) = (true, true);
+                    }
+                    *value = end;
+                } else {
+                    *value = wanted;
+                }
+            }
+            for (start, step) in next.starts.iter_mut().zip(own) {
+                for (value, step) in start.iter_mut().zip(step.iter()) {
+                    *value += step;
+                }
+            }
+            if !fresh {
+                return (Some(next), promised);
+            }
+        }
+        (None, promised)
+    }
+
+    /// By how much a step would decrease the squares if the motion were linear in everything.
+    fn promised(&self, step: &DVector<f64>, starts: &[DVector<f64>]) -> f64 {
+        let own: f64 = self.blocks.iter().zip(starts).map(|(block, own)| block.right.dot(own)).sum();
+        self.right.dot(step) + own
+    }
+
+    /// (JᵀJ)⁻¹ of the global parameters; infinite where the system cannot be solved.
+    pub(crate) fn inverse(&self, parameters: &[Parameter]) -> DMatrix<f64> {
+        let count = self.right.len();
+        self.reduced(0.0)
+            .and_then(|(matrix, _)| inverse(&matrix, &self.globals, parameters))
+            .unwrap_or_else(|| DMatrix::from_element(count, count, f64::INFINITY))
+    }
+}
+
+/// What stands in an inverse for a parameter that changes nothing: its error is without bounds, and no number is spoiled
+/// by an infinite one.
+pub(crate) const UNBOUNDED: f64 = 1e150;
+
+/// The inverse of the normal equations of the parameters that can move; `plain` is their matrix before start states were
+/// eliminated.
+fn inverse(matrix: &DMatrix<f64>, plain: &DMatrix<f64>, parameters: &[Parameter]) -> Option<DMatrix<f64>> {
+    let count = matrix.nrows();
+    let is_open = |index: &usize| parameters.get(*index).is_none_or(|own| own.lower < own.upper);
+    let acts = |index: &usize| entry(plain, *index, *index) > 0.0;
+    let free: Vec<usize> = (0..count).filter(|index| is_open(index) && acts(index)).collect();
+    let part = matrix.select_rows(&free).select_columns(&free);
+    let inverse = solve(&part, &DMatrix::identity(free.len(), free.len()))?;
+    let mut all = DMatrix::zeros(count, count);
+    for (row, &i) in free.iter().enumerate() {
+        for (column, &j) in free.iter().enumerate() {
+            set(&mut all, i, j, entry(&inverse, row, column));
+        }
+    }
+    for index in (0..count).filter(|index| is_open(index) && !acts(index)) {
+        set(&mut all, index, index, UNBOUNDED);
+    }
+    Some(all)
+}
