@@ -3,13 +3,6 @@
 /// Functions of more than 60 lines, by crate, with the reason.
 pub(super) const LONG: &[(&str, &str, &str)] = &[
     ("bayesian", "fit::by_sampling", "one run of the sampler from its start to its answer"),
-    ("diagnosis", "data::segments::check", "not divided yet"),
-    ("diagnosis", "evidence::conclusion::probabilities", "not divided yet"),
-    ("diagnosis", "evidence::context::shares", "not divided yet"),
-    ("diagnosis", "explain::next_experiment::synthetic", "not divided yet"),
-    ("diagnosis", "model::predictor::new", "not divided yet"),
-    ("diagnosis", "model::predictor::predict", "not divided yet"),
-    ("diagnosis", "search::refine::refine", "not divided yet"),
     ("envelope-matching", "fit::minimize", "one iteration of a published method, in its order"),
     ("gaussian-process", "fit::train", "one loop over the steps of a training"),
     ("gaussian-process", "likelihood::slope", "one derivative in closed form, term by term"),

@@ -20,7 +20,7 @@ pub enum Standing {
     Certain,
     /// Probability from 0.5 to 0.9.
     Likely,
-    /// Probability from 0.1 to 0.5.
+    /// Probability from 0.1 to 0.5, and something speaks for it.
     Open,
 }
 
@@ -32,6 +32,15 @@ impl Standing {
     #[must_use]
     pub fn of(probability: f64) -> Option<Self> {
         Self::ALL.into_iter().find(|standing| probability >= standing.least())
+    }
+
+    /// Standing of a class: [`Self::of`] its probability, and open only where something speaks for it. What a class that nothing
+    /// speaks for has is the probability with which any system has it.
+    #[must_use]
+    pub fn of_class(class: &ClassRow) -> Option<Self> {
+        let evidence = class.evidence;
+        let speaks = evidence.replacement > 0.0 || evidence.half_swings.is_some_and(|nats| nats > 0.0);
+        Self::of(class.probability).filter(|standing| *standing != Self::Open || speaks)
     }
 
     /// Its word: `certain`, `likely` or `open`.
@@ -99,7 +108,7 @@ fn with_article(id: &str) -> String {
     }
 }
 
-/// Classes with a probability of 0.1 or more: by standing, and within that by their share of the gap. None for a file of an
+/// Classes that are certain, likely or open: by standing, and within that by their share of the gap. None for a file of an
 /// older version.
 #[must_use]
 pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
@@ -107,7 +116,7 @@ pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
         .classes
         .iter()
         .filter_map(|class| {
-            let standing = Standing::of(class.probability)?;
+            let standing = Standing::of_class(class)?;
             let told = Told::new(result, class);
             let (is_fitted, sentence) = (told.is_fitted(), told.sentence());
             Some(ClassStatement { class, standing, title: class_title(&class.id), is_fitted, sentence })
@@ -120,10 +129,10 @@ pub fn class_statements(result: &DiagnosisResult) -> Vec<ClassStatement<'_>> {
     statements
 }
 
-/// Classes with a probability below 0.1, in one sentence; `None` where there are none.
+/// The other classes with their probabilities, in one sentence; `None` where there are none.
 #[must_use]
 pub fn unlikely_classes(result: &DiagnosisResult) -> Option<String> {
-    let all = result.classes.iter().filter(|class| Standing::of(class.probability).is_none());
+    let all = result.classes.iter().filter(|class| Standing::of_class(class).is_none());
     let named: Vec<String> = all
         .map(|class| format!("{} {}", class_title(&class.id), format::probability(class.probability)))
         .collect();
@@ -218,7 +227,7 @@ impl<'a> Told<'a> {
     /// Standing of what was fitted: that of the class, or of the surest fitted kind beside one that the record shows.
     fn standing(&self) -> Option<Standing> {
         if self.shown.is_empty() {
-            return Standing::of(self.class.probability);
+            return Standing::of_class(self.class);
         }
         let of = |id: &&str| effect(self.result, id).map_or(0.0, |row| row.probability);
         Standing::of(self.fitted.iter().map(of).fold(0.0, f64::max))

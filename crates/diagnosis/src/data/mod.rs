@@ -1,5 +1,6 @@
 //! Records as the fits see them: observations, segments and the scales they set.
 
+pub(crate) mod checks;
 pub(crate) mod knots;
 pub(crate) mod observations;
 pub(crate) mod period;

@@ -31,6 +31,7 @@ const STEPS: usize = 3;
 
 /// Samples that come after a gap in the rows; where an input acts, after one in which it is not known.
 fn after_gaps(record: &Record) -> Vec<usize> {
+    // A record that was not read from a file has no rows, and no gaps in them.
     let rows = record.rows().unwrap_or_default();
     let steps: Vec<usize> = rows.windows(2).filter_map(|w| Some(w.last()? - w.first()?)).collect();
     let mut ordered = steps.clone();
@@ -50,7 +51,9 @@ impl Observations {
     /// Takes from a record what a diagnosis may see, on the clock that is believed.
     #[must_use]
     pub fn new(record: &Record, clock: &Clock) -> Self {
+        // A clock has a time for every sample, and a record has samples.
         let first = clock.times_s.first().copied().unwrap_or_default();
+        // As many stamps as times.
         let stamp = record.stamps_s().first().copied().unwrap_or_default();
         Self {
             times_s: clock.times_s.iter().map(|time| time - first).collect(),
@@ -107,6 +110,7 @@ impl Observations {
     }
 
     pub(crate) fn duration_s(&self) -> f64 {
+        // Without samples it lasts no time.
         self.times_s.last().copied().unwrap_or_default()
     }
 }

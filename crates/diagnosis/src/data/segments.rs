@@ -3,15 +3,15 @@
 //! A single start for a whole record lets the phase wrap and falls into local minima; a segment of a few periods
 //! does not. Each segment forgets what went before it, so that what is fitted is the law, not the history.
 
+use crate::data::checks::{check, only, span};
 use crate::data::observations::Observations;
-use crate::data::period::swing;
 use crate::data::pieces::{Piece, pieces};
 use crate::data::scales::{Repeats, Scales};
 use crate::error::DiagnosisError;
 use crate::model::matrices::element;
-use crate::noise::periodogram::{dominant_frequency, share, strongest_period};
+use crate::noise::periodogram::{dominant_frequency, share};
 use crate::noise::statistics::{median, quantile};
-use dynamics::{Coordinate, Hold, Input, NominalSimulator};
+use dynamics::{Hold, Input, NominalSimulator};
 use record::Quantity;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -24,10 +24,6 @@ const TIME_CONSTANTS: f64 = 3.0;
 
 /// Fewest samples of a segment.
 const FEWEST_PER_SEGMENT: usize = 24;
-
-/// Fewest samples and cycles of a record.
-const FEWEST_SAMPLES: usize = 50;
-const FEWEST_CYCLES: f64 = 3.0;
 
 /// Most samples that are looked at; of more, every so many are taken for as long as a swing is still well sampled, and
 /// longer data are thinned by whole segments, so that the time of an answer is bounded.
@@ -47,10 +43,6 @@ const FEW_STEPS: f64 = 2.5;
 
 /// Part of its largest excursion that a motion counts as visible.
 const VISIBLE: f64 = 0.02;
-
-/// Factor between measured and nominal period from which on they are not the same system: a spring that misses a weight
-/// swings more than twice as slowly, and a unit that is wrong makes a factor of √9.81 at least.
-const ANOTHER_SYSTEM: f64 = 3.0;
 
 /// A stretch of a record.
 #[derive(Debug, Clone, PartialEq)]
@@ -134,6 +126,7 @@ impl Data {
     /// How many times more samples there are in a period, and in the shortest segment, than a search looks at.
     fn spare(&self) -> usize {
         let per_period = TAU / (self.facts.frequency * self.facts.interval);
+        // Without segments there is nothing to spare.
         let fewest = self.segments.iter().map(|s| s.times.len()).min().unwrap_or(0);
         ((per_period / SEARCHED_PER_PERIOD) as usize).min(fewest / FEWEST_PER_SEGMENT).max(1)
     }
@@ -236,86 +229,8 @@ pub(crate) fn cut(
 /// Whether all values lie on a few neighboring steps of the sensor: what the motion does between them is not seen, and
 /// rounding follows it instead of being noise. What does not change at all is at rest, and that says something.
 fn swings_within(values: &[f64], resolution: Option<f64>) -> bool {
-    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
-    highest > lowest && resolution.is_some_and(|step| highest - lowest <= FEW_STEPS * step)
-}
-
-fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
-    values.iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
-}
-
-/// Refuses a record that says nothing; gives its period where it swings freely. `kept` tells which samples are no outliers.
-fn check(
-    number: usize,
-    (record, kept): (&Observations, &[bool]),
-    first: &Observations,
-    simulator: &NominalSimulator,
-) -> Result<Option<f64>, DiagnosisError> {
-    if record.quantity != first.quantity || record.unit != first.unit {
-        return Err(DiagnosisError::MixedQuantities { record: number });
-    }
-    if record.len() < FEWEST_SAMPLES {
-        return Err(DiagnosisError::TooFewSamples {
-            record: number,
-            found: record.len(),
-            needed: FEWEST_SAMPLES,
-        });
-    }
-    let highest = record.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let lowest = record.values.iter().copied().fold(f64::INFINITY, f64::min);
-    let nominal = simulator.nominal();
-    let resolution = record.resolution.or(nominal.sensor_resolution()).unwrap_or(0.0);
-    if highest - lowest <= 3.0 * resolution || highest <= lowest {
-        return Err(DiagnosisError::NoMotion {
-            record: number,
-            span: highest - lowest,
-            resolution,
-            unit: record.unit,
-        });
-    }
-    if record.input.is_some() {
-        return Ok(None);
-    }
-    let omega = simulator.angular_frequency();
-    if omega == 0.0 {
-        return Err(DiagnosisError::MissingInput { record: number });
-    }
-    if nominal.damping() / nominal.inertia() > 1.5 * omega {
-        return Ok(None);
-    }
-    let nominal_s = TAU / omega;
-    let (times, values) = (only(&record.times_s, kept), only(&record.values, kept));
-    let swing = swing(&times, &values);
-    let cycles = swing.map_or(0.0, |swing| swing.cycles);
-    let spans = record.duration_s() / nominal_s;
-    if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
-        return Err(DiagnosisError::TooFewCycles {
-            record: number,
-            found: cycles.max(spans),
-            needed: FEWEST_CYCLES,
-            period_s: nominal_s,
-        });
-    }
-    // A swing that friction stops within a few half periods has no period of its own to compare.
-    let Some(crossed_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
-    else {
-        return Ok(None);
-    };
-    let ratio = |period_s: f64| (period_s / nominal_s).max(nominal_s / period_s);
-    // Refused is what the spectrum does not allow either.
-    let of_spectrum = || strongest_period(&times, &values, crossed_s.min(nominal_s)).unwrap_or(crossed_s);
-    let measured_s = if ratio(crossed_s) < ANOTHER_SYSTEM { crossed_s } else { of_spectrum() };
-    let ratio = ratio(measured_s);
-    if ratio >= ANOTHER_SYSTEM {
-        return Err(DiagnosisError::AnotherPeriod { record: number, nominal_s, measured_s, ratio });
-    }
-    let largest = 0.5 * (highest - lowest);
-    let turns = largest / TAU;
-    if nominal.coordinate() == Coordinate::Angle && record.quantity == Quantity::Position && turns > 1.0 {
-        return Err(DiagnosisError::LooksLikeDegrees { record: number, largest, turns });
-    }
-    Ok(Some(measured_s))
+    let span = span(values);
+    span > 0.0 && resolution.is_some_and(|step| span <= FEW_STEPS * step)
 }
 
 fn input(record: &Observations) -> Result<Option<Input>, DiagnosisError> {
@@ -366,11 +281,14 @@ fn cuts(
 
 /// When the last visible motion ends.
 fn moving_until(record: &Observations, times: &[f64], values: &[f64]) -> f64 {
+    // Fewer than ten samples have no last tenth: their rest is taken for zero.
     let last = values.get(values.len() - values.len() / 10..).unwrap_or_default();
     let rest = median(last);
     let span = values.iter().map(|value| (value - rest).abs()).fold(0.0, f64::max);
+    // Without a stated resolution any motion is visible.
     let visible = (3.0 * record.resolution.unwrap_or(0.0)).max(VISIBLE * span);
     let moving = times.iter().zip(values).rev().find(|(_, value)| (**value - rest).abs() > visible);
+    // What never moves has stopped at once.
     moving.map_or(0.0, |(time, _)| *time)
 }
 
@@ -473,6 +391,7 @@ fn guess(
     period_s: Option<f64>,
     simulator: &NominalSimulator,
 ) -> [f64; 2] {
+    // A segment has times; without any the line begins at zero.
     let start = times.first().copied().unwrap_or_default();
     let omega = facts.frequency;
     let (rest, stiffness) = simulator.equilibrium();
@@ -494,6 +413,7 @@ fn guess(
         None => [1.0, time, time * time],
     };
     let design = nalgebra::DMatrix::from_fn(points.len(), 3, |row, column| {
+        // Rows and columns are those of the points.
         points.get(row).and_then(|(time, _)| columns(*time).get(column).copied()).unwrap_or(0.0)
     });
     let right = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|(_, value)| *value));

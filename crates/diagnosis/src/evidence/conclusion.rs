@@ -6,7 +6,7 @@ use crate::answer::{
 };
 use crate::evidence::context::{Context, Shift};
 use crate::evidence::inclusion::Inclusion;
-use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE};
+use crate::evidence::weights::{DISTINCT_DISTANCE, OFF_BY_CHANCE, Weighed};
 use crate::explain::coefficients::parameters;
 use crate::explain::position_torque::Unnamed;
 use crate::fit::fitted::Fit;
@@ -59,7 +59,13 @@ impl Parts<'_> {
     fn probability(&self, candidate: Candidate) -> f64 {
         let id = candidate.evidence_class().id();
         let class = self.classes.iter().find(|class| class.id == id);
+        // A class of which nothing was fitted has no probability.
         class.map_or(0.0, |class| class.probability * self.inclusion.membership(candidate))
+    }
+
+    /// Probability that coefficients are off: their significance was tested at 1 %.
+    fn of_calibration(&self) -> f64 {
+        if self.calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE }
     }
 
     /// Probability that the system has none of the classes.
@@ -83,60 +89,14 @@ pub(crate) fn likely(classes: &[EffectClass]) -> Vec<&'static str> {
 
 /// Probability of every effect that may act, of `none`, `calibration` and `unknown`, most probable first.
 pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
-    let Parts { work, candidates, repaired, shares, inclusion, nameless, calibrated_off, shift, .. } = *parts;
-    let bare = parts.bare() * (1.0 - nameless);
-    // The significance of the calibration was tested at 1 %.
-    let of_calibration = if calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE };
-    let of_shift = if shift.is_some() && parts.named().is_empty() { SHIFTED } else { 0.0 };
-    let plain =
-        |id, probability| EffectProbability { id, probability, parameters: Vec::new(), gap_share: None };
-    // Named effects share what the torque without a name leaves them.
-    let rest = 1.0 - parts.unnamed.map_or(0.0, |torque| torque.share.value);
-    let of_named = |share: Interval| Interval {
-        value: rest * share.value,
-        interval_95: share.interval_95.map(|end| rest * end),
-    };
-    let complete = parts.unnamed.map_or(repaired, |torque| &torque.followed);
-    let of_unnamed = parts.unnamed.map(|torque| parameters(work, &torque.followed, Candidate::UNNAMED));
-    let mut list = vec![
-        EffectProbability {
-            parameters: of_unnamed.unwrap_or_default(),
-            gap_share: parts.unnamed.map(|torque| torque.share),
-            ..plain("unknown", nameless.max(parts.left_over))
-        },
-        plain("none", bare * (1.0 - of_calibration)),
-        plain("calibration", bare * of_calibration * (1.0 - of_shift)),
-    ];
-    if let Some(shift) = shift {
-        // A shift was looked for beside the named effects, or beside none.
-        let probability =
-            if parts.named().is_empty() { bare * of_calibration * SHIFTED } else { SHIFTED_BESIDE };
-        let units = work.base.calibrated.hypothesis.nominal.units();
-        list.push(EffectProbability {
-            parameters: vec![ParameterEstimate {
-                name: "torque",
-                unit: dynamics::Quantity::Torque.unit(units).to_owned(),
-                estimate: shift.torque,
-                determined: true,
-            }],
-            ..plain("constant_torque", probability)
-        });
-    }
-    for &candidate in candidates {
-        let probability = parts.probability(candidate);
-        let place = parts.named().iter().position(|own| *own == candidate);
+    let mut list = Vec::from(verdicts(parts));
+    list.extend(parts.shift.map(|shift| shifted(parts, shift)));
+    for &candidate in parts.candidates {
+        let is_named = parts.named().contains(&candidate);
         let is_listed = list.iter().any(|row| row.id == candidate.id());
-        if place.is_none() && (probability < 0.01 || is_listed) {
-            continue;
+        if is_named || parts.probability(candidate) >= 0.01 && !is_listed {
+            list.push(fitted(parts, candidate));
         }
-        let best = inclusion.sets.weighed.iter().find(|w| w.fit.hypothesis.candidates.contains(&candidate));
-        let source = if place.is_some() { Some(complete) } else { best.map(|w| w.fit) };
-        list.push(EffectProbability {
-            id: candidate.id(),
-            probability,
-            parameters: source.map(|fit| parameters(work, fit, candidate)).unwrap_or_default(),
-            gap_share: place.and_then(|place| shares.get(place)).map(|share| of_named(share.1)),
-        });
     }
     for id in parts.findings.iter().filter_map(|finding| finding.effect) {
         match list.iter_mut().find(|row| row.id == id) {
@@ -146,6 +106,68 @@ pub(crate) fn probabilities(parts: &Parts<'_>) -> Vec<EffectProbability> {
     }
     list.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     list
+}
+
+/// A row without coefficients and without a share of the gap.
+fn plain(id: &'static str, probability: f64) -> EffectProbability {
+    EffectProbability { id, probability, parameters: Vec::new(), gap_share: None }
+}
+
+/// The rows of `unknown`, `none` and `calibration`.
+fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
+    let bare = parts.bare() * (1.0 - parts.nameless);
+    let of_shift = if parts.shift.is_some() && parts.named().is_empty() { SHIFTED } else { 0.0 };
+    let of_calibration = parts.of_calibration();
+    let coefficients = |torque: &Unnamed| parameters(parts.work, &torque.followed, Candidate::UNNAMED);
+    [
+        EffectProbability {
+            // Without an unnamed torque there are no coefficients of it.
+            parameters: parts.unnamed.map(coefficients).unwrap_or_default(),
+            gap_share: parts.unnamed.map(|torque| torque.share),
+            ..plain("unknown", parts.nameless.max(parts.left_over))
+        },
+        plain("none", bare * (1.0 - of_calibration)),
+        plain("calibration", bare * of_calibration * (1.0 - of_shift)),
+    ]
+}
+
+/// The row of a shifted rest angle. It was looked for beside the named effects, or beside none.
+fn shifted(parts: &Parts<'_>, shift: Shift) -> EffectProbability {
+    let bare = parts.bare() * (1.0 - parts.nameless);
+    let probability =
+        if parts.named().is_empty() { bare * parts.of_calibration() * SHIFTED } else { SHIFTED_BESIDE };
+    let units = parts.work.base.calibrated.hypothesis.nominal.units();
+    EffectProbability {
+        parameters: vec![ParameterEstimate {
+            name: "torque",
+            unit: dynamics::Quantity::Torque.unit(units).to_owned(),
+            estimate: shift.torque,
+            determined: true,
+        }],
+        ..plain("constant_torque", probability)
+    }
+}
+
+/// The row of a candidate: of the set of the named effects where it is one of them, else of the best set that has it.
+fn fitted(parts: &Parts<'_>, candidate: Candidate) -> EffectProbability {
+    let place = parts.named().iter().position(|own| *own == candidate);
+    // Named effects share what the torque without a name leaves them.
+    let rest = 1.0 - parts.unnamed.map_or(0.0, |torque| torque.share.value);
+    let of_named = |share: Interval| Interval {
+        value: rest * share.value,
+        interval_95: share.interval_95.map(|end| rest * end),
+    };
+    let complete = parts.unnamed.map_or(parts.repaired, |torque| &torque.followed);
+    let has_it = |w: &&Weighed<'_>| w.fit.hypothesis.candidates.contains(&candidate);
+    let best = parts.inclusion.sets.weighed.iter().find(has_it);
+    let source = if place.is_some() { Some(complete) } else { best.map(|w| w.fit) };
+    EffectProbability {
+        id: candidate.id(),
+        probability: parts.probability(candidate),
+        // A candidate of no fitted set has no coefficients.
+        parameters: source.map(|fit| parameters(parts.work, fit, candidate)).unwrap_or_default(),
+        gap_share: place.and_then(|place| parts.shares.get(place)).map(|share| of_named(share.1)),
+    }
 }
 
 /// The classes with their shares of the gap, and those that stamps, values and the rest angle show, the most probable first.

@@ -96,6 +96,7 @@ impl<'a> Context<'a> {
     /// that is a constant torque.
     pub(crate) fn shift(&self, repaired: &Fit) -> Option<Shift> {
         let own = &repaired.hypothesis;
+        // A set without effects has none of their values.
         let effects = repaired.point.globals.get(own.calibrated.len()..).unwrap_or_default();
         if !own.calibrated.contains(&Coefficient::RestAngle) {
             return None;
@@ -121,6 +122,7 @@ impl<'a> Context<'a> {
             let has_both = both.iter().all(|which| own.calibrated.contains(which));
             let freed = if has_both && allowed > 0.0 { with(both.to_vec()) } else { None };
             let is_the_clock = |freed: &Fit| {
+                // Two are moved: rest angle and stiffness.
                 let stiffness = freed.point.globals.get(1).copied().unwrap_or_default();
                 (stiffness / own.nominal.stiffness() - 1.0).abs() < allowed
             };
@@ -135,6 +137,7 @@ impl<'a> Context<'a> {
         }
         let nominal = &own.nominal;
         let torque = |angle: f64| nominal.stiffness() * (angle - nominal.rest_angle());
+        // The rest angle is moved first.
         let angle = shifted.point.globals.first().copied().unwrap_or_default();
         let error = (shifted.squares / shifted.freedom() * time * entry(&shifted.inverse, 0, 0)).sqrt();
         let reach = normal_above(0.025) * error;
@@ -199,10 +202,10 @@ impl<'a> Context<'a> {
         Ok(Held { nominal, after, recalibrated, last_third: [third, third], repaired, fitted })
     }
 
-    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its
-    /// interval from a bootstrap over segments.
-    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
+    /// By how much each subset of a set's effects, numbered by its bits, lowers the squares of each part of thin data.
+    fn worths(&self, repaired: &Fit) -> Vec<Vec<f64>> {
         let count = repaired.hypothesis.candidates.len();
+        // A set that was not fitted to thin data leaves all of the gap to be explained.
         let closest = self.thin.pool.find(&repaired.hypothesis.candidates).map_or(0.0, |own| own.squares);
         let effort = Stopping::share((self.thin.calibrated.squares - closest).max(0.0));
         let mut worths: Vec<Vec<f64>> = (0..1_usize << count)
@@ -231,6 +234,7 @@ impl<'a> Context<'a> {
             .collect();
         // A set explains at least what its subsets do; where its own fit ended in a hollow, the best of theirs stands.
         for set in 0..worths.len() {
+            // There is a worth for every set.
             let total = |set: usize| worths.get(set).map_or(0.0, |own| own.iter().sum::<f64>());
             let subsets = (0..count).map(|member| set & !(1 << member));
             let best = subsets.max_by(|a, b| total(*a).total_cmp(&total(*b))).unwrap_or(set);
@@ -241,6 +245,14 @@ impl<'a> Context<'a> {
                 }
             }
         }
+        worths
+    }
+
+    /// Shapley share of each effect of a set in what the set takes away: squares, and the share with its
+    /// interval from a bootstrap over segments.
+    pub(crate) fn shares(&self, repaired: &Fit) -> Vec<(f64, Interval)> {
+        let count = repaired.hypothesis.candidates.len();
+        let worths = self.worths(repaired);
         let by_segment = |pick: &[usize]| -> Vec<f64> {
             shapley(count, &|set| {
                 let own = worths.get(set);

@@ -117,6 +117,7 @@ impl Both<'_> {
         let shortest = spans().fold(f64::INFINITY, f64::min) / TURNS as f64;
         let length = (spans().sum::<f64>() / FEWEST as f64).min(shortest).max(BLOCK * period);
         let of = |segment: &Segment| {
+            // A segment without samples has no blocks.
             let first = segment.times.first().copied().unwrap_or_default();
             segment.times.iter().map(|time| ((time - first) / length) as usize % TURNS).collect()
         };
@@ -136,7 +137,9 @@ impl Both<'_> {
             })
             .collect::<Result<_, DynamicsError>>()?;
         let held_out = |segment: usize, sample: usize| {
+            // Every sample has a turn.
             let turn = turn_of(segment, sample).copied().unwrap_or_default();
+            // Every turn has learned from all segments.
             learned.get(turn).and_then(|own| own.get(segment)?.get(sample)).copied().unwrap_or_default()
         };
         let lengths = self.longer.segments.iter().map(|segment| segment.times.len()).enumerate();

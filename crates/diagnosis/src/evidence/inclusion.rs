@@ -32,6 +32,7 @@ const PLAIN: usize = 2;
 pub(crate) fn asked<'a>(weighed: &[Weighed<'a>]) -> Vec<&'a Fit> {
     let named = || weighed.iter().filter(|w| !w.fit.hypothesis.candidates.is_empty());
     let first: Vec<Candidate> =
+        // Where nothing is named the best set is empty.
         named().next().map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
     let without =
         first.iter().filter_map(|own| named().find(|w| w.fit.hypothesis.lacks(own.evidence_class())));
@@ -146,7 +147,9 @@ impl<'a> Inclusion<'a> {
             return None;
         }
         let best = with_one.min(with_other);
+        // Places are those of the weighed sets.
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
+        // Places are those of the weighed sets.
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let evidence = ClassEvidence { replacement, half_swings: None };
@@ -159,7 +162,9 @@ impl<'a> Inclusion<'a> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let (with, without) =
             (place(&|fit| fit.hypothesis.holds(class))?, place(&|fit| fit.hypothesis.lacks(class))?);
+        // Places are those of the weighed sets.
         let evidence = |at: usize| self.sets.weighed.get(at).map_or(0.0, |w| w.evidence);
+        // Places are those of the weighed sets.
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         Some(EffectClass {
             id: class.id(),
@@ -218,6 +223,7 @@ impl<'a> Inclusion<'a> {
     /// The members of a class by the sets that have them, relative to all sets with the class. Several can act at once.
     fn memberships(&self, class: EvidenceClass) -> Vec<(Candidate, f64)> {
         let with = || self.sets.weighed.iter().filter(|w| w.fit.hypothesis.holds(class));
+        // Without a set there is no member either.
         let best = with().next().map_or(0.0, |w| w.evidence);
         let odds = |w: &Weighed<'_>| (w.evidence - best).exp();
         let total: f64 = with().map(odds).sum();
@@ -238,6 +244,7 @@ impl<'a> Inclusion<'a> {
     /// Probability that the system has a candidate, given its class.
     pub(crate) fn membership(&self, candidate: Candidate) -> f64 {
         let members = self.memberships(candidate.evidence_class());
+        // What is in no set has no share.
         members.iter().find(|(own, _)| *own == candidate).map_or(0.0, |(_, share)| *share)
     }
 
@@ -273,6 +280,7 @@ impl<'a> Inclusion<'a> {
 
     /// Part of the draws of segments in which the best set has the class.
     fn stability(&self, class: EvidenceClass, seed: &Seed) -> f64 {
+        // Without sets nothing is drawn.
         let segments = self.sets.left.first().map_or(0, |left| left.powers.len()).max(1);
         let mut generator = seed.child("stability").generator();
         let comes_back = (0..DRAWS).filter(|_| {

@@ -101,6 +101,7 @@ fn periodogram(times: &[f64], values: &[f64], frequency: f64) -> f64 {
 /// where these are too short for that, the records.
 fn stretches(data: &Data, residuals: &[DVector<f64>]) -> Vec<(Vec<f64>, Vec<f64>)> {
     let is_long = |times: &[f64]| {
+        // Without times no time passes.
         let span = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         span * data.facts.frequency >= 0.8 * TAU * PERIODS
     };
@@ -134,6 +135,7 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
     let mut bands = vec![Band::default(); 2 * HARMONICS];
     let highest = below_images(data.interval());
     for (times, values) in stretches(data, residuals) {
+        // Without times no time passes.
         let length = times.last().zip(times.first()).map_or(0.0, |(last, first)| last - first);
         let bin = TAU / length;
         for (at, band) in bands.iter_mut().enumerate() {
@@ -154,6 +156,7 @@ fn bands(data: &Data, residuals: &[DVector<f64>]) -> Vec<Band> {
 /// What stands out of the spectrum, and the noise about the swing's own frequency: its variance and the
 /// squares that it is taken from.
 fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
+    // Where no band stands out nothing is outstanding.
     let at = |index: Option<usize>| index.and_then(|i| bands.get(i)).copied().unwrap_or_default();
     let mut evidence: f64 = 0.0;
     let mut squares = 0.0;

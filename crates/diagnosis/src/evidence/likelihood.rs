@@ -86,6 +86,7 @@ impl View {
 
 impl Bins {
     fn new(times: &[f64], frequency: f64, interval: f64, view: View) -> Self {
+        // A stretch without samples has no bins.
         let first = times.first().copied().unwrap_or_default();
         let after: Vec<f64> = times.iter().map(|time| time - first).collect();
         let count = after.len();
@@ -143,6 +144,7 @@ impl Likelihood {
         let interval = data.interval();
         for segment in &data.segments {
             for part in segment.part_ranges() {
+                // Ranges of parts are within their segment.
                 let times = segment.times.get(part).unwrap_or_default();
                 bins.push(Bins::new(times, data.facts.frequency, interval, view));
             }
@@ -198,8 +200,10 @@ impl Likelihood {
 fn worth(bins: &[Bins], closest: &[[f64; BANDS]], band: usize, each: f64) -> f64 {
     let (mut all, mut square, mut count) = (0.0, 0.0, 0.0);
     for (bins, powers) in bins.iter().zip(closest) {
+        // A band that bins do not reach holds nothing.
         let own = bins.counts.get(band).copied().unwrap_or_default();
         if own > 0.0 {
+            // A band that bins do not reach holds nothing.
             let power = powers.get(band).copied().unwrap_or_default();
             all += power;
             square += power * power / own / (1.0 + 2.0 / (own * each));

@@ -64,6 +64,7 @@ impl Learned {
         logistic(
             self.constant
                 + self.replacement * compressed(evidence.replacement)
+                // Half swings that show nothing speak neither for nor against.
                 + self.half_swings * evidence.half_swings.map_or(0.0, compressed)
                 + self.error * error
                 + if leads { self.leads } else { 0.0 },

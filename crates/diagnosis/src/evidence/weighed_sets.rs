@@ -93,6 +93,7 @@ impl<'a> WeighedSets<'a> {
             sets.iter().map(|(fit, held)| basis.residuals(records, fit, held)).collect();
         let square = |own: &&Vec<DVector<f64>>| own.iter().map(DVector::norm_squared).sum::<f64>();
         let closest = residuals.iter().min_by(|a, b| square(a).total_cmp(&square(b)));
+        // Without sets nothing is left by any.
         let closest = closest.map(Vec::as_slice).unwrap_or_default();
         let noise = floor::floor(records.segments, closest).value;
         let likelihood = Likelihood::of(records.segments, closest, noise, basis.view());
@@ -114,6 +115,7 @@ impl<'a> WeighedSets<'a> {
             own.evidence = left.evidence(&likelihood);
         }
         let is_bare = |own: &&(Weighed<'_>, Left)| std::ptr::eq(own.0.fit, records.bare);
+        // Evidence is relative to the bare set, which is one of them.
         let bare = all.iter().find(is_bare).map_or(0.0, |bare| bare.0.evidence);
         all.sort_by(|a, b| b.0.evidence.total_cmp(&a.0.evidence));
         let (mut weighed, left): (Vec<Weighed<'a>>, Vec<Left>) = all.into_iter().unzip();

@@ -114,6 +114,7 @@ impl<'a> Weighing<'a> {
 
 /// Gives sets, best first, their probabilities among each other.
 pub(crate) fn share(weighed: &mut [Weighed<'_>]) {
+    // Without sets there is nothing to share.
     let best = weighed.first().map_or(0.0, |w| w.evidence);
     let total: f64 = weighed.iter().map(|w| (w.evidence - best).exp()).sum();
     for w in weighed {

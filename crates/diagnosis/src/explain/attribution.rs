@@ -26,6 +26,7 @@ pub(crate) fn shapley(count: usize, worth: &dyn Fn(usize) -> f64) -> Vec<f64> {
                 .map(|set| {
                     let size = set.count_ones() as usize;
                     let weight = factorial(size) * factorial(count - size - 1) / factorial(count);
+                    // There is a worth for every set.
                     let at = |set: usize| worths.get(set).copied().unwrap_or(0.0);
                     weight * (at(set | (1 << player)) - at(set))
                 })
@@ -53,6 +54,7 @@ fn explained(dictionary: &Dictionary, classes: usize) -> f64 {
     let products = ridged(&products, 0..columns.len(), 1e-4);
     let scores =
         DMatrix::from_iterator(columns.len(), 1, columns.iter().map(|&c| element(&dictionary.scores, c)));
+    // Columns that cannot be told apart explain nothing more.
     solve(&products, &scores).map_or(0.0, |solution| solution.dot(&scores).max(0.0))
 }
 

@@ -85,6 +85,7 @@ pub fn surface(series: &Series, quantity: Quantity, coefficients: &Coefficients<
     for segment in segments(series) {
         for index in segment.clone() {
             let found = acceleration(series, segment.clone(), index, quantity, REACH * period);
+            // Indices are those of the segment.
             let at = |list: &[f64]| list.get(index).copied().unwrap_or_default();
             let Some(found) = found else { continue };
             let (x, v) = (at(&series.position), at(&series.velocity));
@@ -135,6 +136,7 @@ fn period(series: &Series) -> f64 {
             length += last - first;
             count += 1.0;
         }
+        // Segments are within their series.
         let speeds = series.velocity.get(segment).unwrap_or_default();
         reversals += speeds.windows(2).filter(|pair| matches!(pair, [a, b] if a * b < 0.0)).count() as f64;
     }
@@ -166,6 +168,7 @@ fn turning_points(times: &[f64], values: &[f64]) -> Vec<(f64, f64)> {
 
 /// Vertex of a parabola through the neighborhood of a lobe's extreme.
 fn turn(times: &[f64], values: &[f64], lobe: Range<usize>, middle: f64) -> Option<(f64, f64)> {
+    // Indices are those of the lobe.
     let far = |index: &usize| values.get(*index).map_or(0.0, |value| (value - middle).abs());
     let top = lobe.clone().max_by(|a, b| far(a).total_cmp(&far(b)))?;
     let at = |index: usize| times.get(index).copied();
@@ -215,12 +218,14 @@ fn cubic(points: &[(f64, f64)], degree: usize) -> Option<[f64; 4]> {
     }
     let values = nalgebra::DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     let power =
+        // A row for every point.
         |row: usize, power: usize| points.get(row).map_or(0.0, |(time, _)| (time / reach).powi(power as i32));
     let matrix = nalgebra::DMatrix::<f64>::from_fn(points.len(), degree + 1, power);
     let normal = matrix.tr_mul(&matrix).cholesky()?;
     let solved = normal.solve(&matrix.tr_mul(&values));
     let mut coefficients = [0.0; 4];
     for (power, coefficient) in coefficients.iter_mut().enumerate().take(degree + 1) {
+        // A solution for every power.
         *coefficient = solved.get(power).copied().unwrap_or_default() / reach.powi(power as i32);
     }
     Some(coefficients)

@@ -28,6 +28,7 @@ pub(crate) fn around(value: f64, error: f64) -> Interval {
 
 /// A global parameter with its interval.
 pub(crate) fn interval(fit: &Fit, index: usize) -> Interval {
+    // A global parameter has its place.
     let value = fit.point.globals.get(index).copied().unwrap_or_default();
     around(value, (variance(fit) * entry(&fit.inverse, index, index)).max(0.0).sqrt())
 }

@@ -49,6 +49,7 @@ fn of_floor(squares: &[Vec<Option<f64>>], floor: &NoiseFloor) -> Squares {
     let worth = samples as f64 / floor.count.max(1) as f64;
     let own = |squares: &Vec<Option<f64>>| {
         let filled: Vec<f64> =
+            // Where no difference was taken the mean stands.
             squares.iter().map(|square| mean + worth * square.map_or(0.0, |square| square - mean)).collect();
         by_block(&filled, 1.0)
     };

@@ -60,33 +60,35 @@ fn turned(data: &Data, model: &Fit, tilt: f64) -> Vec<f64> {
     point
 }
 
-/// Data without noise as `model` would give them: the present segments, and those of a further record.
-fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), DynamicsError> {
+/// The present segments, without noise, as `model` would give them.
+fn noiseless(data: &Data, model: &Fit) -> Result<Vec<Segment>, DynamicsError> {
     let mut segments = data.segments.clone();
-    let mut starts = model.point.starts.clone();
     let mut now = Simulator::new(data, &model.hypothesis, &model.point.globals, Derivatives::None)?;
-    for (segment, start) in segments.iter_mut().zip(&starts) {
+    for (segment, start) in segments.iter_mut().zip(&model.point.starts) {
         let residual = now.predict(segment, start)?.residual;
         for (value, residual) in segment.values.iter_mut().zip(residual.iter()) {
             *value -= residual;
         }
     }
+    Ok(segments)
+}
+
+/// Data without noise as `model` would give them: the present segments, and those of a further record.
+fn synthetic(data: &Data, model: &Fit, plan: &Plan) -> Result<(Data, Point), DynamicsError> {
+    let (mut segments, mut starts) = (noiseless(data, model)?, model.point.starts.clone());
     let record = data.inputs.len();
     let mut inputs = data.inputs.clone();
-    let original = data.inputs.first().and_then(Option::as_ref);
-    inputs.push(
-        original
-            .map(|input| {
-                let values = input.values().iter().map(|u| u * plan.drive).collect();
-                Input::new(input.times().to_vec(), values, input.hold())
-            })
-            .transpose()?,
-    );
+    let driven = |input: &Input| {
+        let values = input.values().iter().map(|u| u * plan.drive).collect();
+        Input::new(input.times().to_vec(), values, input.hold())
+    };
+    inputs.push(data.inputs.first().and_then(Option::as_ref).map(driven).transpose()?);
     let planned = Data { inputs, ..data.clone() };
     let point = turned(data, model, plan.tilt);
     let mut then = Simulator::new(&planned, &model.hypothesis, &point, Derivatives::None)?;
     let rest = data.facts.rest(&model.point.globals, &model.hypothesis);
     let own: Vec<&Segment> = data.segments.iter().filter(|segment| segment.record == 0).collect();
+    // Without segments the motion begins at rest at zero.
     let mut state: Vec<f64> = model.point.starts.first().cloned().unwrap_or_default();
     if let Some(position) = state.first_mut() {
         *position = rest + plan.release * (*position - rest);

@@ -245,6 +245,7 @@ fn active(
     if let (Some(stated), None) = (stated, place) {
         return Ok(*stated);
     }
+    // A candidate that was not fitted has no errors.
     let errors = place.and_then(|place| errors.get(place..)).unwrap_or_default().iter().copied();
     let values = effect.values(fitted).into_iter().zip(errors.chain(std::iter::repeat(0.0)));
     let values: Vec<f64> = values.map(|(value, error)| rounded(value, error)).collect();

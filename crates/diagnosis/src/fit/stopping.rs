@@ -170,6 +170,7 @@ impl Ending {
     /// Whether steps like the best of the last ones do not bring the squares to where they would be of use, after so
     /// many have been made.
     pub(crate) fn is_in_vain(&self, squares: f64, steps: usize) -> bool {
+        // Before the first step nothing was gained.
         let last = self.gains.get(self.gains.len().saturating_sub(LOOKED_AT)..).unwrap_or_default();
         let best = last.iter().copied().fold(0.0, f64::max);
         let left = self.effort.steps.saturating_sub(steps) as f64;

@@ -65,6 +65,7 @@ pub(crate) fn chain(
     let first = records.first();
     Ok(MeasuringChain {
         clock: first.map_or("host", |record| record.clock.name()),
+        // Without records there is no rate.
         sample_rate_hz: first.map_or(0.0, |record| record.sample_rate_hz),
         resolution: data.resolution,
         noise,

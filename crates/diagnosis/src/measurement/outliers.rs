@@ -71,6 +71,7 @@ pub(crate) fn white_noise(observations: &Observations, kept: &[bool]) -> f64 {
     let points = points(observations, kept);
     let sizes: Vec<f64> =
         distances(&points, 1, interval(observations)).iter().flatten().map(Distance::in_noise).collect();
+    // Readings without a stated resolution are not rounded.
     let rounding = observations.resolution.map_or(0.0, |step| step / 12.0_f64.sqrt());
     (OF_MEDIAN * median(&sizes)).max(rounding)
 }
@@ -148,6 +149,7 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
     let interval = interval(observations);
     let near = distances(&points, 1, interval);
     let far = distances(&points, 2, interval);
+    // Readings without a stated resolution are not rounded.
     let step = observations.resolution.unwrap_or(0.0);
     let sizes: Vec<f64> = near.iter().flatten().map(Distance::in_noise).collect();
     let whole = (OF_MEDIAN * median(&sizes)).max(step / 12.0_f64.sqrt());
@@ -157,11 +159,13 @@ fn wrong(observations: &Observations, kept: &[bool]) -> Vec<usize> {
         .collect();
     let around = |index: usize| {
         let block = index / BLOCK;
+        // The range is within the blocks.
         let own = blocks.get(block.saturating_sub(1)..(block + 2).min(blocks.len())).unwrap_or_default();
         own.iter().copied().fold(whole, f64::max)
     };
     let limit = normal_above(0.5 * FALSE_ALARM / points.len().max(1) as f64);
     let beside = |index: Option<usize>| {
+        // What has no neighbor is not far from it.
         index.and_then(|index| near.get(index).copied().flatten()).map_or(0.0, |distance| distance.in_noise())
     };
     let mut wrong = Vec::new();

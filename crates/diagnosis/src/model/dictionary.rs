@@ -135,6 +135,7 @@ impl Dictionary {
             for shape in candidate.shapes_for(&data.facts, &shown) {
                 let by_path: Vec<Vec<Vec<f64>>> =
                     paths.iter().map(|path| columns(candidate, &shape, path, data, nominal)).collect();
+                // Without paths there is no column.
                 let count = by_path.first().map_or(0, Vec::len);
                 let from = all.len();
                 for column in 0..count {
@@ -198,6 +199,7 @@ impl Dictionary {
             let solution = solve(&products, &scores)?;
             let below = |(place, at): (usize, &usize)| {
                 let positive = all.get(*at).is_some_and(|own| own.1);
+                // A coefficient for every column.
                 let value = solution.get(place).copied().unwrap_or(0.0);
                 (positive && value < 0.0).then_some((place, value * entry(&products, place, place).sqrt()))
             };
@@ -234,6 +236,7 @@ impl Dictionary {
     /// The parameters that an entry's coefficients stand for.
     pub(crate) fn parameters(&self, entry: usize, coefficients: &[f64]) -> Vec<f64> {
         let entry = self.entries.get(entry);
+        // An entry that is not there has no parameters.
         entry.map(|entry| entry.candidate.linear_parameters(&entry.shape, coefficients)).unwrap_or_default()
     }
 }

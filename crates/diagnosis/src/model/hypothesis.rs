@@ -198,6 +198,7 @@ impl Hypothesis {
         let coefficients = self.nominal.coefficients();
         let stated = |which: Calibrated| match which {
             Calibrated::Effect { known, parameter } => {
+                // A known effect states every parameter.
                 self.known.get(known).and_then(|known| known.stated.get(parameter).copied()).unwrap_or(0.0)
             }
             which => which.of(&coefficients),
@@ -207,6 +208,7 @@ impl Hypothesis {
 
     /// Each candidate's part of a point.
     pub(crate) fn parts<'a>(&self, facts: &Scales, point: &'a [f64]) -> Vec<&'a [f64]> {
+        // A point without candidates ends with the calibrated coefficients.
         let mut rest = point.get(self.calibrated.len()..).unwrap_or_default();
         self.candidates
             .iter()

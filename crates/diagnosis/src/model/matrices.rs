@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 pub(crate) fn entry(matrix: &DMatrix<f64>, row: usize, column: usize) -> f64 {
+    // As the module says.
     matrix.get((row, column)).copied().unwrap_or(0.0)
 }
 
@@ -13,6 +14,7 @@ pub(crate) fn set(matrix: &mut DMatrix<f64>, row: usize, column: usize, value: f
 }
 
 pub(crate) fn element(vector: &DVector<f64>, index: usize) -> f64 {
+    // As the module says.
     vector.get(index).copied().unwrap_or(0.0)
 }
 

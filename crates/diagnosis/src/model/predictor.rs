@@ -7,7 +7,7 @@ use crate::model::candidate::Candidate;
 use crate::model::contact::{Bent, bent};
 use crate::model::hypothesis::{Calibrated, Hypothesis, Source};
 use crate::model::matrices::{entry, set};
-use crate::model::sensor::Sensor;
+use crate::model::sensor::{Observed, Sensor};
 use dynamics::DynamicsError;
 use dynamics::sensitivity::{Free, FullState, Model, Response, Settings};
 use nalgebra::{DMatrix, DVector};
@@ -84,6 +84,90 @@ pub(crate) struct Motion {
     pub(crate) acceleration: Vec<f64>,
 }
 
+/// What is seen of a motion, with its derivatives by everything that is free: values, rates and curvatures by rows. The third
+/// derivative of the position is not integrated: what needs it is expanded one order less far, or does not apply.
+struct Seen<'r> {
+    motion: [&'r [f64]; 3],
+    by_free: [&'r [f64]; 3],
+    columns: usize,
+}
+
+impl<'r> Seen<'r> {
+    fn new(response: &'r Response, quantity: Quantity) -> Self {
+        let motion = [&response.position, &response.velocity, &response.acceleration];
+        let by_free = [
+            &response.position_sensitivity,
+            &response.velocity_sensitivity,
+            &response.acceleration_sensitivity,
+        ];
+        let order = match quantity {
+            Quantity::Position => 0,
+            Quantity::Velocity => 1,
+            Quantity::Acceleration => 2,
+        };
+        let from = |all: [&'r Vec<f64>; 3]| {
+            [0, 1, 2].map(|derivative| all.get(order + derivative).map_or(&[][..], |list| list.as_slice()))
+        };
+        Self { motion: from(motion), by_free: from(by_free), columns: response.columns }
+    }
+
+    fn at(&self, row: usize) -> [f64; 3] {
+        // A response has an entry for every row; the derivatives that it does not have count as none.
+        self.motion.map(|list| list.get(row).copied().unwrap_or(0.0))
+    }
+
+    /// The derivative of a reading by what stands in a column, from those by the motion.
+    fn through(&self, [d0, d1, d2]: [f64; 3], row: usize, column: usize) -> f64 {
+        // As above.
+        let of = |list: &[f64]| list.get(row * self.columns + column).copied().unwrap_or(0.0);
+        let [by_value, by_rate, by_curvature] = self.by_free;
+        let mut sum = d0 * of(by_value);
+        if d1 != 0.0 {
+            sum += d1 * of(by_rate) + d2 * of(by_curvature);
+        }
+        sum
+    }
+}
+
+/// What a motion is differentiated by, and where each global parameter stands among it.
+fn free_parameters(
+    hypothesis: &Hypothesis,
+    sources: &[Source],
+    contact: Option<&mut Contact>,
+    derivatives: Derivatives,
+) -> (Vec<Free>, Vec<Option<usize>>) {
+    let mut free = Vec::new();
+    let mut columns = vec![None; sources.len()];
+    if derivatives != Derivatives::None {
+        free.extend([Free::StartPosition, Free::StartVelocity]);
+        free.extend(hidden(hypothesis).map(Free::StartHidden));
+        if let Some(contact) = contact {
+            contact.column = Some(free.len());
+            free.push(Free::StartHidden(contact.hidden));
+        }
+    }
+    if derivatives == Derivatives::All {
+        for (source, column) in sources.iter().zip(&mut columns) {
+            let own = match *source {
+                Source::Nominal(which) => which.free(),
+                Source::Effect(index, parameter) => {
+                    let effect = hypothesis.effect(index).and_then(Candidate::system);
+                    effect.and_then(|effect| {
+                        let description = effect.description();
+                        let own = description.parameters.get(parameter)?;
+                        Some(Free::Effect { id: description.id, parameter: own.name })
+                    })
+                }
+            };
+            *column = own.map(|own| {
+                free.push(own);
+                free.len() - 1
+            });
+        }
+    }
+    (free, columns)
+}
+
 impl<'a> Simulator<'a> {
     pub(crate) fn new(
         data: &'a Data,
@@ -94,36 +178,8 @@ impl<'a> Simulator<'a> {
         let facts = &data.facts;
         let sources = hypothesis.sources(facts);
         let measurement = hypothesis.measurement(facts, point);
-        let mut free = Vec::new();
-        let mut columns = vec![None; sources.len()];
         let mut contact = contact(hypothesis);
-        if derivatives != Derivatives::None {
-            free.extend([Free::StartPosition, Free::StartVelocity]);
-            free.extend(hidden(hypothesis).map(Free::StartHidden));
-            if let Some(contact) = &mut contact {
-                contact.column = Some(free.len());
-                free.push(Free::StartHidden(contact.hidden));
-            }
-        }
-        if derivatives == Derivatives::All {
-            for (source, column) in sources.iter().zip(&mut columns) {
-                let own = match *source {
-                    Source::Nominal(which) => which.free(),
-                    Source::Effect(index, parameter) => {
-                        let effect = hypothesis.effect(index).and_then(Candidate::system);
-                        effect.and_then(|effect| {
-                            let description = effect.description();
-                            let own = description.parameters.get(parameter)?;
-                            Some(Free::Effect { id: description.id, parameter: own.name })
-                        })
-                    }
-                };
-                *column = own.map(|own| {
-                    free.push(own);
-                    free.len() - 1
-                });
-            }
-        }
+        let (free, columns) = free_parameters(hypothesis, &sources, contact.as_mut(), derivatives);
         let curved = measurement.lag.is_some() || measurement.reading.is_some();
         // Sampling intervals, not samples: a drive's input has a knot at each, however few samples are fitted.
         let longest = data.longest_span() / facts.interval;
@@ -248,70 +304,19 @@ impl<'a> Simulator<'a> {
         let count = segment.times.len();
         let mut residual = DVector::zeros(count);
         let mut jacobian = DMatrix::zeros(count, width);
-        let response = &self.response;
-        // The third derivative of the position is not integrated: what needs it is expanded one order less
-        // far, or does not apply.
-        let missing = Vec::new();
-        let (x, rate, curvature) = match self.data.quantity {
-            Quantity::Position => (&response.position, &response.velocity, &response.acceleration),
-            Quantity::Velocity => (&response.velocity, &response.acceleration, &missing),
-            Quantity::Acceleration => (&response.acceleration, &missing, &missing),
-        };
-        let (by_x, by_rate, by_curvature) = match self.data.quantity {
-            Quantity::Position => (
-                &response.position_sensitivity,
-                &response.velocity_sensitivity,
-                &response.acceleration_sensitivity,
-            ),
-            Quantity::Velocity => {
-                (&response.velocity_sensitivity, &response.acceleration_sensitivity, &missing)
-            }
-            Quantity::Acceleration => (&response.acceleration_sensitivity, &missing, &missing),
-        };
+        let seen = Seen::new(&self.response, self.data.quantity);
         let bends_by = self.bends_by(segment, start);
-        let bending = self.contact.and_then(|contact| contact.column);
-        let total = response.columns;
+        // A segment has samples; without any no row is read.
         let start_time = segment.times.first().copied().unwrap_or_default();
         for (row, (&value, &time)) in segment.values.iter().zip(&segment.times).enumerate() {
-            let at = |list: &Vec<f64>| list.get(row).copied().unwrap_or(0.0);
-            let observed = self.measurement.observe(at(x), at(rate), at(curvature), time, start_time);
+            let [x, rate, curvature] = seen.at(row);
+            let observed = self.measurement.observe(x, rate, curvature, time, start_time);
             if let Some(slot) = residual.get_mut(row) {
                 *slot = value - observed.value;
             }
-            if self.derivatives == Derivatives::None {
-                continue;
-            }
-            let [d0, d1, d2] = observed.by_motion;
-            let through = |column: usize| {
-                let of = |list: &Vec<f64>| list.get(row * total + column).copied().unwrap_or(0.0);
-                let mut sum = d0 * of(by_x);
-                if d1 != 0.0 {
-                    sum += d1 * of(by_rate) + d2 * of(by_curvature);
-                }
-                sum
-            };
-            for column in 0..starts {
-                set(&mut jacobian, row, column, through(column));
-            }
-            let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
-            for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
-                let value = match (column, *source) {
-                    (Some(column), _) => through(*column),
-                    (None, Source::Effect(index, parameter)) => {
-                        let effect = self.hypothesis.effect(index);
-                        let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
-                        which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
-                    }
-                    (None, Source::Nominal(_)) => 0.0,
-                };
-                set(&mut jacobian, row, starts + number, value);
-            }
-            if let Some(column) = bending {
-                let moved = through(column);
-                for &(column, by) in &bends_by {
-                    let known = entry(&jacobian, row, column);
-                    set(&mut jacobian, row, column, known + by * moved);
-                }
+            if self.derivatives != Derivatives::None {
+                self.differentiate(row, &seen, &observed, &mut jacobian);
+                self.bend(row, &seen, &observed, &bends_by, &mut jacobian);
             }
         }
         // At rest nothing says from which side it came.
@@ -322,9 +327,49 @@ impl<'a> Simulator<'a> {
         Ok(Prediction { residual, jacobian })
     }
 
+    /// Puts a row of the Jacobian: by the start state, then by the global parameters.
+    fn differentiate(&self, row: usize, seen: &Seen<'_>, observed: &Observed, jacobian: &mut DMatrix<f64>) {
+        let starts = self.hypothesis.start_length();
+        for column in 0..starts {
+            set(jacobian, row, column, seen.through(observed.by_motion, row, column));
+        }
+        let own = if self.derivatives == Derivatives::All { self.sources.as_slice() } else { &[] };
+        for (number, (source, column)) in own.iter().zip(&self.columns).enumerate() {
+            let value = match (column, *source) {
+                (Some(column), _) => seen.through(observed.by_motion, row, *column),
+                (None, Source::Effect(index, parameter)) => {
+                    let effect = self.hypothesis.effect(index);
+                    let which = effect.and_then(|effect| effect.sensor_derivative(parameter));
+                    // A parameter that the sensor does not have changes no reading.
+                    which.and_then(|which| observed.by_parameter.get(which).copied()).unwrap_or(0.0)
+                }
+                (None, Source::Nominal(_)) => 0.0,
+            };
+            set(jacobian, row, starts + number, value);
+        }
+    }
+
+    /// Adds what the bend of a contact at the start moves.
+    fn bend(
+        &self,
+        row: usize,
+        seen: &Seen<'_>,
+        observed: &Observed,
+        bends_by: &[(usize, f64)],
+        jacobian: &mut DMatrix<f64>,
+    ) {
+        let Some(column) = self.contact.and_then(|contact| contact.column) else { return };
+        let moved = seen.through(observed.by_motion, row, column);
+        for &(column, by) in bends_by {
+            let known = entry(jacobian, row, column);
+            set(jacobian, row, column, known + by * moved);
+        }
+    }
+
     /// Readings that stay behind the values, where the sensor has that hysteresis.
     fn hold(&self, segment: &Segment, residual: &mut DVector<f64>, jacobian: &mut DMatrix<f64>) {
         let Some(width) = self.measurement.reading else { return };
+        // A list of a segment without samples is not read.
         let of = |list: &[f64]| list.first().copied().unwrap_or(0.0);
         let (rate, curvature) = (of(&self.response.velocity), of(&self.response.acceleration));
         let values = segment.values.iter().zip(residual.iter()).map(|(observed, left)| observed - left);
@@ -334,6 +379,7 @@ impl<'a> Simulator<'a> {
         }
         for mut column in jacobian.column_iter_mut() {
             for (row, reading) in readings.iter().enumerate() {
+                // A reading comes from a sample before it.
                 let moved = column.get(reading.since).copied().unwrap_or(0.0);
                 if let Some(slot) = column.get_mut(row) {
                     *slot = moved;
@@ -376,6 +422,7 @@ impl<'a> Simulator<'a> {
     pub(crate) fn end(&mut self, segment: &Segment, start: &[f64]) -> Result<Vec<f64>, DynamicsError> {
         self.run(segment, start)?;
         let end = self.response.end;
+        // A motion without hidden bodies ends with none.
         let all = end.hidden.unwrap_or_default();
         let own = hidden(self.hypothesis).filter_map(|index| all.get(index).copied());
         Ok([end.position, end.velocity].into_iter().chain(own).collect())

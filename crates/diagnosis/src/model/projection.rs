@@ -44,6 +44,7 @@ fn orthonormal(columns: DMatrix<f64>) -> DMatrix<f64> {
 impl Projection {
     /// From the Jacobian of each segment: start columns first, global ones after.
     pub(crate) fn from_jacobians(jacobians: &[DMatrix<f64>], starts: usize) -> Self {
+        // Without segments there is nothing to project.
         let globals = jacobians.first().map_or(0, |jacobian| jacobian.ncols() - starts);
         let rows = jacobians.iter().map(DMatrix::nrows).sum();
         let mut all = DMatrix::zeros(rows, globals);

@@ -86,9 +86,11 @@ impl Path {
             let torque = segment
                 .times
                 .iter()
+                // Where nothing acts there is no torque.
                 .map(|time| input.map_or(0.0, |input| gain * held(input, *time)))
                 .collect();
             let (x, rate, curvature) = observed(data.quantity, &motion);
+            // Every series has an entry for each sample.
             let at = |list: &[f64], index: usize| list.get(index).copied().unwrap_or(0.0);
             let slopes = x
                 .iter()
@@ -269,6 +271,7 @@ pub(crate) fn stack(paths: &[Path], column: impl Fn(&Path) -> Vec<f64>) -> Vec<f
 /// A matrix from columns.
 pub(crate) fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_fn(rows, columns.len(), |row, column| {
+        // Columns are as long as there are rows.
         columns.get(column).and_then(|column| column.get(row)).copied().unwrap_or(0.0)
     })
 }

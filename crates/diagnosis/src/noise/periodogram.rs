@@ -39,6 +39,7 @@ pub(crate) fn add(points: &[(f64, f64)], squares: f64, lowest: f64, step: f64, g
 
 /// The highest peaks of gains on a grid.
 pub(crate) fn peaks(gains: &[f64], lowest: f64, step: f64, most: usize) -> Vec<Line> {
+    // Beside the grid there is no gain.
     let at = |index: Option<usize>| index.and_then(|i| gains.get(i)).copied().unwrap_or(0.0);
     let mut peaks: Vec<Line> = gains
         .iter()

@@ -12,6 +12,7 @@ pub(crate) fn quantile(values: &[f64], share: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let at = share * sorted.len().saturating_sub(1) as f64;
+    // No values have the median zero: callers have some.
     let below = sorted.get(at.floor() as usize).copied().unwrap_or_default();
     let above = sorted.get(at.ceil() as usize).copied().unwrap_or(below);
     below + (above - below) * at.fract()
@@ -48,6 +49,7 @@ pub(crate) fn autocorrelation_time(pieces: &[&[f64]]) -> f64 {
     if square <= 0.0 {
         return 1.0;
     }
+    // Without pieces nothing is correlated.
     let longest = pieces.iter().map(|piece| piece.len()).max().unwrap_or(0);
     let at = |lag: usize| -> f64 {
         let products = pieces.iter().flat_map(|p| p.iter().zip(p.iter().skip(lag)));

@@ -157,6 +157,7 @@ fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {
             proposals.push(proposal(data, base, &[], &additions(&data.facts, &dictionary, gain)));
         }
         for (candidate, parameters, gain) in &dictionary.further {
+            // Where fewer are ranked than are added, any gain is enough.
             let weakest = ranked.get(breadth.additions).map_or(0.0, |other| other.squares);
             // What a spectrum promises says less than a linearization: at the best set it is tried in any case.
             let own = (*candidate, *gain);

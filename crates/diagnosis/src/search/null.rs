@@ -44,6 +44,7 @@ pub(crate) fn threshold(dictionary: &Dictionary, probability: f64, seed: &Seed) 
         .map(|_| {
             let white = DVector::from_fn(width, |_, _| StandardNormal.sample(&mut generator));
             drawn.scores = &factor * white;
+            // Without a column nothing is gained.
             singles(&drawn).first().map_or(0.0, |gain| gain.squares)
         })
         .collect();

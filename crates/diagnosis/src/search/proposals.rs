@@ -60,6 +60,7 @@ pub(crate) fn proposal(
         .collect();
     for (candidate, values) in added {
         match members.iter_mut().find(|(own, _)| own == candidate).map(|(_, own)| own.as_mut_slice()) {
+            // What adds no value moves nothing.
             Some([first, ..]) => *first += values.first().copied().unwrap_or_default(),
             _ => members.push((*candidate, values.clone())),
         }

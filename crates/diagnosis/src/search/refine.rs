@@ -44,28 +44,7 @@ pub(crate) fn refine(
             .take_while(|(place, w)| *place < FEWEST || best.evidence - w.evidence < HOPELESS)
             .count();
         let (batch, rest) = waiting.split_at(near);
-        // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
-        let rival = |w: &Weighed<'_>| {
-            let own = &w.fit.hypothesis.candidates;
-            let best = batch.iter().find(|other| other.fit.hypothesis.candidates.len() == own.len());
-            best.is_some_and(|best| {
-                let others = &best.fit.hypothesis.candidates;
-                own.iter().filter(|candidate| !others.contains(candidate)).count() == 1
-            })
-        };
-        let further = batch.iter().skip(MOST).filter(|w| rival(w)).take(MOST);
-        let classes = best.fit.hypothesis.candidates.iter().map(|own| own.evidence_class());
-        let without = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.lacks(class)));
-        let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
-        let with = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.holds(class)));
-        let clean = best_if_nothing_is_left(waiting.iter().copied());
-        let mut chosen: Vec<&Fit> = Vec::new();
-        for w in batch.iter().take(MOST).chain(further).chain(without).chain(with).chain(&clean) {
-            let fit = w.fit;
-            if !chosen.iter().any(|known| known.hypothesis.counted().eq(fit.hypothesis.counted())) {
-                chosen.push(fit);
-            }
-        }
+        let chosen = chosen(best.fit, batch, waiting);
         waiting = rest;
         let beside = uncounted(data, best.fit);
         let again = |found: &Fit| {
@@ -95,6 +74,32 @@ pub(crate) fn refine(
         }
     }
     refined
+}
+
+/// Of sets that wait, those that are refined with a batch of the best: see [`refine`].
+fn chosen<'w>(best: &Fit, batch: &[&Weighed<'w>], waiting: &[&Weighed<'w>]) -> Vec<&'w Fit> {
+    // On few samples spurious members come cheaply: the best set of every size has its rivals looked at.
+    let is_rival = |w: &&&Weighed<'_>| {
+        let own = &w.fit.hypothesis.candidates;
+        let best = batch.iter().find(|other| other.fit.hypothesis.candidates.len() == own.len());
+        best.is_some_and(|best| {
+            let others = &best.fit.hypothesis.candidates;
+            own.iter().filter(|candidate| !others.contains(candidate)).count() == 1
+        })
+    };
+    let further = batch.iter().skip(MOST).filter(is_rival).take(MOST);
+    let classes = best.hypothesis.candidates.iter().map(|own| own.evidence_class());
+    let without = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.lacks(class)));
+    let classes = batch.iter().flat_map(|w| &w.fit.hypothesis.candidates).map(|own| own.evidence_class());
+    let with = classes.filter_map(|class| waiting.iter().find(|w| w.fit.hypothesis.holds(class)));
+    let clean = best_if_nothing_is_left(waiting.iter().copied());
+    let mut chosen: Vec<&Fit> = Vec::new();
+    for w in batch.iter().take(MOST).chain(further).chain(without).chain(with).chain(&clean) {
+        if !chosen.iter().any(|known| known.hypothesis.counted().eq(w.fit.hypothesis.counted())) {
+            chosen.push(w.fit);
+        }
+    }
+    chosen
 }
 
 /// The members of a set that do not count as effects, with their parameters: how the sensor shows the motion is the same

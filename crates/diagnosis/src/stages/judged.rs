@@ -44,8 +44,10 @@ impl<'a> Judged<'a> {
         let classes = inclusion.classes(witness, &request.settings.seed);
         let names = likely(&classes);
         let within = inclusion.within(&names);
+        // Where no set is within the names nothing is named.
         let mut chosen = within.map(|w| w.fit.hypothesis.candidates.clone()).unwrap_or_default();
         if let Some(fit) = inclusion.completed(&refined.data, &names) {
+            // Evidence is relative to the set without effects.
             let least = within.map_or(0.0, |w| w.evidence) - WORSE;
             let set = work.predicted(completed.get_or_init(|| fit));
             if let Some(set) = set.filter(|set| inclusion.evidence(set) > least) {

@@ -67,7 +67,7 @@ pub(super) fn groups(result: &DiagnosisResult) -> Vec<Group> {
                 range: match standing {
                     Standing::Certain => "probability 0.9 or more",
                     Standing::Likely => "probability 0.5 to 0.9",
-                    Standing::Open => "probability 0.1 to 0.5",
+                    Standing::Open => "probability 0.1 to 0.5, and something speaks for it",
                 }
                 .to_owned(),
                 rows,

@@ -308,6 +308,14 @@ fn the_verdict_tells_what_is_certain_likely_and_open_and_how_much_has_no_name() 
         assert!(text.contains(part), "no `{part}` in {text}");
     }
     assert!(!text.contains('\u{a0}') && !text.contains("end stop"), "{text}");
+    // What nothing speaks for is not open, though it keeps the probability that any system has it.
+    let mut result = read(&classed());
+    for class in &mut result.classes {
+        class.evidence.replacement = class.evidence.replacement.min(0.0);
+        class.evidence.half_swings = None;
+    }
+    assert!(!crate::verdict_sentence(&result).contains("open"));
+    assert!(crate::classes::unlikely_classes(&result).unwrap().contains("periodic forcing"));
 }
 
 #[test]

@@ -194,16 +194,40 @@ fn durations(
     lost: &[Vec<f64>],
     witness: &mut Witness,
 ) -> Option<Hypothesis> {
+    let increments = of_durations(runs, swings, lost);
+    let priors = of_terms(median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>()));
+    let any = |acts: &[bool], terms: std::ops::Range<usize>| {
+        acts.get(terms).is_some_and(|acts| acts.contains(&true))
+    };
+    let one = |acts: &[bool], term: usize| any(acts, term..term + 1);
+    let allowed = |acts: &[bool]| {
+        (one(acts, SQUARE) || !one(acts, FOURTH)) && !(any(acts, PLAY) && any(acts, PRESLIDING))
+    };
+    let found = hypotheses(&increments, &priors, &allowed);
+    witness.even_stiffness = by_replacement(&found, &|acts| one(acts, SQUARE));
+    witness.period_drift = by_replacement(&found, &|acts| one(acts, TIME));
+    witness.play = by_replacement(&found, &|acts| any(acts, PLAY));
+    witness.presliding = by_replacement(&found, &|acts| any(acts, PRESLIDING));
+    let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
+    // A term that the best law does not have has no coefficient.
+    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
+    let base = of(CONSTANT).value;
+    let error = of(SQUARE).error.hypot(of(FOURTH).error) / base;
+    witness.softening = Estimate { value: (of(SQUARE).value + of(FOURTH).value) / base, error };
+    Some(best)
+}
+
+/// Durations of runs and the terms that they are explained by.
+fn of_durations(runs: &[Run], swings: &[HalfSwing], lost: &[Vec<f64>]) -> Vec<Increments> {
     let (most, span) = (largest(swings), span(swings));
-    let typical = median(&swings.iter().map(|swing| swing.duration_s.value).collect::<Vec<_>>());
     let least = swings.iter().map(|swing| swing.amplitude.value).fold(most, f64::min);
     let power = |term: usize, swing: &HalfSwing| {
+        // There is a power for every term.
         let power = POWERS.get(term).copied().unwrap_or_default();
         let part = (swing.amplitude.value / if power < 0 { least } else { most }).powi(power);
         if PRESLIDING.contains(&term) { -part } else { part }
     };
-    let increments: Vec<Increments> = runs
-        .iter()
+    runs.iter()
         .zip(lost)
         .map(|(run, lost)| {
             let shares =
@@ -218,7 +242,11 @@ fn durations(
                 covariance: [variances, shared, vec![0.0; run.swings.len()]],
             }
         })
-        .collect();
+        .collect()
+}
+
+/// What the terms of a duration may be, where it is `typical` in s.
+fn of_terms(typical: f64) -> Vec<Prior> {
     let change = LARGEST_CHANGE * typical;
     let mut priors = vec![Prior::Within(change); LOSS + 1];
     for (term, prior) in priors.iter_mut().enumerate() {
@@ -229,29 +257,13 @@ fn durations(
             _ => {}
         }
     }
-    let any = |acts: &[bool], terms: std::ops::Range<usize>| {
-        acts.get(terms).is_some_and(|acts| acts.contains(&true))
-    };
-    let one = |acts: &[bool], term: usize| any(acts, term..term + 1);
-    let allowed = |acts: &[bool]| {
-        (one(acts, SQUARE) || !one(acts, FOURTH)) && !(any(acts, PLAY) && any(acts, PRESLIDING))
-    };
-    let found = hypotheses(&increments, &priors, &allowed);
-    witness.even_stiffness = by_replacement(&found, &|acts| one(acts, SQUARE));
-    witness.period_drift = by_replacement(&found, &|acts| one(acts, TIME));
-    witness.play = by_replacement(&found, &|acts| any(acts, PLAY));
-    witness.presliding = by_replacement(&found, &|acts| any(acts, PRESLIDING));
-    let best = found.into_iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))?;
-    let of = |term: usize| best.coefficients.get(term).copied().unwrap_or_default();
-    let base = of(CONSTANT).value;
-    let error = of(SQUARE).error.hypot(of(FOURTH).error) / base;
-    witness.softening = Estimate { value: (of(SQUARE).value + of(FOURTH).value) / base, error };
-    Some(best)
+    priors
 }
 
 /// The restoring torque that the durations tell, as it has drifted by a swing.
 fn restoring(durations: Option<&Hypothesis>, swings: &[HalfSwing], swing: &HalfSwing) -> Restoring {
     let of = |term: usize| {
+        // Durations that nothing is known of depend on nothing.
         durations.and_then(|found| found.coefficients.get(term)).map_or(0.0, |estimate| estimate.value)
     };
     let base = of(CONSTANT).max(f64::MIN_POSITIVE);
@@ -355,6 +367,7 @@ fn effective(increments: &[Increments], best: &Hypothesis) -> f64 {
             for (at, value) in run.values.iter().enumerate() {
                 let explained = run.terms.iter().zip(&best.coefficients);
                 level += value
+                    // A term has a value for every swing.
                     - explained.map(|(term, c)| c.value * term.get(at).copied().unwrap_or(0.0)).sum::<f64>();
                 levels.push(level);
             }

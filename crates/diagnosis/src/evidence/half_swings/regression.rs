@@ -110,9 +110,11 @@ fn whiten(runs: &[Increments], terms: usize, ratio: f64, scale: f64) -> Option<W
         let columns: Vec<Vec<f64>> = run.terms.iter().map(|term| factor.solve(term)).collect();
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         whitened.normal += DMatrix::from_fn(terms, terms, |row, column| {
+            // As many columns as terms.
             columns.get(row).zip(columns.get(column)).map_or(0.0, |(a, b)| dot(a, b))
         });
         whitened.right +=
+            // As many columns as terms.
             DVector::from_fn(terms, |row, _| columns.get(row).map_or(0.0, |term| dot(term, &values)));
         whitened.squares += dot(&values, &values);
         whitened.log_determinant += factor.log_determinant();
@@ -134,11 +136,13 @@ impl Banded {
         let mut factor = Self { diagonal: Vec::new(), next: Vec::new(), second: Vec::new() };
         for (row, variance) in variances.iter().enumerate() {
             let back = |list: &[f64], by: usize| {
+                // What lies before the first row takes no part.
                 row.checked_sub(by).and_then(|at| list.get(at)).copied().unwrap_or(0.0)
             };
             // Entries of this row: two before, one before, itself.
             let far = if row >= 2 { back(second, 2) / back(&factor.diagonal, 2) } else { 0.0 };
             let near = if row >= 1 {
+                // The band has an entry for the row before.
                 (back(first, 1) - far * factor.next.last().copied().unwrap_or(0.0))
                     / back(&factor.diagonal, 1)
             } else {
@@ -160,6 +164,7 @@ impl Banded {
         let mut solved: Vec<f64> = Vec::with_capacity(values.len());
         let rows = self.diagonal.iter().zip(&self.next).zip(&self.second).zip(values);
         for (row, (((diagonal, near), far), value)) in rows.enumerate() {
+            // What lies before the first row takes no part.
             let back = |by: usize| row.checked_sub(by).and_then(|at| solved.get(at)).copied().unwrap_or(0.0);
             let own = (value - near * back(1) - far * back(2)) / diagonal;
             solved.push(own);
@@ -205,14 +210,17 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
             .and_then(|place| whitened.normal.get((*place.0, *place.1)))
             .copied()
     };
+    // Places are within the normal matrix.
     let normal = DMatrix::from_fn(terms, terms, |row, column| entry(row, column).unwrap_or_default());
     let right = DVector::from_fn(terms, |row, _| {
+        // Places are within the normal matrix.
         places.get(row).and_then(|place| whitened.right.get(*place)).copied().unwrap_or_default()
     });
     // Units differ by many orders: columns of length 1 before the factorization.
     let lengths = normal.diagonal().map(|square| square.max(f64::MIN_POSITIVE).sqrt());
     let unit = DMatrix::from_fn(terms, terms, |row, column| {
         let length = |at: usize| lengths.get(at).copied().unwrap_or(1.0);
+        // Within the matrix.
         normal.get((row, column)).copied().unwrap_or_default() / (length(row) * length(column))
     });
     let factor = unit.cholesky()?;
@@ -234,7 +242,9 @@ fn evidence(whitened: &Whitened, priors: &[Prior], places: &[usize]) -> Option<(
     let mut estimates = Vec::with_capacity(terms);
     for (at, place) in places.iter().enumerate() {
         let length = lengths.get(at).copied().unwrap_or(1.0);
+        // As many solutions as places.
         let value = solved.get(at).copied().unwrap_or_default() / length;
+        // As many solutions as places.
         let error = (variance * inverse.get((at, at)).copied().unwrap_or_default()).sqrt() / length;
         log += match priors.get(*place) {
             Some(Prior::UpTo(most)) => log_between(-value / error, (most - value) / error) - most.ln(),
@@ -261,6 +271,7 @@ fn log_between(low: f64, high: f64) -> f64 {
     if near > 6.0 {
         return -0.5 * near * near - (near * (2.0 * PI).sqrt()).ln();
     }
+    // A standard deviation of one is allowed.
     let below = |z: f64| Normal::new(0.0, 1.0).map_or(0.5, |normal| normal.cdf(z));
     let between = if near > 0.0 { below(-near) - below(-far) } else { below(high) - below(low) };
     between.max(f64::MIN_POSITIVE).ln()

@@ -60,6 +60,7 @@ impl Samples {
 
     fn points(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
         let range = self.between(from, to);
+        // A range of a record without samples is empty.
         let pick = |list: &[f64]| list.get(range.clone()).unwrap_or_default().to_vec();
         pick(&self.times).into_iter().zip(pick(&self.values))
     }
@@ -80,6 +81,7 @@ pub(crate) fn turning_points(record: &Observations, kept: &[bool], angular_frequ
         .filter(|((time, value), kept)| **kept && time.is_finite() && value.is_finite())
         .map(|((time, value), _)| (*time, *value))
         .unzip();
+    // Readings without a stated resolution are not rounded.
     let samples = Samples { times, values, rounding: record.resolution.unwrap_or(0.0) / 12_f64.sqrt() };
     let Some((start, half)) = first(&samples, angular_frequency) else { return Vec::new() };
     let mut turns: Vec<Option<Local>> = track(&samples, start, half, -1.0);
@@ -94,7 +96,9 @@ fn sinusoid(points: &[(f64, f64)], frequency: f64) -> Option<(f64, [f64; 3])> {
     let count = points.len();
     let middle = points.iter().map(|point| point.1).sum::<f64>() / count as f64;
     let design = DMatrix::from_fn(count, 3, |row, column| {
+        // A row for every point.
         let phase = frequency * points.get(row).map_or(0.0, |point| point.0);
+        // Three columns, three terms.
         [1.0, phase.cos(), phase.sin()].get(column).copied().unwrap_or_default()
     });
     let values = DVector::from_iterator(count, points.iter().map(|point| point.1 - middle));
@@ -223,12 +227,15 @@ fn fit(samples: &Samples, center: f64, half: f64) -> Option<Local> {
     }
     let count = if points.len() >= FEWEST_FULL { 5 } else { 3 };
     let design = DMatrix::from_fn(points.len(), count, |row, column| {
+        // A row for every point.
         let phase = points.get(row).map_or(0.0, |point| point.0);
+        // There are five terms, of which the first three may be taken.
         terms(phase, 0).get(column).copied().unwrap_or_default()
     });
     let values = DVector::from_iterator(points.len(), points.iter().map(|point| point.1));
     let (solved, inverse, scatter) = robust(&design, &values, samples.rounding)?;
     let at = |phase: f64, derivative: usize| {
+        // There are five terms, of which the first three may be taken.
         DVector::from_row_slice(terms(phase, derivative).get(..count).unwrap_or_default())
     };
     let mut phase = 0.0_f64;
@@ -267,7 +274,9 @@ fn robust(
     let mut found = None;
     for _ in 0..rounds {
         let weighted = DMatrix::from_fn(rows, columns, |row, column| {
+            // Rows and columns are those of the design.
             design.get((row, column)).copied().unwrap_or_default()
+                // A weight for every row.
                 * weights.get(row).copied().unwrap_or_default()
         });
         let inverse = weighted.tr_mul(design).cholesky()?.inverse();

@@ -42,6 +42,7 @@ impl Along<'_> {
 
     /// The moment that a law sees at a sample, in its first region.
     pub(crate) fn moment(&self, index: usize) -> Moment<f64> {
+        // Every series has an entry for each sample.
         let at = |list: &[f64]| list.get(index).copied().unwrap_or(0.0);
         let velocity = at(self.velocity);
         Moment {
@@ -62,7 +63,9 @@ pub(crate) fn held(input: &Input, time: f64) -> f64 {
     let at = input.times().partition_point(|knot| *knot <= time);
     let value = |index: usize| input.values().get(index).copied();
     let knot = |index: usize| input.times().get(index).copied();
+    // An input without values does nothing.
     let Some(before) = at.checked_sub(1) else { return value(0).unwrap_or(0.0) };
+    // It has a value at every knot.
     let low = value(before).unwrap_or(0.0);
     match (input.hold(), value(at), knot(before), knot(at)) {
         (Hold::Linear, Some(high), Some(from), Some(to)) => low + (high - low) * (time - from) / (to - from),

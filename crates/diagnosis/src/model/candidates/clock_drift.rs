@@ -46,6 +46,7 @@ impl CandidateLaw for ClockDrift {
 
     /// A rate that is off by a constant factor is part of the calibration.
     fn stated(&self, active: &Active) -> Option<Vec<f64>> {
+        // A law that is stated has its parameter.
         Some(vec![active.value("change").unwrap_or_default()])
     }
 

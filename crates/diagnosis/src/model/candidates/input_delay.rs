@@ -40,6 +40,7 @@ impl CandidateLaw for InputDelay {
     fn columns(&self, shape: &[f64], along: &Along<'_>) -> Vec<Vec<f64>> {
         let &[delay] = shape else { return Vec::new() };
         let shifted = along.times.iter().zip(along.input).map(|(time, now)| {
+            // Where nothing acts nothing is late.
             along.command.map_or(0.0, |input| along.nominal.input_gain * held(input, time - delay) - now)
         });
         vec![(along.respond)(&shifted.collect::<Vec<f64>>())]

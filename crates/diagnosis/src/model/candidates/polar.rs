@@ -26,6 +26,7 @@ impl Polar {
     /// Derivatives of [`Self::values`]: row, column and value of what differs from the unit matrix.
     pub(crate) fn slopes(self, fitted: &[f64]) -> Vec<(usize, usize, f64)> {
         let Self { size, angle } = self;
+        // Both places are those of the law.
         let at = |place: usize| fitted.get(place).copied().unwrap_or(0.0);
         let (p, q) = (at(size), at(angle));
         let length = p.hypot(q);

@@ -74,6 +74,7 @@ impl CandidateLaw for StribeckFriction {
     /// Without a column of its own Coulomb's part is 0.
     fn linear_parameters(&self, shape: &[f64], coefficients: &[f64]) -> Vec<f64> {
         let mut sizes = coefficients.iter().rev().copied();
+        // Two columns have two coefficients.
         let (excess, torque) = (sizes.next().unwrap_or(0.0), sizes.next().unwrap_or(0.0));
         [torque, excess].into_iter().chain(shape.iter().skip(2).copied()).collect()
     }

@@ -1,0 +1,107 @@
+//! What a record has to be before it is cut into segments.
+
+use crate::data::observations::Observations;
+use crate::data::period::swing;
+use crate::error::DiagnosisError;
+use crate::noise::periodogram::strongest_period;
+use dynamics::{Coordinate, NominalSimulator};
+use record::Quantity;
+use std::f64::consts::TAU;
+
+/// Fewest samples and cycles of a record.
+const FEWEST_SAMPLES: usize = 50;
+const FEWEST_CYCLES: f64 = 3.0;
+
+/// Factor between measured and nominal period from which on they are not the same system: a spring that misses a weight
+/// swings more than twice as slowly, and a unit that is wrong makes a factor of √9.81 at least.
+const ANOTHER_SYSTEM: f64 = 3.0;
+
+/// Refuses a record that says nothing; gives its period where it swings freely. `kept` tells which samples are no outliers.
+pub(crate) fn check(
+    number: usize,
+    (record, kept): (&Observations, &[bool]),
+    first: &Observations,
+    simulator: &NominalSimulator,
+) -> Result<Option<f64>, DiagnosisError> {
+    if record.quantity != first.quantity || record.unit != first.unit {
+        return Err(DiagnosisError::MixedQuantities { record: number });
+    }
+    if record.len() < FEWEST_SAMPLES {
+        return Err(DiagnosisError::TooFewSamples {
+            record: number,
+            found: record.len(),
+            needed: FEWEST_SAMPLES,
+        });
+    }
+    let span = span(&record.values);
+    // A resolution that nobody states rounds nothing.
+    let resolution = record.resolution.or(simulator.nominal().sensor_resolution()).unwrap_or(0.0);
+    if span <= 3.0 * resolution || span <= 0.0 {
+        return Err(DiagnosisError::NoMotion { record: number, span, resolution, unit: record.unit });
+    }
+    if record.input.is_some() { Ok(None) } else { own_period(number, (record, kept), simulator) }
+}
+
+/// The period of a free swing, where it has one to compare with the simulator's.
+///
+/// # Errors
+/// Where the simulator has no spring and nothing acts, where less than two periods are seen, where the period is another
+/// system's, and where angles are larger than any in radians.
+fn own_period(
+    number: usize,
+    (record, kept): (&Observations, &[bool]),
+    simulator: &NominalSimulator,
+) -> Result<Option<f64>, DiagnosisError> {
+    let nominal = simulator.nominal();
+    let omega = simulator.angular_frequency();
+    if omega == 0.0 {
+        return Err(DiagnosisError::MissingInput { record: number });
+    }
+    if nominal.damping() / nominal.inertia() > 1.5 * omega {
+        return Ok(None);
+    }
+    let nominal_s = TAU / omega;
+    let (times, values) = (only(&record.times_s, kept), only(&record.values, kept));
+    let swing = swing(&times, &values);
+    // What does not swing has no cycles.
+    let cycles = swing.map_or(0.0, |swing| swing.cycles);
+    let spans = record.duration_s() / nominal_s;
+    if cycles < FEWEST_CYCLES && spans < FEWEST_CYCLES {
+        return Err(DiagnosisError::TooFewCycles {
+            record: number,
+            found: cycles.max(spans),
+            needed: FEWEST_CYCLES,
+            period_s: nominal_s,
+        });
+    }
+    // A swing that friction stops within a few half periods has no period of its own to compare.
+    let Some(crossed_s) = swing.filter(|swing| swing.cycles >= FEWEST_CYCLES).map(|swing| swing.period_s)
+    else {
+        return Ok(None);
+    };
+    let ratio = |period_s: f64| (period_s / nominal_s).max(nominal_s / period_s);
+    // Refused is what the spectrum does not allow either.
+    let of_spectrum = || strongest_period(&times, &values, crossed_s.min(nominal_s)).unwrap_or(crossed_s);
+    let measured_s = if ratio(crossed_s) < ANOTHER_SYSTEM { crossed_s } else { of_spectrum() };
+    let ratio = ratio(measured_s);
+    if ratio >= ANOTHER_SYSTEM {
+        return Err(DiagnosisError::AnotherPeriod { record: number, nominal_s, measured_s, ratio });
+    }
+    let largest = 0.5 * span(&record.values);
+    let turns = largest / TAU;
+    if nominal.coordinate() == Coordinate::Angle && record.quantity == Quantity::Position && turns > 1.0 {
+        return Err(DiagnosisError::LooksLikeDegrees { record: number, largest, turns });
+    }
+    Ok(Some(measured_s))
+}
+
+/// The highest value less the lowest.
+pub(crate) fn span(values: &[f64]) -> f64 {
+    let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    highest - values.iter().copied().fold(f64::INFINITY, f64::min)
+}
+
+/// The values that are kept.
+pub(crate) fn only(values: &[f64], kept: &[bool]) -> Vec<f64> {
+    values.iter().zip(kept).filter(|(_, kept)| **kept).map(|(value, _)| *value).collect()
+}
