@@ -165,7 +165,7 @@ fn a_file_that_is_not_there() {
 
 #[test]
 fn no_text_at_all() {
-    refused(&[0x74, 0xff, 0xfe, 0x00], &[], &["not UTF-8 text (byte 1)"]);
+    refused(&[0x74, 0xff, 0xfe, 0x00], &[], &["is no text (byte 1)"]);
 }
 
 #[test]

@@ -39,10 +39,8 @@ pub enum Fault {
         /// How to get at its columns.
         remedy: &'static str,
     },
-    /// The text is not UTF-8.
-    #[error(
-        "is not UTF-8 text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1"
-    )]
+    /// Bytes that no text holds.
+    #[error("is no text (byte {offset}); expected a text file with columns, in UTF-8, UTF-16 or Latin-1")]
     NotText {
         /// Offset of the first byte that is not text.
         offset: usize,
@@ -81,6 +79,17 @@ pub enum Fault {
         found: String,
         /// The configuration key that names the column.
         key: &'static str,
+    },
+    /// The input is the time or the observed quantity.
+    #[error(
+        "column `{column}` is the time or the observed quantity and cannot be the input as well; set `data.input` to another \
+         column, or `data.value` to the observed one"
+    )]
+    InputIsTaken {
+        /// Line of the header, from 1.
+        line: u64,
+        /// The column.
+        column: String,
     },
     /// Neither a time column nor a rate.
     #[error(
@@ -231,6 +240,7 @@ impl Fault {
             Self::BadHeader { line, .. }
             | Self::NoHeader { line, .. }
             | Self::NoTime { line, .. }
+            | Self::InputIsTaken { line, .. }
             | Self::Ambiguous { line, .. }
             | Self::SeveralValues { line, .. }
             | Self::MissingCells { line, .. }

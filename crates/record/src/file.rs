@@ -83,7 +83,11 @@ pub(crate) fn text_of(bytes: &[u8]) -> Result<Cow<'_, str>, Fault> {
         return Err(Fault::OtherFormat { kind, remedy });
     }
     let error = match std::str::from_utf8(bytes) {
-        Ok(text) => return Ok(Cow::Borrowed(text)),
+        // A program or a dump may be valid UTF-8 by chance; no line of text holds a NUL.
+        Ok(text) => match text.find('\0') {
+            Some(offset) => Fault::NotText { offset },
+            None => return Ok(Cow::Borrowed(text)),
+        },
         Err(error) => Fault::NotText { offset: error.valid_up_to() },
     };
     let units = |from: fn([u8; 2]) -> u16| -> Vec<u16> {

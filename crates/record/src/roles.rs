@@ -291,7 +291,11 @@ impl Roles<'_> {
     /// command or a voltage only where an input is asked for.
     pub(crate) fn input(&self, taken: &[usize]) -> Result<(Option<Pick>, Option<String>), Fault> {
         if let Some(name) = &self.asked().input {
-            return Ok((Some(Pick { at: self.named(name, "data.input")?, because: NAMED }), None));
+            let at = self.named(name, "data.input")?;
+            if taken.contains(&at) {
+                return Err(Fault::InputIsTaken { line: self.line, column: name.clone() });
+            }
+            return Ok((Some(Pick { at, because: NAMED }), None));
         }
         let score = |heading: &Heading| {
             let torque = rank(heading, TORQUES).map(|_| 0);

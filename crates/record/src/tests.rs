@@ -305,6 +305,17 @@ fn inputs_are_converted_by_their_header_or_the_option() {
 }
 
 #[test]
+fn the_observed_column_is_no_input() {
+    let text = file("t,angle_deg,u", |_, t, a| format!("{t},{},90", a.to_degrees()));
+    for input in ["angle_deg", "t"] {
+        let columns = CsvColumns { input: Some(input.to_owned()), ..CsvColumns::default() };
+        let options = ReadOptions { columns, ..ReadOptions::default() };
+        let said = read_text("r.csv", text.as_bytes(), &options).unwrap_err().to_string();
+        assert!(said.contains(&format!("column `{input}`")) && said.contains("`data.input`"), "{said}");
+    }
+}
+
+#[test]
 fn odd_rates_and_angles_are_remarked() {
     let text = file("time,angle", |_, t, a| format!("{:.0},{}", 1e3 * t, a.to_degrees()));
     let (_, source) = read(&text);
@@ -465,6 +476,7 @@ fn files_that_are_no_text_are_told_by_their_beginning() {
         (b"MATLAB 5.0 MAT-file", "logs.read_mat"),
         (b"\x89MCAP0\r\n", "logs.read_mcap"),
         (b"#ROSBAG V2.0\n", "logs.read_rosbag"),
+        (b"\x7fELF\x02\x01\x01\0\0", "is no text (byte 7)"),
     ] {
         assert!(refused(bytes).contains(words), "{}", refused(bytes));
     }

@@ -155,14 +155,14 @@ impl<'a> Context<'a> {
             segments: self.segments.data,
             fitted,
         };
-        let given = own(&self.base.nominal, &short.nominal);
-        let nominal = Both { longer: self.segments.data, followed: &short.nominal, ..given };
-        let nominal = nominal.interleaved(Moving::Starts)?;
+        // As given it loses count of the swings on longer stretches, and no start state suits it there.
+        let given = Both { longer: self.segments.data, ..own(&short.nominal, &short.nominal) };
+        let nominal = given.interleaved(Moving::Starts)?;
         let calibrated = own(&self.base.calibrated, &short.calibrated);
         let recalibrated = calibrated.interleaved(Moving::All)?;
         // Many coefficients, fitted to half of a record, may predict the other half worse than they do as given.
         let (recalibrated, last_third) = if recalibrated.mean_square() > nominal.mean_square() {
-            (given.interleaved(Moving::Starts)?, given.last_third(Moving::Starts)?)
+            (nominal.clone(), given.last_third(Moving::Starts)?)
         } else {
             (recalibrated, calibrated.last_third(Moving::All)?)
         };

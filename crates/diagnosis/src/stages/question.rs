@@ -3,7 +3,7 @@
 use super::{Measured, Request};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
-use crate::fit::calibrate::{Baseline, better_hold};
+use crate::fit::calibrate::{Baseline, baseline, better_hold};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
@@ -11,6 +11,7 @@ use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::noise::floor;
 use crate::search::null;
+use dynamics::{Hold, Input};
 
 /// The calibrated simulator and the effects that it may lack.
 pub(crate) struct Question {
@@ -25,9 +26,21 @@ pub(crate) struct Question {
 }
 
 impl Question {
-    pub(crate) fn of(request: &Request<'_>, measured: &Measured) -> Result<Self, DiagnosisError> {
+    /// `hold` is what the input does between its samples, where that is known already.
+    pub(crate) fn of(
+        request: &Request<'_>,
+        measured: &Measured,
+        hold: Option<Hold>,
+    ) -> Result<Self, DiagnosisError> {
         let (simulator, settings) = (request.simulator, request.settings);
-        let (data, base) = better_hold(&measured.data, simulator)?;
+        let (data, base) = match hold {
+            Some(hold) => {
+                let data = measured.data.holding(hold)?;
+                let base = baseline(&data, simulator)?;
+                (data, base)
+            }
+            None => better_hold(&measured.data, simulator)?,
+        };
         let data = data.for_noise(floor::floor(&data, &base.calibrated.residuals).value);
         let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
         candidates.retain(|candidate| settings.considers(candidate.id()));
@@ -40,5 +53,15 @@ impl Question {
         let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
         let enough = 0.5 * threshold / finer;
         Ok(Self { data, base, candidates, coarse, coarse_base, enough })
+    }
+
+    /// What the input does between its samples; none where there is none.
+    pub(crate) fn hold(&self) -> Option<Hold> {
+        self.data.inputs.iter().flatten().map(Input::hold).next()
+    }
+
+    /// What it could do else.
+    pub(crate) fn other_hold(&self) -> Option<Hold> {
+        self.hold().map(|hold| if hold == Hold::Linear { Hold::Zero } else { Hold::Linear })
     }
 }

@@ -13,6 +13,7 @@ use crate::search::archive::Archive;
 use crate::search::beam::{Asked, Breadth, Explored, WHITE, go_on, search};
 use crate::search::chains::chains;
 use crate::search::plain::plain_family;
+use rayon::prelude::*;
 use std::cmp::Ordering;
 
 /// Most effects that a set can hold.
@@ -67,6 +68,25 @@ impl Searched {
         Self { interval, found, breadth }
     }
 
+    /// The best of the found sets on samples of another question, where it comes closer there than any does here: asked are the
+    /// best set and each of one effect.
+    pub(crate) fn better_on(&self, question: &Question) -> Option<Known> {
+        let Question { coarse, coarse_base, candidates, enough, .. } = question;
+        let by = self.interval.by;
+        let interval = ShootingInterval::joined(coarse, coarse_base, by)?;
+        let time = self.found.autocorrelation_time();
+        let ranked = self.found.ranked(time).into_iter().enumerate();
+        let asked: Vec<&Fit> =
+            ranked.filter(|(place, own)| *place == 0 || is_single(own)).map(|(_, own)| own).collect();
+        let again = |own: &&Fit| {
+            fit(&interval.data, &own.hypothesis, own.point.clone(), Moving::All, Stopping::SEARCH).ok()
+        };
+        let fits: Vec<Fit> = asked.par_iter().filter_map(again).collect();
+        let worth = |own: &Fit| score(own, time) - price(&interval.data, own, candidates.len(), 1.0);
+        let set = fits.into_iter().max_by(|a, b| worth(a).total_cmp(&worth(b)))?;
+        (worth(&set) > self.evidence(time, candidates.len()) + enough).then_some(Known { by, set })
+    }
+
     /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
     fn evidence(&self, time: f64, vocabulary: usize) -> f64 {
         let data = &self.interval.data;
@@ -98,6 +118,11 @@ impl Known {
         let sets = if set.hypothesis.candidates.is_empty() { Vec::new() } else { vec![set] };
         Some((interval, sets))
     }
+}
+
+/// Whether a set has one effect.
+fn is_single(set: &Fit) -> bool {
+    set.hypothesis.counted().count() == 1
 }
 
 /// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.

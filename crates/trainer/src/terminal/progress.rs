@@ -7,6 +7,10 @@ use record::two_digits;
 use results::SeedRow;
 use std::fmt::Display;
 use std::io::IsTerminal;
+use std::time::Duration;
+
+/// Time between two pictures of a stage that goes on.
+const TICK: Duration = Duration::from_millis(200);
 
 /// Progress over the fits of an experiment; of a single one, over its steps.
 pub(crate) struct Progress {
@@ -39,6 +43,22 @@ impl Progress {
             bar.set_style(style);
         }
         Self { bar, unit, counts_steps, lines: !terminal && !quiet }
+    }
+
+    /// Over stages of which nobody knows how long they take: what is done now, and since when.
+    pub(crate) fn over_stages(first: &'static str, quiet: bool) -> Self {
+        let progress = Self::new(0, "stages", false, quiet);
+        if let Ok(style) = ProgressStyle::with_template("{spinner} {elapsed}  {wide_msg}") {
+            progress.bar.set_style(style);
+        }
+        progress.stage(first);
+        progress.bar.enable_steady_tick(TICK);
+        progress
+    }
+
+    /// The next stage has begun.
+    pub(crate) fn stage(&self, now: &'static str) {
+        self.bar.set_message(now);
     }
 
     /// A step of the only fit.

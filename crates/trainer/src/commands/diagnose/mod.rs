@@ -10,6 +10,7 @@ mod summary;
 use crate::error::{LaunchError, TrainerError};
 use crate::outcome::Outcome;
 use crate::terminal::interrupt::{self, Saving};
+use crate::terminal::progress::Progress;
 use arguments::DiagnoseArguments;
 use diagnosis::Observations;
 use dynamics::Nominal;
@@ -94,7 +95,14 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
         })?;
         return Ok(Outcome::Done);
     }
-    let answer = pool.install(|| question.answer(&arguments.settings(), arguments.seed))?;
+    let progress = Progress::over_stages(after(""), arguments.output.quiet || arguments.output.json);
+    let goes_on = |done: &'static str| {
+        progress.stage(after(done));
+        true
+    };
+    let answer = pool.install(|| question.answer_watched(&arguments.settings(), arguments.seed, &goes_on));
+    progress.finish();
+    let answer = answer?;
     let _saving = Saving::begin();
     let folder = match (begun, &arguments.out) {
         (Some(folder), _) => folder,
@@ -104,4 +112,17 @@ fn single(arguments: &DiagnoseArguments, nominal: &Path) -> Result<Outcome, Trai
     kept::keep(&folder, &question, &asked, &answer, pool.current_num_threads())?;
     arguments.output.print(&answer.result, || summary::summary(&answer.result, folder.path()))?;
     Ok(Outcome::Done)
+}
+
+/// What is done after a stage, in words.
+fn after(stage: &str) -> &'static str {
+    match stage {
+        "" => "measuring the record",
+        "measurement chain" => "recalibrating the simulator",
+        "calibration" => "searching for sets of effects",
+        "search" => "fitting the best sets on every sample",
+        "fits" => "predicting held-out parts",
+        "held-out parts" => "asking what is left over",
+        _ => "explaining what was found",
+    }
 }
