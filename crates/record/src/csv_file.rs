@@ -235,9 +235,9 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         numbers.push(number);
     }
     parsed.rows = (samples.missing_lines > 0 && asked.missing == Missing::Segment).then_some(numbers);
-    let doubted = assumed && heading.unknown.is_none();
+    let doubted = heading.unknown.is_none() && (assumed || asked.unit.is_none());
     let values: Vec<f64> = samples.values.iter().flatten().copied().collect();
-    findings.extend(doubted.then(|| doubtful_unit(&values, unit)).flatten());
+    findings.extend(doubted.then(|| doubtful_unit(&values, unit, assumed)).flatten());
     parsed.findings = findings;
     Ok(parsed)
 }
@@ -466,17 +466,23 @@ fn input_scale(
 }
 
 /// A sentence where values without a unit are larger than those of the SI unit usually are, or center on the gravity of
-/// another unit: angles beyond a right angle, rates beyond the range of gyroscopes, accelerations about 1.
-fn doubtful_unit(values: &[f64], unit: Unit) -> Option<String> {
+/// another unit: angles beyond a right angle, rates beyond the range of gyroscopes, accelerations about 1. Of a unit that the header
+/// states only angles beyond a turn are doubted.
+fn doubtful_unit(values: &[f64], unit: Unit, assumed: bool) -> Option<String> {
     let highest = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
     let (half, middle) = (0.5 * (highest - lowest), 0.5 * (highest + lowest));
-    let taken = format!("the values state no unit and were taken to be in {}", unit.symbol());
+    let taken = if assumed {
+        format!("the values state no unit and were taken to be in {}", unit.symbol())
+    } else {
+        format!("the header says {}", unit.symbol())
+    };
     match unit {
         Unit::Radian if half > std::f64::consts::TAU => Some(format!(
             "{taken}, {:.1} turns to either side; if they are degrees (a factor of 57.3), set `data.unit` to deg",
             half / std::f64::consts::TAU
         )),
+        _ if !assumed => None,
         Unit::Radian if half > std::f64::consts::FRAC_PI_2 => Some(format!(
             "{taken}, {:.0} degrees to either side; if they are degrees (a factor of 57.3), {half:.1} of them, set \
              `data.unit` to deg",

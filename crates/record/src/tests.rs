@@ -354,6 +354,11 @@ fn numbers_that_are_rather_in_another_unit_are_told() {
     let said = told("time_s,acc_x", &|a| 1.0 + 0.2 * a);
     assert!(said.contains("in g (a factor of 9.81), set `data.unit` to g"), "{said}");
     assert_eq!(told("time_s,acc_x", &|a| 2.0 * a), "");
+    // A header that says rad over degrees, and one over a swing.
+    let text = file("time,angle_rad", |_, t, a| format!("{t},{}", 100.0 * a));
+    assert!(read(&text).1.findings[0].contains("the header says rad"), "{:?}", read(&text).1.findings);
+    let text = file("time,angle_rad", |_, t, a| format!("{t},{}", 3.0 * a));
+    assert!(read(&text).1.findings.is_empty(), "{:?}", read(&text).1.findings);
 }
 
 #[test]

@@ -104,8 +104,8 @@ pub(crate) fn next(result: &EstimationResult) -> Vec<String> {
     };
     if result.pass {
         steps.push(format!(
-            "See whether the decay is exponential at all: “trainer init {path}” writes the linear oscillator nearest to the \
-             record and prints the call that diagnoses what it lacks."
+            "See whether the decay is exponential at all: “trainer init {path} --out LINEAR” writes the linear oscillator \
+             nearest to the record into a new folder, and prints the call that diagnoses what it lacks."
         ));
         steps.push(format!(
             "Compare other methods on the same envelope: “trainer configs/compare.toml data.path={path}”."
