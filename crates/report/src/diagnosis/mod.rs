@@ -13,7 +13,7 @@ mod tests;
 use askama::Template;
 use results::{DiagnosisResult, VerdictStatus};
 
-use crate::classes::{effect_title, is_calibrated_already, unlikely_classes};
+use crate::classes::{effect_title, is_calibrated_already, listed, unlikely_classes};
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
 use crate::parse::Diagnosis;
@@ -122,10 +122,15 @@ fn origin(result: &DiagnosisResult) -> Origin {
 fn warnings(result: &DiagnosisResult) -> Vec<String> {
     let mut warnings = Vec::new();
     for class in &result.verdict.equivalent {
-        let titles: Vec<String> = class.iter().map(|id| effect_title(result, id)).collect();
+        let title = |id: &String| match id.as_str() {
+            "calibration" => "coefficients that are off".to_owned(),
+            id => effect_title(result, id),
+        };
+        let titles: Vec<String> = class.iter().map(title).collect();
+        let others = if titles.len() == 2 { "the other" } else { "the others" };
         warnings.push(format!(
-            "These data cannot tell {} apart: whichever is named, the others would do as well.",
-            titles.join(" and ")
+            "These data cannot tell {} apart: whichever is named, {others} would do as well.",
+            listed(&titles, "and")
         ));
     }
     if result.samples_used < 0.9999 {
