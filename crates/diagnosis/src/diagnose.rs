@@ -47,9 +47,8 @@ impl Sought {
     ) -> Result<Option<Self>, DiagnosisError> {
         let Some(hold) = self.question.other_hold() else { return Ok(None) };
         let other = Question::of(request, &self.measured, Some(hold))?;
-        let Some(known) = self.searched.better_on(&other) else { return Ok(None) };
-        let found = Self::of(request, Some(hold), Some(known), watch)?;
-        Ok(Some(found).filter(|found| found.is_closer(self, 0.0)))
+        let Some(known) = self.searched.better_on(&self.question, &other) else { return Ok(None) };
+        Self::of(request, Some(hold), Some(known), watch).map(Some)
     }
 
     /// Whether it has come closer than another by so much log evidence.

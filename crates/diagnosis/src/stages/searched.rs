@@ -2,7 +2,7 @@
 
 use super::{Question, Request};
 use crate::data::segments::Data;
-use crate::data::shooting_interval::ShootingInterval;
+use crate::data::shooting_interval::{ShootingInterval, shortened};
 use crate::evidence::left_over::unexplained;
 use crate::evidence::score::score;
 use crate::evidence::weights::{acts, price};
@@ -21,6 +21,12 @@ const MOST_EFFECTS: usize = 5;
 
 /// Searches on longer shooting intervals at most.
 const MOST_INTERVALS: usize = 3;
+
+/// Sets of one effect that are asked under another belief, beside the best set.
+const SINGLES: usize = 3;
+
+/// Log evidence for which a belief about the input is given up.
+const ANOTHER_BELIEF: f64 = 10.0;
 
 /// A set that a search goes on from, on segments joined by so many.
 pub(crate) struct Known {
@@ -68,23 +74,28 @@ impl Searched {
         Self { interval, found, breadth }
     }
 
-    /// The best of the found sets on samples of another question, where it comes closer there than any does here: asked are the
-    /// best set and each of one effect.
-    pub(crate) fn better_on(&self, question: &Question) -> Option<Known> {
-        let Question { coarse, coarse_base, candidates, enough, .. } = question;
-        let by = self.interval.by;
-        let interval = ShootingInterval::joined(coarse, coarse_base, by)?;
+    /// The set that comes closest on every sample of another question, which differs from `own` by a belief, where it comes closer there
+    /// than any does on those of `own`: asked are the best set and the best of one effect.
+    pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
         let time = self.found.autocorrelation_time();
-        let ranked = self.found.ranked(time).into_iter().enumerate();
-        let asked: Vec<&Fit> =
-            ranked.filter(|(place, own)| *place == 0 || is_single(own)).map(|(_, own)| own).collect();
-        let again = |own: &&Fit| {
-            fit(&interval.data, &own.hypothesis, own.point.clone(), Moving::All, Stopping::SEARCH).ok()
+        let ranked = self.found.ranked(time);
+        let singles = ranked.iter().skip(1).filter(|set| set.hypothesis.counted().count() == 1);
+        let asked: Vec<&&Fit> = ranked.iter().take(1).chain(singles.take(SINGLES)).collect();
+        let again = |set: &&&Fit| {
+            let short = shortened(&own.coarse, &self.interval.data, set).ok()?;
+            let on = |data: &Data| {
+                fit(data, &short.hypothesis, short.point.clone(), Moving::All, Stopping::SEARCH).ok()
+            };
+            Some((on(&own.data)?, on(&other.data)?))
         };
-        let fits: Vec<Fit> = asked.par_iter().filter_map(again).collect();
-        let worth = |own: &Fit| score(own, time) - price(&interval.data, own, candidates.len(), 1.0);
-        let set = fits.into_iter().max_by(|a, b| worth(a).total_cmp(&worth(b)))?;
-        (worth(&set) > self.evidence(time, candidates.len()) + enough).then_some(Known { by, set })
+        let fits: Vec<Option<(Fit, Fit)>> = asked.par_iter().map(again).collect();
+        let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, **set)));
+        let closest = both().min_by(|a, b| a.0.0.squares.total_cmp(&b.0.0.squares))?;
+        let time = closest.0.0.autocorrelation_time();
+        let best = both().map(|(fits, _)| score(&fits.0, time)).fold(f64::NEG_INFINITY, f64::max);
+        let (fits, set) = both().max_by(|a, b| score(&a.0.1, time).total_cmp(&score(&b.0.1, time)))?;
+        let is_better = score(&fits.1, time) > best + ANOTHER_BELIEF;
+        is_better.then(|| Known { by: self.interval.by, set: set.clone() })
     }
 
     /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
@@ -118,11 +129,6 @@ impl Known {
         let sets = if set.hypothesis.candidates.is_empty() { Vec::new() } else { vec![set] };
         Some((interval, sets))
     }
-}
-
-/// Whether a set has one effect.
-fn is_single(set: &Fit) -> bool {
-    set.hypothesis.counted().count() == 1
 }
 
 /// Where the best set leaves more than noise, asks how far one gets from other sets than those that the search went on from.
