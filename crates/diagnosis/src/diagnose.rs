@@ -40,15 +40,16 @@ impl Sought {
     /// The same with the other belief about the input between its samples, where that comes closer. The recalibrated simulator,
     /// which lacks what is looked for, has chosen between the two, and half a sampling interval lies between them: the sets
     /// that were found are asked again.
-    fn held_otherwise(
-        &self,
+    fn with_the_better_hold(
+        self,
         request: &Request<'_>,
         watch: &mut Stopwatch<'_>,
-    ) -> Result<Option<Self>, DiagnosisError> {
-        let Some(hold) = self.question.other_hold() else { return Ok(None) };
+    ) -> Result<Self, DiagnosisError> {
+        let Some(hold) = self.question.other_hold() else { return Ok(self) };
         let other = Question::of(request, &self.measured, Some(hold))?;
-        let Some(known) = self.searched.better_on(&self.question, &other) else { return Ok(None) };
-        Self::of(request, Some(hold), Some(known), watch).map(Some)
+        let Some(known) = self.searched.better_on(&self.question, &other) else { return Ok(self) };
+        let searched = Searched::of(request, &other, self.measured.is_whole, Some(known));
+        Ok(Self { question: other, searched: watch.after("search", searched)?, ..self })
     }
 
     /// Whether it has come closer than another by so much log evidence.
@@ -98,21 +99,20 @@ pub fn diagnose_watched(
     let simulator = &simulator.into();
     let mut watch = Stopwatch::new(seconds, goes_on);
     let mut clocks = ClockRates::as_stamped(records);
-    let mut searched = Sought::of(&Request { records, simulator, settings }, None, None, &mut watch)?;
-    if let Some(other) = searched.held_otherwise(&Request { records, simulator, settings }, &mut watch)? {
-        searched = other;
-    }
+    let request = Request { records, simulator, settings };
+    let mut sought =
+        Sought::of(&request, None, None, &mut watch)?.with_the_better_hold(&request, &mut watch)?;
     for _ in 0..CORRECTIONS {
-        let Some((corrected, set)) = searched.clocks_corrected(&clocks)? else { break };
+        let Some((corrected, set)) = sought.clocks_corrected(&clocks)? else { break };
         let request = Request { records: &corrected.records, simulator, settings };
-        let (hold, by) = (searched.question.hold(), searched.searched.interval.by);
+        let (hold, by) = (sought.question.hold(), sought.searched.interval.by);
         let other = Sought::of(&request, hold, Some(Known { by, set }), &mut watch)?;
-        if !other.is_closer(&searched, corrected.price) {
+        if !other.is_closer(&sought, corrected.price) {
             break;
         }
-        (searched, clocks) = (other, corrected);
+        (sought, clocks) = (other, corrected);
     }
-    let Sought { mut measured, question, searched } = searched;
+    let Sought { mut measured, question, searched } = sought;
     measured.findings.extend(clocks.finding());
     let request = Request { records: &clocks.records, simulator, settings };
     let refined = watch.after("fits", Refined::of(question, searched)?)?;

@@ -68,9 +68,10 @@ impl Parts<'_> {
         if self.calibrated_off { 1.0 - OFF_BY_CHANCE } else { OFF_BY_CHANCE }
     }
 
-    /// Probability that the system has none of the classes.
+    /// Probability that the system has none of the classes, and nothing without a name.
     fn bare(&self) -> f64 {
-        self.classes.iter().map(|class| 1.0 - class.probability).product()
+        let none: f64 = self.classes.iter().map(|class| 1.0 - class.probability).product();
+        none * (1.0 - self.nameless)
     }
 }
 
@@ -115,7 +116,7 @@ fn plain(id: &'static str, probability: f64) -> EffectProbability {
 
 /// The rows of `unknown`, `none` and `calibration`.
 fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
-    let bare = parts.bare() * (1.0 - parts.nameless);
+    let bare = parts.bare();
     let of_shift = if parts.shift.is_some() && parts.named().is_empty() { SHIFTED } else { 0.0 };
     let of_calibration = parts.of_calibration();
     let coefficients = |torque: &Unnamed| parameters(parts.work, &torque.followed, Candidate::UNNAMED);
@@ -133,7 +134,7 @@ fn verdicts(parts: &Parts<'_>) -> [EffectProbability; 3] {
 
 /// The row of a shifted rest angle. It was looked for beside the named effects, or beside none.
 fn shifted(parts: &Parts<'_>, shift: Shift) -> EffectProbability {
-    let bare = parts.bare() * (1.0 - parts.nameless);
+    let bare = parts.bare();
     let probability =
         if parts.named().is_empty() { bare * parts.of_calibration() * SHIFTED } else { SHIFTED_BESIDE };
     let units = parts.work.base.calibrated.hypothesis.nominal.units();

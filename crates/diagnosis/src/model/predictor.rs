@@ -315,7 +315,7 @@ impl<'a> Simulator<'a> {
                 *slot = value - observed.value;
             }
             if self.derivatives != Derivatives::None {
-                self.differentiate(row, &seen, &observed, &mut jacobian);
+                self.differentiate(row, starts, &seen, &observed, &mut jacobian);
                 self.bend(row, &seen, &observed, &bends_by, &mut jacobian);
             }
         }
@@ -327,9 +327,15 @@ impl<'a> Simulator<'a> {
         Ok(Prediction { residual, jacobian })
     }
 
-    /// Puts a row of the Jacobian: by the start state, then by the global parameters.
-    fn differentiate(&self, row: usize, seen: &Seen<'_>, observed: &Observed, jacobian: &mut DMatrix<f64>) {
-        let starts = self.hypothesis.start_length();
+    /// Puts a row of the Jacobian: by the so many start values, then by the global parameters.
+    fn differentiate(
+        &self,
+        row: usize,
+        starts: usize,
+        seen: &Seen<'_>,
+        observed: &Observed,
+        jacobian: &mut DMatrix<f64>,
+    ) {
         for column in 0..starts {
             set(jacobian, row, column, seen.through(observed.by_motion, row, column));
         }

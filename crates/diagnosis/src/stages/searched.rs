@@ -75,7 +75,7 @@ impl Searched {
     }
 
     /// The set that comes closest on every sample of another question, which differs from `own` by a belief, where it comes closer there
-    /// than any does on those of `own`: asked are the best set and the best of one effect.
+    /// than any does on those of `own`: asked are the best set and the best [`SINGLES`] of one effect.
     pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
         let time = self.found.autocorrelation_time();
         let ranked = self.found.ranked(time);

@@ -52,7 +52,9 @@ impl Progress {
             progress.bar.set_style(style);
         }
         progress.stage(first);
-        progress.bar.enable_steady_tick(TICK);
+        if !progress.bar.is_hidden() {
+            progress.bar.enable_steady_tick(TICK);
+        }
         progress
     }
 
