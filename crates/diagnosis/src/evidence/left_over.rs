@@ -11,16 +11,18 @@
 //! smooth over a few bands, counts for nothing, and few samples say little.
 
 use crate::data::scales::below_images;
-use crate::data::segments::{Data, PERIODS};
+use crate::data::segments::{Data, PERIODS, Segment};
 use crate::evidence::discrepancy::basis;
 use crate::fit::fitted::Fit;
 use crate::model::dictionary::{Acting, columns_of};
 use crate::model::matrices::{element, entry};
 use crate::model::projection::Projection;
 use crate::model::tangent::{Path, matrix};
+use crate::noise::high_pass::high_pass;
+use crate::noise::statistics::mean;
 use dynamics::DynamicsError;
 use nalgebra::{DMatrix, DVector};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// What is left without a name.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +51,9 @@ const WORTH: f64 = 108.0 / 29.0;
 
 /// Part of the largest eigenvalue below which a direction of the basis is one of the others once more.
 const DEPENDENT: f64 = 1e-8;
+
+/// Part of a column that its drifts leave at least, or it is one.
+const DRIFTS: f64 = 0.1;
 
 /// Log likelihood ratio of two variances against a common one: `first` from so many squares in the mean, `second` from
 /// others; 0 where the first is not the larger.
@@ -176,19 +181,49 @@ fn outstanding(bands: &[Band]) -> (Unexplained, Band) {
     (Unexplained { evidence, squares: squares.max(0.0) }, at(Some(SWING - 1)).with(at(Some(SWING + 1))))
 }
 
+/// Angular frequency below which nothing moves for long: the swing's, or how often a slower input has the record cross its mean.
+fn slowest(data: &Data) -> f64 {
+    let crossings = |segment: &Segment| {
+        let center = mean(&segment.values);
+        let sides = || segment.values.iter().map(|value| *value > center);
+        sides().zip(sides().skip(1)).filter(|(one, next)| one != next).count()
+    };
+    let count = data.segments.iter().map(crossings).sum::<usize>() as f64;
+    let span: f64 = data.segments.iter().map(Segment::span).sum();
+    if !data.driven() || count == 0.0 {
+        return data.facts.frequency;
+    }
+    data.facts.frequency.min(PI * count / span)
+}
+
+/// Takes what is slower than any motion out of samples of all segments: noise that grows the slower it is would pass there for a slow
+/// torque, or for the middle that a bent spring shifts, and nothing beside it tells how large it is.
+fn without_drifts(data: &Data, values: &mut [f64]) {
+    let period = TAU / slowest(data);
+    let mut rest = values;
+    for segment in &data.segments {
+        for part in segment.part_ranges() {
+            let (own, others) = std::mem::take(&mut rest).split_at_mut(part.len());
+            high_pass(segment.times.get(part).unwrap_or_default(), own, period);
+            rest = others;
+        }
+    }
+}
+
 /// What columns would take away of a fit's residual: squares and how many independent directions they lie in.
-fn taken(fit: &Fit, projection: &Projection, columns: &[Vec<f64>]) -> (f64, f64) {
+fn taken(data: &Data, fit: &Fit, projection: &Projection, columns: &[Vec<f64>]) -> (f64, f64) {
     let mut columns = matrix(projection.rows(), columns);
     let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     projection.apply(&mut columns);
     for (mut column, raw) in columns.column_iter_mut().zip(raw) {
+        let fitted = column.norm();
+        without_drifts(data, column.as_mut_slice());
         let length = column.norm();
-        if length > 1e-6 * raw { column /= length } else { column.fill(0.0) }
+        if fitted > 1e-6 * raw && length > DRIFTS * fitted { column /= length } else { column.fill(0.0) }
     }
-    let residual = DVector::from_iterator(
-        columns.nrows(),
-        fit.residuals.iter().flat_map(|residual| residual.iter().copied()),
-    );
+    let mut residual: Vec<f64> = fit.residuals.iter().flat_map(|residual| residual.iter().copied()).collect();
+    without_drifts(data, &mut residual);
+    let residual = DVector::from_vec(residual);
     let scores = columns.tr_mul(&residual);
     let eigen = DMatrix::symmetric_eigen(columns.tr_mul(&columns));
     let largest = eigen.eigenvalues.max();
@@ -222,7 +257,7 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let mut found = spectrum;
     for acting in [Acting::Torque, Acting::Sensor] {
         let columns = columns_of(&paths, data.quantity, &free, acting);
-        let (squares, directions) = taken(fit, &projection, &columns);
+        let (squares, directions) = taken(data, fit, &projection, &columns);
         let mean = squares / directions.max(1.0);
         let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
         if evidence > found.evidence {

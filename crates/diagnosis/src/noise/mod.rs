@@ -1,6 +1,7 @@
 //! What is random in a record: its size, its spectrum, and the statistics of both.
 
 pub(crate) mod floor;
+pub(crate) mod high_pass;
 pub(crate) mod periodogram;
 pub(crate) mod ratio;
 pub(crate) mod rounding;
