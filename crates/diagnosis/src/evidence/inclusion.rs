@@ -135,8 +135,7 @@ impl<'a> Inclusion<'a> {
         rows
     }
 
-    /// Probability that one of two classes acts that take each other's place, and that nothing else is left; none where they do
-    /// not. Where something is left, there is always one of several that takes some of it.
+    /// Probability that one of two classes acts that take each other's place; none where they do not.
     fn either(&self, one: EvidenceClass, other: EvidenceClass) -> Option<f64> {
         let place = |has: &dyn Fn(&Fit) -> bool| self.sets.weighed.iter().position(|w| has(w.fit));
         let with_one = place(&|fit| fit.hypothesis.holds(one))?;
@@ -154,8 +153,7 @@ impl<'a> Inclusion<'a> {
         let replacement = evidence(best) - evidence(neither);
         let evidence = ClassEvidence { replacement, half_swings: None };
         let shown = Shown { evidence: &evidence, ratio: error(neither) / error(best), leads: false };
-        let left_over = self.sets.left_over;
-        Some((1.0 - left_over) * probability(&shown, left_over))
+        Some(probability(&shown, self.sets.left_over))
     }
 
     fn class(&self, class: EvidenceClass, witness: Option<&Witness>, seed: &Seed) -> Option<EffectClass> {

@@ -13,11 +13,11 @@ use crate::evidence::likelihood::{Likelihood, View};
 use crate::evidence::score::{parameter_price, score, score_with};
 use crate::evidence::weights::price;
 use crate::fit::fitted::Fit;
-use crate::fit::levenberg_marquardt::{Moving, fit};
+use crate::fit::levenberg_marquardt::{Moving, fit, residuals};
 use crate::fit::stopping::Stopping;
 use crate::model::matrices::{element, solve};
 use crate::model::projection::Projection;
-use crate::model::tangent::{Path, matrix};
+use crate::model::tangent::matrix;
 use crate::noise::floor;
 use crate::search::archive::Archive;
 use dynamics::{DynamicsError, Input};
@@ -185,23 +185,31 @@ fn again(data: &Data, found: &Fit) -> Result<Fit, DynamicsError> {
     fit(data, &found.hypothesis, found.point.clone(), Moving::All, Stopping::FINAL)
 }
 
+/// Radians of the swing by which the longest segment is shifted to see what a rate does.
+const SMALL: f64 = 1e-3;
+
+/// What the rate of each record's clock but the first one's does to the prediction: an input goes by the same clock, so that a
+/// swing which follows it shows a rate by how far it lags and not by when.
+fn by_rates(data: &Data, fit: &Fit) -> Result<Vec<Vec<f64>>, DynamicsError> {
+    let rate = SMALL / (data.facts.frequency * data.longest_span()).max(1.0);
+    let shifted = residuals(&data.without_rates(&vec![rate; data.inputs.len()])?, fit)?;
+    let all = || data.segments.iter().zip(fit.residuals.iter().zip(&shifted));
+    let of = |record: usize| {
+        all()
+            .flat_map(|(segment, (before, after))| {
+                let own = if segment.record == record { 1.0 / rate } else { 0.0 };
+                before.iter().zip(after).map(move |(before, after)| own * (before - after))
+            })
+            .collect()
+    };
+    Ok((1..data.inputs.len()).map(of).collect())
+}
+
 /// By how much each record's clock is fast; none where the residual does not ask for that.
 /// Beside them the log evidence that they have to bring.
 fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError> {
-    let paths = Path::of(data, fit)?;
     let records = data.inputs.len();
-    let columns: Vec<Vec<f64>> = (1..records)
-        .map(|record| {
-            let of = |path: &Path| -> Vec<f64> {
-                let (_, rate, _) = path.observed(data.quantity);
-                let own = if path.record == record { -1.0 } else { 0.0 };
-                // An acceleration's rate is not followed: nothing is found then.
-                let rate = rate.iter().copied().chain(std::iter::repeat(0.0));
-                path.times.iter().zip(rate).map(|(time, rate)| own * time * rate).collect()
-            };
-            paths.iter().flat_map(of).collect()
-        })
-        .collect();
+    let columns = by_rates(data, fit)?;
     let projection = Projection::at(data, fit)?;
     let mut columns = matrix(projection.rows(), &columns);
     projection.apply(&mut columns);
@@ -237,29 +245,39 @@ mod tests {
     use crate::data::observations::Observations;
     use crate::{Diagnosis, Settings, diagnose};
     use dynamics::reference::{Tolerance, simulate};
-    use dynamics::{Active, Nominal, Start, System};
+    use dynamics::{Active, Hold, Input, Nominal, Start, System};
     use rand_distr::{Distribution, StandardNormal};
     use record::{Clock, ClockChoice, Quantity, Record};
     use seed::Seed;
 
-    /// Two releases of a system, the second from half as far and by a clock that is fast by `rate`.
-    fn diagnosed(effects: &[(&str, &[f64])], rate: f64) -> Diagnosis {
+    /// Two records of a system, the second by a clock that is fast by `rate`: of a body that a chirp drives, or released from 0.4 and
+    /// from half as far.
+    fn diagnosed(effects: &[(&str, &[f64])], rate: f64, driven: bool) -> Diagnosis {
         let nominal = Nominal::new(1.0, 0.3, 400.0, 0.0).unwrap();
         let effects = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
         let system = System::new(nominal, effects).unwrap();
         let times: Vec<f64> = (0..600).map(|at| f64::from(at) / 50.0).collect();
+        let torques: Vec<f64> = times.iter().map(|t| 20.0 * ((15.0 + 0.4 * t) * t).sin()).collect();
+        let input = driven.then(|| Input::new(times.clone(), torques.clone(), Hold::Linear).unwrap());
         let mut generator = Seed::new(5).child("noise").generator();
         let mut observe = |start: f64, rate: f64| {
+            let tolerance = Tolerance::default();
             let motion =
-                simulate(&system, Start::release(start), None, &times, &Tolerance::default()).unwrap();
+                simulate(&system, Start::release(start), input.as_ref(), &times, &tolerance).unwrap();
             let mut noise = || -> f64 { StandardNormal.sample(&mut generator) };
             let values = motion.position.iter().map(|x| x + 3e-4 * noise()).collect();
             let stamps = times.iter().map(|time| time * (1.0 + rate)).collect();
-            let record = Record::new(stamps, values, None, Quantity::Position, "rad").unwrap();
+            let logged = driven.then(|| torques.clone());
+            let record = Record::new(stamps, values, logged, Quantity::Position, "rad").unwrap();
             Observations::new(&record, &Clock::new(&record, ClockChoice::Host).unwrap())
         };
         let records = [observe(0.4, 0.0), observe(0.2, rate)];
         diagnose(&records, &nominal, &Settings::default(), &|| 0.0).unwrap()
+    }
+
+    /// By how many per cent the second clock is said to be fast.
+    fn percent(answer: &Diagnosis) -> Option<f64> {
+        clocks(answer)?.split("+0.000 %, ").nth(1)?.split(" %").next()?.parse().ok()
     }
 
     fn clocks(answer: &Diagnosis) -> Option<&str> {
@@ -269,18 +287,18 @@ mod tests {
 
     #[test]
     fn a_clock_that_is_fast_is_no_effect() {
-        let answer = diagnosed(&[], 2e-3);
-        assert!(answer.verdict.effects.is_empty(), "{:?}", answer.verdict);
-        let told = clocks(&answer).unwrap();
-        let percent: f64 =
-            told.split("+0.000 %, ").nth(1).unwrap().split(" %").next().unwrap().parse().unwrap();
-        assert!((percent - 0.2).abs() < 0.01, "{told}");
+        for driven in [false, true] {
+            let answer = diagnosed(&[], 2e-3, driven);
+            assert!(answer.verdict.effects.is_empty(), "{driven}: {:?}", answer.verdict);
+            let told = percent(&answer).unwrap();
+            assert!((told - 0.2).abs() < 0.01, "{driven}: {told} %");
+        }
     }
 
     /// A spring that bends makes the small swing slower too, and within each record as well.
     #[test]
     fn a_frequency_that_depends_on_the_amplitude_is_no_clock() {
-        let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 0.0);
+        let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 0.0, false);
         assert_eq!(clocks(&answer), None);
         assert_eq!(answer.verdict.effects, ["cubic_stiffness"]);
     }
@@ -288,8 +306,8 @@ mod tests {
     /// A clock and a spring that bends: each lengthens the swings of the second record, and both are found.
     #[test]
     fn a_clock_does_not_hide_in_what_stands_in_for_it() {
-        let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 1e-3);
-        assert!(clocks(&answer).is_some_and(|told| told.contains("+0.10")), "{:?}", clocks(&answer));
+        let answer = diagnosed(&[("cubic_stiffness", &[40.0])], 1e-3, false);
+        assert!(percent(&answer).is_some_and(|told| (told - 0.1).abs() < 0.01), "{:?}", clocks(&answer));
         assert_eq!(answer.verdict.effects, ["cubic_stiffness"]);
     }
 }
