@@ -9,7 +9,7 @@ use crate::settings::Settings;
 use crate::stages::{
     Judged, Known, Measured, Question, Refined, Remaining, Request, Searched, Stopwatch, answer,
 };
-use dynamics::{DynamicsError, Hold, NominalSimulator};
+use dynamics::{Hold, NominalSimulator};
 use std::cell::OnceCell;
 
 /// How often clocks are corrected: what a corrected search finds may leave a little more of them.
@@ -58,7 +58,7 @@ impl Sought {
     }
 
     /// Clocks without the rates that a found set leaves, and this set; none where none leaves any.
-    fn clocks_corrected(&self, clocks: &ClockRates) -> Result<Option<(ClockRates, Fit)>, DynamicsError> {
+    fn clocks_corrected(&self, clocks: &ClockRates) -> Option<(ClockRates, Fit)> {
         let sets = (&self.searched.interval, &self.searched.found);
         clocks.corrected(&self.question.coarse, sets, self.question.candidates.len())
     }
@@ -103,7 +103,7 @@ pub fn diagnose_watched(
     let mut sought =
         Sought::of(&request, None, None, &mut watch)?.with_the_better_hold(&request, &mut watch)?;
     for _ in 0..CORRECTIONS {
-        let Some((corrected, set)) = sought.clocks_corrected(&clocks)? else { break };
+        let Some((corrected, set)) = sought.clocks_corrected(&clocks) else { break };
         let request = Request { records: &corrected.records, simulator, settings };
         let (hold, by) = (sought.question.hold(), sought.searched.interval.by);
         let other = Sought::of(&request, hold, Some(Known { by, set }), &mut watch)?;

@@ -27,8 +27,11 @@ use rayon::prelude::*;
 /// Largest difference of two rates that is put down to clocks: ten times what a poor oscillator has.
 const LARGEST: f64 = 0.02;
 
-/// Log evidence that the rates have to bring: what a flexible effect has to.
+/// Log evidence that the rates have to bring beside the price of their numbers: what a flexible effect has to.
 const ENOUGH: f64 = 30.0;
+
+/// Standard errors within which the stamps leave a rate open: such rates have to bring no more than the price of their numbers.
+const OPEN: f64 = 3.0;
 
 /// The sets that clocks are asked for beside: so many of the best, and all with so few effects.
 const BEST: usize = 3;
@@ -55,18 +58,16 @@ impl ClockRates {
 
     /// The records without the rates that a fitted set leaves, the set that is the best with its own, and this set fitted to them;
     /// none where no set is better with rates than the best without. What stands in for the rates of clocks leaves none itself,
-    /// and the plain law beside them is cheaper. `segments` are what the interval of the sets was joined from.
-    ///
-    /// # Errors
-    /// What the dynamics refuse.
+    /// and the plain law beside them is cheaper. A set that cannot be followed on other clocks is not asked. `segments` are what the
+    /// interval of the sets was joined from.
     pub(crate) fn corrected(
         &self,
         segments: &Data,
         (interval, sets): (&ShootingInterval, &Archive),
         vocabulary: usize,
-    ) -> Result<Option<(Self, Fit)>, DynamicsError> {
+    ) -> Option<(Self, Fit)> {
         let data = &interval.data;
-        let Some(further @ 1..) = self.records.len().checked_sub(1) else { return Ok(None) };
+        let further = self.records.len().checked_sub(1).filter(|further| *further > 0)?;
         let time = sets.autocorrelation_time();
         let few = |fit: &&Fit| fit.hypothesis.counted().count() <= FEW;
         let ranked = sets.ranked(time);
@@ -76,17 +77,15 @@ impl ClockRates {
             .chain(ranked.iter().skip(BEST).filter(|fit| few(fit)))
             .copied()
             .collect();
-        let all: Vec<Option<Rated>> =
-            chosen.par_iter().map(|fit| rated(segments, data, fit)).collect::<Result<_, _>>()?;
+        let all: Vec<Rated> =
+            chosen.par_iter().filter_map(|fit| rated(segments, data, fit).ok().flatten()).collect();
         let worth = |own: &Rated| {
             score_with(&own.fit, own.fit.squares, further, time) - price(data, &own.fit, vocabulary, 1.0)
         };
-        let best = all.into_iter().flatten().max_by(|a, b| worth(a).total_cmp(&worth(b)));
+        let best = all.into_iter().max_by(|a, b| worth(a).total_cmp(&worth(b)));
         let as_stamped = |fit: &Fit| score(fit, time) - price(data, fit, vocabulary, 1.0);
         let known = sets.fits.iter().map(as_stamped).fold(f64::NEG_INFINITY, f64::max);
-        let Some(Rated { rates, price, fit }) = best.filter(|own| worth(own) - own.price > known) else {
-            return Ok(None);
-        };
+        let Rated { rates, price, fit } = best.filter(|own| worth(own) - own.price > known)?;
         let mut records = self.records.clone();
         for (record, rate) in records.iter_mut().zip(&rates) {
             let input_rows = record.input_rows.iter_mut().map(|(time, _)| time);
@@ -96,13 +95,13 @@ impl ClockRates {
         }
         let rates: Vec<f64> = self.rates.iter().zip(&rates).map(|(old, new)| both(*old, *new)).collect();
         let is_clock = rates.iter().all(|rate| rate.abs() <= LARGEST);
-        Ok(is_clock.then_some((Self { records, rates, price }, fit)))
+        is_clock.then_some((Self { records, rates, price }, fit))
     }
 
     /// What is said of the rates.
     pub(crate) fn finding(&self) -> Option<Finding> {
         let largest = self.rates.iter().copied().fold(0.0, |known: f64, rate| known.max(rate.abs()));
-        let told: Vec<String> = self.rates.iter().map(|rate| format!("{:+.3} %", 100.0 * rate)).collect();
+        let told: Vec<String> = self.rates.iter().map(|rate| format!("{:+.4} %", 100.0 * rate)).collect();
         let text = format!(
             "the clocks of the records run at different rates ({} relative to the first), or the system was slower in some \
              records at every amplitude: taken out of the stamps",
@@ -177,6 +176,9 @@ fn rated(segments: &Data, data: &Data, found: &Fit) -> Result<Option<Rated>, Dyn
         }
     }
     let Some(price) = least else { return Ok(None) };
+    // The first clock is off as well.
+    let open = OPEN * std::f64::consts::SQRT_2 * data.facts.rate_error;
+    let price = if rates.iter().all(|rate| rate.abs() <= open) { price } else { price + ENOUGH };
     let fit = again(&data.without_rates(&rates)?, &fit)?;
     Ok(Some(Rated { rates, price, fit }))
 }
@@ -206,7 +208,7 @@ fn by_rates(data: &Data, fit: &Fit) -> Result<Vec<Vec<f64>>, DynamicsError> {
 }
 
 /// By how much each record's clock is fast; none where the residual does not ask for that.
-/// Beside them the log evidence that they have to bring.
+/// Beside them the price of their numbers in log evidence.
 fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError> {
     let records = data.inputs.len();
     let columns = by_rates(data, fit)?;
@@ -237,7 +239,7 @@ fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError
     }
     let solution = solution.column(0).clone_owned();
     let solved = (0..records - 1).map(|at| element(&solution, at));
-    Ok(Some((std::iter::once(0.0).chain(solved).collect(), price + ENOUGH)))
+    Ok(Some((std::iter::once(0.0).chain(solved).collect(), price)))
 }
 
 #[cfg(test)]
@@ -277,7 +279,7 @@ mod tests {
 
     /// By how many per cent the second clock is said to be fast.
     fn percent(answer: &Diagnosis) -> Option<f64> {
-        clocks(answer)?.split("+0.000 %, ").nth(1)?.split(" %").next()?.parse().ok()
+        clocks(answer)?.split("+0.0000 %, ").nth(1)?.split(" %").next()?.parse().ok()
     }
 
     fn clocks(answer: &Diagnosis) -> Option<&str> {
