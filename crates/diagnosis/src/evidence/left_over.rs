@@ -204,7 +204,9 @@ fn without_drifts(data: &Data, values: &mut [f64]) {
     for segment in &data.segments {
         for part in segment.part_ranges() {
             let (own, others) = std::mem::take(&mut rest).split_at_mut(part.len());
-            high_pass(segment.times.get(part).unwrap_or_default(), own, period);
+            if let Some(times) = segment.times.get(part) {
+                high_pass(times, own, period);
+            }
             rest = others;
         }
     }
