@@ -2,7 +2,8 @@
 //!
 //! Two views of the residual of the best named set, both in units of the noise around them:
 //!
-//! - what a smooth function of position, velocity, time and the input would still take away, as a torque or in the sensor;
+//! - what a smooth function of position, velocity, time and the input would still take away, as a torque or in the sensor, above
+//!   what is slower than any motion;
 //! - how far the spectrum of the residual stands out in a band about a harmonic of the swing, or midway between two,
 //!   above the bands beside it. That needs no basis, and sees torques and sensors alike.
 //!
@@ -198,35 +199,37 @@ fn slowest(data: &Data) -> f64 {
 
 /// Takes what is slower than any motion out of samples of all segments: noise that grows the slower it is would pass there for a slow
 /// torque, or for the middle that a bent spring shifts, and nothing beside it tells how large it is.
-fn without_drifts(data: &Data, values: &mut [f64]) {
-    let period = TAU / slowest(data);
+fn without_drifts(data: &Data, period: f64, values: &mut [f64]) {
     let mut rest = values;
     for segment in &data.segments {
-        for part in segment.part_ranges() {
-            let (own, others) = std::mem::take(&mut rest).split_at_mut(part.len());
-            if let Some(times) = segment.times.get(part) {
-                high_pass(times, own, period);
-            }
+        for times in segment.part_ranges().filter_map(|part| segment.times.get(part)) {
+            let Some((own, others)) = std::mem::take(&mut rest).split_at_mut_checked(times.len()) else {
+                return;
+            };
+            high_pass(times, own, period);
             rest = others;
         }
     }
 }
 
-/// What columns would take away of a fit's residual: squares and how many independent directions they lie in.
-fn taken(data: &Data, fit: &Fit, projection: &Projection, columns: &[Vec<f64>]) -> (f64, f64) {
+/// What columns would take away of a residual without its drifts: squares and how many independent directions they lie in.
+/// `filter` takes the drifts out of a column too.
+fn taken(
+    residual: &DVector<f64>,
+    projection: &Projection,
+    columns: &[Vec<f64>],
+    filter: impl Fn(&mut [f64]),
+) -> (f64, f64) {
     let mut columns = matrix(projection.rows(), columns);
     let raw: Vec<f64> = columns.column_iter().map(|column| column.norm()).collect();
     projection.apply(&mut columns);
     for (mut column, raw) in columns.column_iter_mut().zip(raw) {
         let fitted = column.norm();
-        without_drifts(data, column.as_mut_slice());
+        filter(column.as_mut_slice());
         let length = column.norm();
         if fitted > 1e-6 * raw && length > DRIFTS * fitted { column /= length } else { column.fill(0.0) }
     }
-    let mut residual: Vec<f64> = fit.residuals.iter().flat_map(|residual| residual.iter().copied()).collect();
-    without_drifts(data, &mut residual);
-    let residual = DVector::from_vec(residual);
-    let scores = columns.tr_mul(&residual);
+    let scores = columns.tr_mul(residual);
     let eigen = DMatrix::symmetric_eigen(columns.tr_mul(&columns));
     let largest = eigen.eigenvalues.max();
     let (mut squares, mut count) = (0.0, 0.0);
@@ -256,10 +259,15 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let projection = Projection::at(data, fit)?;
     let paths = Path::of(data, fit)?;
     let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
+    let period = TAU / slowest(data);
+    let filter = |values: &mut [f64]| without_drifts(data, period, values);
+    let mut residual: Vec<f64> = fit.residuals.iter().flat_map(|residual| residual.iter().copied()).collect();
+    filter(&mut residual);
+    let residual = DVector::from_vec(residual);
     let mut found = spectrum;
     for acting in [Acting::Torque, Acting::Sensor] {
         let columns = columns_of(&paths, data.quantity, &free, acting);
-        let (squares, directions) = taken(data, fit, &projection, &columns);
+        let (squares, directions) = taken(&residual, &projection, &columns, filter);
         let mean = squares / directions.max(1.0);
         let evidence = (larger(mean, directions, noise.mean(), noise.worth) - LOOKS.ln()).max(0.0);
         if evidence > found.evidence {
