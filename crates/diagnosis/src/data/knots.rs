@@ -1,37 +1,50 @@
 //! Fewer knots of an input that is sampled faster than the motion feels.
 //!
 //! A run takes at least a step from knot to knot. A drive's command comes at a thousand a second and its motion answers
-//! below ten: means over several samples, which keep the impulse, move it the same way. How many may be averaged is asked
+//! below ten: straight lines over several samples move it the same way. How many samples one knot may stand for is asked
 //! of a fit: as many as change its prediction by no more than a small part of what it leaves.
 
 use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::residuals;
 
-/// Samples that are averaged at most.
+/// Samples that one knot stands for at most.
 const MOST: usize = 32;
 
 /// Part of a fit's residual (RMS) by which its prediction may change.
-const PART: f64 = 0.05;
+const PART: f64 = 0.01;
 
 impl Data {
-    /// How many samples of the inputs may be averaged without a prediction noticing.
+    /// How many samples of the inputs one knot may stand for without a prediction noticing.
     pub(crate) fn spare_knots(&self, at: &Fit) -> usize {
-        let Ok(exact) = residuals(self, at) else { return 1 };
-        let most: f64 = PART * PART * exact.iter().map(nalgebra::DVector::norm_squared).sum::<f64>();
-        let is_close = |count: usize| {
-            residuals(&self.averaged(count), at).is_ok_and(|own| {
-                own.iter().zip(&exact).map(|(own, exact)| (own - exact).norm_squared()).sum::<f64>() <= most
-            })
-        };
         let counts = std::iter::successors(Some(2), |count| Some(2 * count));
-        let close = counts.take_while(|count| self.driven() && *count <= MOST && is_close(*count));
+        let close = counts.take_while(|&count| count <= MOST && self.change(count, at) <= PART);
         close.last().unwrap_or(1)
     }
 
-    /// The same with every so many samples of the inputs averaged to one.
-    pub(crate) fn averaged(&self, count: usize) -> Self {
-        let inputs = self.inputs.iter().map(|input| input.as_ref().map(|own| own.averaged(count)));
+    /// Whether a set that was fitted with one knot for so many samples is bent to these: with all of them its prediction changes by
+    /// more than what it leaves.
+    pub(crate) fn spoils(&self, count: usize, at: &Fit) -> bool {
+        self.change(count, at) > 1.0
+    }
+
+    /// Change of a prediction relative to what the fit left (RMS); infinite where there is nothing to spare.
+    fn change(&self, count: usize, at: &Fit) -> f64 {
+        if !self.driven() {
+            return f64::INFINITY;
+        }
+        let both =
+            residuals(self, at).and_then(|exact| Ok((exact, residuals(&self.with_fewer_knots(count), at)?)));
+        let left = at.squares / at.samples().max(1) as f64 * self.samples() as f64;
+        both.map_or(f64::INFINITY, |(exact, own)| {
+            let change: f64 = own.iter().zip(&exact).map(|(own, exact)| (own - exact).norm_squared()).sum();
+            (change / left).sqrt()
+        })
+    }
+
+    /// The same with one knot of the inputs for every so many samples.
+    pub(crate) fn with_fewer_knots(&self, count: usize) -> Self {
+        let inputs = self.inputs.iter().map(|input| input.as_ref().map(|own| own.thinned(count)));
         Self { inputs: inputs.collect(), ..self.clone() }
     }
 }
@@ -74,7 +87,7 @@ mod tests {
         let count = data.spare_knots(&fit);
         let square =
             |data| residuals(data, &fit).unwrap().iter().map(nalgebra::DVector::norm_squared).sum::<f64>();
-        let ratio = square(&data.averaged(count)) / square(&data);
+        let ratio = square(&data.with_fewer_knots(count)) / square(&data);
         assert!((ratio - 1.0).abs() < 0.01, "{ratio}");
         count
     }

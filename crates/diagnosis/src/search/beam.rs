@@ -17,6 +17,7 @@ use crate::search::archive::{Archive, is_another};
 use crate::search::proposals::{
     Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, simplified,
 };
+use crate::search::weak_form::from_weak_form;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
@@ -272,6 +273,7 @@ pub(crate) fn search(asked: &Asked<'_>, known: Vec<Fit>) -> Explored {
     }
     if !begun {
         begin(asked, &mut archive, &mut tried);
+        from_weak_form(data, calibrated, asked.candidates, &mut archive);
     }
     let mut explored = Explored { archive, tried, expanded: BTreeSet::new(), unmasked: BTreeSet::new() };
     go_on(asked, &mut explored);
@@ -320,6 +322,24 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         }
     }
     polish(data, pool);
+    without_members(data, pool);
+}
+
+/// Fits every part of the best set that is known to end farther from the data than it begins where the best set ended: begun at the
+/// recalibrated simulator it came to a minimum of its own, and what is beside it in the best set would seem to be needed.
+fn without_members(data: &Data, pool: &mut Archive) {
+    let ranked = pool.ranked(pool.autocorrelation_time());
+    let Some(best) = ranked.first().map(|best| (*best).clone()) else { return };
+    let members: Vec<Candidate> = best.hypothesis.counted().copied().collect();
+    let parts = 1..(1_u32 << members.len()).saturating_sub(1);
+    let without = parts.map(|part| {
+        let gone = members.iter().enumerate().filter(|(place, _)| part >> place & 1 == 1);
+        proposal(data, &best, &gone.map(|(_, member)| *member).collect::<Vec<_>>(), &[])
+    });
+    let begun: Vec<Proposal> = without.filter(|own| begins_closer(data, pool, own)).collect();
+    for fit in fit_all(data, &begun, |_| Stopping::FINAL) {
+        pool.admit(data, fit);
+    }
 }
 
 /// What to fit around a set, and the sets that were fitted to find that out.

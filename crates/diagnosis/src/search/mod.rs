@@ -10,3 +10,4 @@ pub(crate) mod plain;
 pub(crate) mod proposals;
 pub(crate) mod refine;
 pub(crate) mod second_mode;
+pub(crate) mod weak_form;

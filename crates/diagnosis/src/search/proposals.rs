@@ -15,7 +15,7 @@ use rayon::prelude::*;
 const FIRST_SIZE: f64 = 1e-3;
 
 /// Squares where a set begins, relative to those it is known to end with, below which it is begun once more.
-const CLOSER: f64 = 0.9;
+pub(crate) const CLOSER: f64 = 0.9;
 
 /// A set to fit and where to begin.
 #[derive(Debug, Clone)]

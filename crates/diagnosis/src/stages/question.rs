@@ -1,6 +1,6 @@
 //! What could be missing, and the samples on which it is searched.
 
-use super::{Measured, Request};
+use super::{Known, Measured, Request};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::fit::calibrate::{Baseline, baseline, better_hold};
@@ -18,6 +18,8 @@ pub(crate) struct Question {
     pub(crate) data: Data,
     pub(crate) base: Baseline,
     pub(crate) candidates: Vec<Candidate>,
+    /// How many samples of the input one knot of it stands for on the coarse samples.
+    knots: usize,
     /// Fewer samples and fewer knots of the input, and the calibrated simulator on them.
     pub(crate) coarse: Data,
     pub(crate) coarse_base: Fit,
@@ -44,15 +46,39 @@ impl Question {
         let data = data.for_noise(floor::floor(&data, &base.calibrated.residuals).value);
         let mut candidates = Candidate::that_apply(&data.facts, data.quantity, simulator);
         candidates.retain(|candidate| settings.considers(candidate.id()));
-        let coarse = data.averaged(data.spare_knots(&base.calibrated)).strided();
+        let knots = data.spare_knots(&base.calibrated);
+        Self::on(request, data, base, candidates, knots)
+    }
+
+    /// The question on coarse samples with one knot of the input for so many.
+    fn on(
+        request: &Request<'_>,
+        data: Data,
+        base: Baseline,
+        candidates: Vec<Candidate>,
+        knots: usize,
+    ) -> Result<Self, DiagnosisError> {
+        let coarse = data.with_fewer_knots(knots).strided();
         let known = &base.calibrated;
         let coarse_base = fit(&coarse, &known.hypothesis, known.point.clone(), Moving::All, Stopping::FINAL)?;
         let dictionary = Dictionary::at(&coarse, &coarse_base, &candidates)?;
+        let settings = request.settings;
         let threshold = null::threshold(&dictionary, settings.false_alarm, &settings.seed);
         // On fewer samples a gain is so many times smaller; the search must not stop on that account.
         let finer = data.samples() as f64 / coarse.samples().max(1) as f64;
         let enough = 0.5 * threshold / finer;
-        Ok(Self { data, base, candidates, coarse, coarse_base, enough })
+        Ok(Self { data, base, candidates, knots, coarse, coarse_base, enough })
+    }
+
+    /// The same question with as much of the input as a set needs that was found with less of it, on segments joined by so many; none
+    /// where it has enough.
+    pub(crate) fn finer(&self, request: &Request<'_>, known: &Known) -> Result<Option<Self>, DiagnosisError> {
+        let joined = self.data.joined(known.by);
+        if self.knots == 1 || !joined.spoils(self.knots, &known.set) {
+            return Ok(None);
+        }
+        let knots = joined.spare_knots(&known.set).min(self.knots / 2);
+        Self::on(request, self.data.clone(), self.base.clone(), self.candidates.clone(), knots).map(Some)
     }
 
     /// What the input does between its samples; none where there is none.

@@ -41,7 +41,7 @@ impl Refined {
         let Searched { interval: coarse, mut found, breadth } = searched;
         let closest = found.ranked(found.autocorrelation_time());
         let closest = closest.first().map_or(&coarse.calibrated, |best| *best);
-        let segments = data.averaged(data.joined(coarse.by).spare_knots(closest));
+        let segments = data.with_fewer_knots(data.joined(coarse.by).spare_knots(closest));
         let data = segments.joined(coarse.by);
         let base = followed(&data, &Unjoined { data: &segments, base: &segments_base }, &coarse)?;
         let vocabulary = candidates.len();

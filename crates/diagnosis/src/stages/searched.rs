@@ -74,6 +74,12 @@ impl Searched {
         Self { interval, found, breadth }
     }
 
+    /// The best set.
+    pub(crate) fn best(&self) -> Option<Known> {
+        let ranked = self.found.ranked(self.found.autocorrelation_time());
+        ranked.first().map(|best| Known { by: self.interval.by, set: (*best).clone() })
+    }
+
     /// The set that comes closest on every sample of another question, which differs from `own` by a belief, where it comes closer there
     /// than any does on those of `own`: asked are the best set and the best [`SINGLES`] of one effect.
     pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
