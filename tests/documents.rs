@@ -90,7 +90,7 @@ fn every_shipped_configuration_runs() {
             assert_eq!(code, 0, "{}: {result}", path.display());
             continue;
         }
-        let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../shared/data/"));
+        let needs = text.lines().find_map(|line| line.strip_prefix("path = \"../../shared/data/"));
         if needs.is_some_and(|rest| measured(rest.split('"').next().unwrap()).is_none()) {
             continue;
         }

@@ -198,6 +198,44 @@ fn the_same_seed_gives_the_same_bits() {
     }
 }
 
+/// Samples before a change of the input that a prediction may already show it in: models that predict on a grid of their own see the
+/// input between samples of this grid, of which there are 16 in a period.
+const BETWEEN: usize = 7;
+
+/// An input that changes late in the test part, at several places of the blocks that sequence models predict at once, changes nothing
+/// that was predicted before.
+#[test]
+fn no_model_looks_ahead() {
+    let system = drag_and_cubic();
+    let data = data_set(&system, true, 2e-3);
+    for entry in super::LEARNERS {
+        let fitted = learner(entry.id, quick(entry)).fit(&data, &context()).unwrap();
+        let predicted = |data: &crate::data::DataSet| -> Vec<Vec<f64>> {
+            let all = runs(fitted.model.as_ref(), data).into_iter();
+            all.map(|run| run.predicted.map_or_else(|_| Vec::new(), |own| own.values)).collect()
+        };
+        let before = predicted(&data);
+        for from in [300, 308, 316] {
+            let other = |part: &crate::data::Trajectory| {
+                let input = part.input().unwrap().iter().enumerate();
+                let input = input.map(|(at, value)| if at < from { *value } else { 5.0 - value }).collect();
+                let (times, values) = (part.times_s().to_vec(), part.values().to_vec());
+                crate::data::Trajectory::new(part.name(), times, values, Some(input)).unwrap()
+            };
+            let changed =
+                crate::data::DataSet { test: data.test.iter().map(other).collect(), ..data.clone() };
+            for ((own, before), part) in predicted(&changed).iter().zip(&before).zip(&data.test) {
+                // Predictions begin where the warm-up ends.
+                let at = from - (part.len() - before.len());
+                let same = |(a, b): (&f64, &f64)| (a - b).abs() < 1e-9;
+                assert!(own.iter().zip(before).take(at - BETWEEN).all(same), "{} from {from}", entry.id);
+                let is_moved = own.iter().zip(before).skip(at).any(|(a, b)| (a - b).abs() > 1e-3);
+                assert!(is_moved || before.is_empty(), "{}: the input does nothing", entry.id);
+            }
+        }
+    }
+}
+
 /// Settings that make a learner quick, by what it can be set to.
 fn quick(entry: &crate::Entry) -> &'static [&'static str] {
     let has = |key: &str| entry.fields.iter().any(|field| field.key == key);

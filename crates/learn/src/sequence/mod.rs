@@ -87,7 +87,8 @@ pub fn linear(inputs: usize, outputs: usize, device: &Device) -> Linear {
     LinearConfig::new(inputs, outputs).with_initializer(Initializer::Zeros).init(device)
 }
 
-/// A module filled with start weights: matrices normal with variance 1/inputs (LeCun, Bottou, Orr, Müller 1998), but zero
+/// A module filled with start weights: matrices, and kernels of convolutions (outputs, inputs, taps), normal with variance
+/// 1/(inputs · taps) (LeCun, Bottou, Orr, Müller 1998), but zero
 /// where the parameter's name begins with `head`, so that an untrained model is the linear prediction; vectors stay as
 /// they are. `own` gives the values of parameters that begin otherwise, by name and shape.
 ///
@@ -102,18 +103,23 @@ pub fn drawn<M: Module>(
     let mut weights = Vec::new();
     for parameter in named_parameters(&module)? {
         let mut generator = seed.child(&parameter.name).generator();
-        match *parameter.shape.as_slice() {
+        let summed = match *parameter.shape.as_slice() {
+            [inputs, _] => Some(inputs),
+            [_, inputs, taps] => Some(inputs * taps),
+            _ => None,
+        };
+        match summed {
             _ if parameter.name.starts_with("head") => weights.extend(parameter.values),
             _ if let Some(values) = own(&parameter) => weights.extend(values),
-            [inputs, _] => {
-                let spread = (inputs as f64).sqrt().recip();
+            Some(summed) => {
+                let spread = (summed as f64).sqrt().recip();
                 let draw = |_: &f64| {
                     let standard: f64 = StandardNormal.sample(&mut generator);
                     spread * standard
                 };
                 weights.extend(parameter.values.iter().map(draw));
             }
-            _ => weights.extend(parameter.values),
+            None => weights.extend(parameter.values),
         }
     }
     Ok(with_parameters(module, &weights, device)?)

@@ -372,7 +372,10 @@ fn configurations_as_shipped_hide_everything_at_every_size() {
     for (bank, count) in counts {
         let whole = TrialPlan::variety(bank) * plan.detectabilities.len();
         let plain = [Bank::None, Bank::Calibration, Bank::Engine].contains(&bank);
-        assert!(plain || count % whole == 0, "{bank:?}: {count} of {whole}");
+        assert!(
+            plain || count % whole == 0,
+            "configs/trials.toml: {count} cases of {bank:?} are no multiple of {whole}, which hides every effect at every size"
+        );
     }
     let quick = TrialPlan::resolve(&shipped("trials-quick.toml")).unwrap();
     assert!((90..=120).contains(&quick.len()), "{}", quick.len());
