@@ -1,7 +1,7 @@
 //! The answer of a diagnosis, as plain data.
 
 use crate::noise::floor::NoiseFloor;
-use dynamics::{Active, Nominal};
+use dynamics::{Active, Hold, Nominal};
 pub use results::VerdictStatus as Status;
 use serde::Serialize;
 
@@ -264,6 +264,8 @@ pub struct RepairedSimulator {
     pub effects: Vec<Active>,
     /// Numbers that the data do not determine.
     pub undetermined: Vec<Undetermined>,
+    /// What a measured input does between its samples, where there is one: the belief with which it was fitted.
+    pub input_hold: Option<Hold>,
     /// Effects that cannot be part of it, each with the reason.
     pub left_out: Vec<(&'static str, String)>,
 }

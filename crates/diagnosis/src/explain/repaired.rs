@@ -13,7 +13,7 @@ use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::matrices::{entry, set};
-use dynamics::{Active, DynamicsError, Effect, Nominal, NominalSimulator};
+use dynamics::{Active, DynamicsError, Effect, Hold, Nominal, NominalSimulator};
 use nalgebra::DMatrix;
 
 /// Digits kept behind the first one of a standard error.
@@ -32,6 +32,7 @@ pub(crate) fn repaired(
     segments: &Data,
     simulator: &NominalSimulator,
     is_rounded: bool,
+    input_hold: Option<Hold>,
 ) -> Result<RepairedSimulator, DiagnosisError> {
     let ShootingInterval { data, calibrated: complete, .. } = farthest(horizon, segments);
     let data = &data;
@@ -59,7 +60,7 @@ pub(crate) fn repaired(
     if is_rounded && !effects.iter().any(|active| active.effect() == quantization) {
         effects.extend(Active::of(quantization, &[step(data)]));
     }
-    Ok(RepairedSimulator { nominal, effects, undetermined, left_out })
+    Ok(RepairedSimulator { nominal, effects, undetermined, input_hold, left_out })
 }
 
 /// The fit on the longest horizon that it follows; where it is uneven, begun anew as well, as whoever diagnoses the system

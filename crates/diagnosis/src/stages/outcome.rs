@@ -155,7 +155,7 @@ impl All<'_> {
         let own = ShootingInterval { by: refined.coarse.by, data, calibrated: self.complete().clone() };
         // Parts that were left out of long records have nothing to go on through.
         let followed = if self.measured.is_whole { &refined.segments } else { &refined.data };
-        repaired_simulator(own, followed, self.request.simulator, is_rounded)
+        repaired_simulator(own, followed, self.request.simulator, is_rounded, refined.hold)
     }
 
     fn sets(&self) -> Vec<SetScore> {

@@ -16,6 +16,7 @@ use crate::search::archive::Archive;
 use crate::search::beam::{Asked, search};
 use crate::search::nameless::nameless;
 use crate::search::refine::refine;
+use dynamics::Hold;
 
 /// Everything fitted, on the segments as they were cut and on the shooting interval that the best sets follow.
 pub(crate) struct Refined {
@@ -23,6 +24,8 @@ pub(crate) struct Refined {
     /// The segments as they were cut.
     pub(crate) segments: Data,
     segments_base: Baseline,
+    /// What the inputs do between their samples, of which these data have only some.
+    pub(crate) hold: Option<Hold>,
     /// The same joined.
     pub(crate) data: Data,
     pub(crate) base: Baseline,
@@ -37,6 +40,7 @@ pub(crate) struct Refined {
 
 impl Refined {
     pub(crate) fn of(question: Question, searched: Searched) -> Result<Self, DiagnosisError> {
+        let hold = question.hold();
         let Question { data, base: segments_base, candidates, enough, .. } = question;
         let Searched { interval: coarse, mut found, breadth } = searched;
         let closest = found.ranked(found.autocorrelation_time());
@@ -63,7 +67,7 @@ impl Refined {
             archive = refine(&data, &archive, &weighing.weigh(&found), &found.rejected, &others);
         }
         let time = archive.autocorrelation_time();
-        Ok(Self { candidates, segments, segments_base, data, base, coarse, found, archive, time })
+        Ok(Self { candidates, segments, segments_base, hold, data, base, coarse, found, archive, time })
     }
 
     /// What the later stages share.

@@ -356,5 +356,6 @@ pub fn repaired(data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnEr
     let fitted_numbers =
         found.calibration.len() + acting.iter().map(|active| active.values().len()).sum::<usize>();
     let system = System::new(found.repaired.nominal, acting)?;
-    Ok(fitted(Simulated::new(system, data, fitted_numbers), 1, true))
+    let hold = found.repaired.input_hold.unwrap_or(hold_of(data));
+    Ok(fitted(Simulated { hold, ..Simulated::new(system, data, fitted_numbers) }, 1, true))
 }
