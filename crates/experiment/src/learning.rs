@@ -85,10 +85,29 @@ struct SplitKeys {
     validation_records: usize,
     test_share: f64,
     validation_share: f64,
-    hold: InputHold,
+    hold: HoldKey,
     warm_up_s: Option<f64>,
     period_s: Option<f64>,
     noise: Option<f64>,
+}
+
+/// What the input does between its samples, or that this is to be found out.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum HoldKey {
+    Auto,
+    Zero,
+    Linear,
+}
+
+impl HoldKey {
+    fn stated(self) -> Option<InputHold> {
+        match self {
+            Self::Auto => None,
+            Self::Zero => Some(InputHold::Zero),
+            Self::Linear => Some(InputHold::Linear),
+        }
+    }
 }
 
 impl LearningProblem {
@@ -107,7 +126,7 @@ impl LearningProblem {
             },
             unit: String::new(),
             nominal: None,
-            hold: keys.hold,
+            hold: keys.hold.stated(),
             warm_up_s: keys.warm_up_s,
             period_s: keys.period_s,
             noise: keys.noise,
@@ -253,9 +272,10 @@ const PROBLEM: &[Field] = &[
     },
     Field {
         key: "hold",
-        kind: Kind::Choice(&["zero", "linear"]),
-        default: Default::Text("zero"),
-        meaning: "What the input does between samples: keep its value, or go straight to the next.",
+        kind: Kind::Choice(&["auto", "zero", "linear"]),
+        default: Default::Text("auto"),
+        meaning: "What the input does between samples: keep its value, or go straight to the next; auto: what a law of all terms \
+                  follows better.",
         ..PLAIN
     },
     Field {

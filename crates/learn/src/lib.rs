@@ -16,6 +16,7 @@ pub mod data;
 mod error;
 pub mod expression;
 pub mod flow;
+mod hold;
 pub mod judge;
 mod learner;
 pub mod learners;
@@ -28,6 +29,7 @@ mod testing;
 pub mod training;
 
 pub use error::LearnError;
+pub use hold::data_set;
 pub use learner::{Context, Entry, Fitted, Kind, Learner, Step};
 pub use model::{Ahead, Coefficient, Model, Past, Place, Predicted, Torque};
 pub use stored::{Stored, Tensor};

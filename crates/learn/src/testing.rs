@@ -35,13 +35,19 @@ pub(crate) fn drag_and_cubic() -> System {
 
 /// A record of 10 s at 50 Hz with noise.
 pub(crate) fn record(system: &System, number: usize, driven: bool, noise: f64) -> Trajectory {
+    record_held(system, number, driven.then_some(Hold::Zero), noise)
+}
+
+/// The same whose input, where it has one, is held or goes straight on.
+pub(crate) fn record_held(system: &System, number: usize, hold: Option<Hold>, noise: f64) -> Trajectory {
     let times: Vec<f64> = (0..500).map(|at| f64::from(at) * 0.02).collect();
     let force = |time: f64| {
         let frequency = 0.4 + 0.13 * number as f64;
         10.0 * (std::f64::consts::TAU * (frequency + 0.08 * time) * time).sin()
     };
-    let input = driven.then(|| times.iter().map(|&time| force(time)).collect::<Vec<_>>());
-    let given = input.as_ref().map(|input| Input::new(times.clone(), input.clone(), Hold::Zero).unwrap());
+    let input = hold.map(|_| times.iter().map(|&time| force(time)).collect::<Vec<_>>());
+    let given = input.as_ref().zip(hold);
+    let given = given.map(|(input, hold)| Input::new(times.clone(), input.clone(), hold).unwrap());
     let start = Start { position: 1.2 - 0.15 * number as f64, velocity: 0.3 };
     let motion = simulate(system, start, given.as_ref(), &times, &Tolerance::default()).unwrap();
     let mut generator = Seed::new(number as u64).child("noise").generator();
@@ -61,7 +67,7 @@ pub(crate) fn making(nominal: Option<NominalSimulator>) -> Making {
         },
         unit: "rad".to_owned(),
         nominal,
-        hold: InputHold::Zero,
+        hold: Some(InputHold::Zero),
         warm_up_s: None,
         period_s: None,
         noise: None,

@@ -5,7 +5,7 @@ use crate::nominal::Nominal;
 use crate::record::Record;
 use estimator::Cancel;
 use experiment::{LearnStudy, LearningProblem, resolve_learning};
-use learn::data::{DataSet, Making, Trajectory};
+use learn::data::{Making, Trajectory};
 use learn::learners::LEARNERS;
 use learn::{Learner, Step};
 use rayon::prelude::*;
@@ -167,7 +167,7 @@ fn data_set(
         nominal: nominal.map(|nominal| nominal.stated.simulator.clone()),
         ..problem.making()
     };
-    Ok(Ready { data: DataSet::new(&trajectories, making)?, records: trajectories.len(), truth: None })
+    Ok(Ready { data: learn::data_set(&trajectories, making)?, records: trajectories.len(), truth: None })
 }
 
 /// Origin of the records, as far as one states it.

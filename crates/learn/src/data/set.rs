@@ -58,8 +58,8 @@ pub struct Making {
     pub unit: String,
     /// What is believed of the system.
     pub nominal: Option<NominalSimulator>,
-    /// What inputs do between samples.
-    pub hold: InputHold,
+    /// What inputs do between samples; kept where it is left open, but see [`crate::data_set`].
+    pub hold: Option<InputHold>,
     /// Length of the past given to a model, in seconds; a period where it is left open.
     pub warm_up_s: Option<f64>,
     /// Typical period in seconds; read from the training part where it is left open.
@@ -100,7 +100,7 @@ impl DataSet {
             test: parts.test,
             unit: making.unit,
             nominal: making.nominal,
-            hold: making.hold,
+            hold: making.hold.unwrap_or_default(),
             warm_up_s,
             period_s,
             noise,

@@ -4,7 +4,7 @@ use crate::configured::read_document;
 use crate::error::{LearnCommandError, TrainerError};
 use crate::folders::resume::DataFile;
 use ::learn::LearnError;
-use ::learn::data::{DataSet, Making};
+use ::learn::data::Making;
 use dynamics::NominalSimulator;
 use experiment::{DataSettings, LearnSource, LearningProblem};
 use record::{Clock, read_file};
@@ -87,7 +87,7 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<(Ready, Vec<DataFi
         None => NominalSimulator::from(&drawn.nominal),
     };
     let making = Making { unit: unit.to_owned(), nominal: Some(nominal), ..problem.making() };
-    let data = DataSet::new(&trajectories, making).map_err(refused(problem))?;
+    let data = ::learn::data_set(&trajectories, making).map_err(refused(problem))?;
     let truth = drawn.truths.into_iter().next().map(|truth| truth.system);
     let files =
         [Some(file), problem.nominal.as_deref()].into_iter().flatten().map(held).collect::<Result<_, _>>()?;
@@ -124,7 +124,7 @@ fn files(
         nominal: nominal.map(|stated| stated.simulator),
         ..problem.making()
     };
-    let data = DataSet::new(&trajectories, making).map_err(refused(problem))?;
+    let data = ::learn::data_set(&trajectories, making).map_err(refused(problem))?;
     let origin = origin.unwrap_or_default().name().to_owned();
     read.extend(problem.nominal.as_deref().map(held).transpose()?);
     Ok((Ready { data, records: trajectories.len(), truth: None }, origin, read))
