@@ -46,8 +46,8 @@ impl Sought {
         watch: &mut Stopwatch<'_>,
     ) -> Result<Self, DiagnosisError> {
         for _ in 0..CORRECTIONS {
-            let Some(known) = self.searched.best() else { break };
-            let Some(question) = self.question.finer(request, &known)? else { break };
+            let (Some(set), by) = (self.searched.best(), self.searched.interval.by) else { break };
+            let Some(question) = self.question.finer(request, by, set)? else { break };
             let searched = Searched::of(request, &question, self.measured.is_whole, None);
             self = Self { question, searched: watch.after("search", searched)?, ..self };
         }

@@ -186,8 +186,8 @@ fn least_squares(rows: &[Vec<f64>], right: &[f64]) -> Option<(Vec<f64>, f64)> {
     if rows.len() < ROWS * count {
         return None;
     }
-    // Every row has as many terms.
     let design = DMatrix::from_fn(rows.len(), count, |row, column| {
+        // Every row has as many terms.
         rows.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
     });
     let right = DMatrix::from_column_slice(right.len(), 1, right);

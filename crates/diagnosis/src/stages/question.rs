@@ -1,6 +1,6 @@
 //! What could be missing, and the samples on which it is searched.
 
-use super::{Known, Measured, Request};
+use super::{Measured, Request};
 use crate::data::segments::Data;
 use crate::error::DiagnosisError;
 use crate::fit::calibrate::{Baseline, baseline, better_hold};
@@ -72,13 +72,19 @@ impl Question {
 
     /// The same question with as much of the input as a set needs that was found with less of it, on segments joined by so many; none
     /// where it has enough.
-    pub(crate) fn finer(&self, request: &Request<'_>, known: &Known) -> Result<Option<Self>, DiagnosisError> {
-        let joined = self.data.joined(known.by);
-        if self.knots == 1 || !joined.spoils(self.knots, &known.set) {
+    pub(crate) fn finer(
+        &self,
+        request: &Request<'_>,
+        by: usize,
+        set: &Fit,
+    ) -> Result<Option<Self>, DiagnosisError> {
+        let joined = self.data.joined(by);
+        if self.knots == 1 || !joined.spoils(self.knots, set) {
             return Ok(None);
         }
-        let knots = joined.spare_knots(&known.set).min(self.knots / 2);
-        Self::on(request, self.data.clone(), self.base.clone(), self.candidates.clone(), knots).map(Some)
+        let knots = joined.spare_knots(set).min(self.knots / 2);
+        let finer = Self::on(request, self.data.clone(), self.base.clone(), self.candidates.clone(), knots);
+        finer.map(Some)
     }
 
     /// What the input does between its samples; none where there is none.

@@ -75,9 +75,8 @@ impl Searched {
     }
 
     /// The best set.
-    pub(crate) fn best(&self) -> Option<Known> {
-        let ranked = self.found.ranked(self.found.autocorrelation_time());
-        ranked.first().map(|best| Known { by: self.interval.by, set: (*best).clone() })
+    pub(crate) fn best(&self) -> Option<&Fit> {
+        self.found.ranked(self.found.autocorrelation_time()).into_iter().next()
     }
 
     /// The set that comes closest on every sample of another question, which differs from `own` by a belief, where it comes closer there

@@ -100,7 +100,7 @@ impl DataSet {
             test: parts.test,
             unit: making.unit,
             nominal: making.nominal,
-            hold: making.hold.unwrap_or_default(),
+            hold: making.hold.unwrap_or(InputHold::Zero),
             warm_up_s,
             period_s,
             noise,
