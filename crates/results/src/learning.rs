@@ -63,6 +63,9 @@ pub struct LearnProblem {
     pub noise: f64,
     /// Mean length of a test stretch after its warm-up, in seconds.
     pub test_s: f64,
+    /// What the input does between its samples, `"zero"` (kept) or `"linear"`; `None` without an input.
+    #[serde(default)]
+    pub input_hold: Option<String>,
 }
 
 /// A method on a data set.

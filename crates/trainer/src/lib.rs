@@ -35,7 +35,7 @@ use commands::{
 use error::TrainerError;
 use outcome::Outcome;
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use terminal::console;
 
 /// Exit code for wrong input or usage.
@@ -49,7 +49,7 @@ const WRONG_USAGE: u8 = 2;
 #[must_use]
 pub fn main_from(line: Vec<OsString>, program: Option<PathBuf>) -> u8 {
     program.into_iter().for_each(own_program::started_as);
-    let command = everywhere::everywhere(Arguments::command());
+    let command = everywhere::everywhere(Arguments::command()).name(name_of(&line));
     let names: Vec<String> = command.get_subcommands().map(|command| command.get_name().to_owned()).collect();
     let words: Vec<String> = line.iter().skip(1).map(|word| word.to_string_lossy().into_owned()).collect();
     if let Some(message) = misplaced::remedy(&words, &names) {
@@ -72,6 +72,12 @@ pub fn main_from(line: Vec<OsString>, program: Option<PathBuf>) -> u8 {
             error.exit_code()
         }
     }
+}
+
+/// What the program calls itself: as Python's wheel installs it, or as cargo builds it.
+fn name_of(line: &[OsString]) -> &'static str {
+    let stem = line.first().and_then(|own| Path::new(own).file_stem());
+    if stem.is_some_and(|stem| stem == "ringdown") { "ringdown" } else { "trainer" }
 }
 
 /// An outcome whose result, if any was to be printed, reached standard output.

@@ -14,6 +14,17 @@ pub enum InputHold {
     Linear,
 }
 
+impl InputHold {
+    /// Its name in configurations and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Zero => "zero",
+            Self::Linear => "linear",
+        }
+    }
+}
+
 /// Positions over time, with the input where there is one.
 ///
 /// Invariants, checked when it is made: every number finite, times strictly increasing (they may be uneven), one value

@@ -102,7 +102,7 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
 
 fn facts(problem: &LearnProblem) -> Vec<Fact> {
     let data = &problem.data;
-    vec![
+    let mut facts = vec![
         fact("Records", whole(data.records)),
         fact(
             "Stretches",
@@ -117,7 +117,15 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
         fact("Warm-up", quantity(&significant(problem.warm_up_s, 4), "s")),
         fact("Predicted after it", quantity(&significant(problem.test_s, 4), "s")),
         fact("Sensor noise", quantity(&significant(problem.noise, 3), &problem.unit)),
-    ]
+    ];
+    let hold = problem.input_hold.as_deref();
+    facts.extend(hold.map(|hold| fact("Input between its samples", in_words(hold).to_owned())));
+    facts
+}
+
+/// What an input does between its samples.
+fn in_words(hold: &str) -> &'static str {
+    if hold == "linear" { "straight to the next" } else { "kept" }
 }
 
 fn score_row(row: &LearnRow) -> ScoreRow {

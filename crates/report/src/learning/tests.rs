@@ -54,6 +54,7 @@ fn page(learner: f64) -> String {
         warm_up_s: 1.0,
         noise: 1e-3,
         test_s: 9.0,
+        input_hold: None,
     };
     let result = LearnResult {
         schema: RESULT_SCHEMA.to_owned(),

@@ -177,6 +177,7 @@ pub fn described(id: &str, title: &str, origin: &str, ready: Result<&Ready, &Str
         warm_up_s: 0.0,
         noise: 0.0,
         test_s: 0.0,
+        input_hold: None,
     };
     if let Ok(ready) = ready {
         let data = &ready.data;
@@ -193,6 +194,7 @@ pub fn described(id: &str, title: &str, origin: &str, ready: Result<&Ready, &Str
         described.period_s = data.period_s;
         described.warm_up_s = data.warm_up_s;
         described.noise = data.noise;
+        described.input_hold = data.is_driven().then(|| data.hold.name().to_owned());
         let whole: f64 = data.test.iter().map(|part| part.duration_s() - data.warm_up_s).sum();
         described.test_s = whole / data.test.len().max(1) as f64;
     }

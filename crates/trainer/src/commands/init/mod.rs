@@ -284,9 +284,24 @@ impl Found {
 
     fn findings(&self) -> Vec<String> {
         let read = self.surest.look.source.findings.iter().map(|finding| in_options(finding));
-        read.chain(bias(&self.surest.look.record)).chain(apart(&self.each)).collect()
+        read.chain(bias(&self.surest.look.record)).chain(apart(&self.each)).chain(self.few_cycles()).collect()
+    }
+
+    /// A warning where the record is too short for its decay to show.
+    fn few_cycles(&self) -> Option<String> {
+        let frequency = self.surest.oscillator.natural_frequency_hz()?.value;
+        let cycles = frequency * self.duration_s();
+        (cycles < FEW_CYCLES).then(|| {
+            format!(
+                "the record shows {cycles:.1} cycles: damping and what a simulator lacks show in how swings follow one another; \
+                 give a record of ten cycles or more"
+            )
+        })
     }
 }
+
+/// Cycles below which a record says little of a decay: a diagnosis needs segments of them to hold out.
+const FEW_CYCLES: f64 = 3.0;
 
 /// Whether the program runs from the folder that cargo builds into, where no shell finds it by its name.
 fn is_built_here() -> bool {

@@ -30,7 +30,7 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
     let data = &problem.data;
     let facts = format!(
         "{head}: {} records, {} stretches learned from ({} samples at {:.4} Hz), {} to choose, {} to test on; noise {} {}, \
-         predictions from {:.3} s over {:.2} s",
+         predictions from {:.3} s over {:.2} s{}",
         data.records,
         data.train,
         problem.training_samples,
@@ -41,6 +41,10 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
         problem.unit,
         problem.warm_up_s,
         problem.test_s,
+        problem
+            .input_hold
+            .as_deref()
+            .map_or_else(String::new, |hold| format!("; input between its samples: {hold}")),
     );
     let own: Vec<&LearnRow> = result.results.iter().filter(|row| row.problem == problem.id).collect();
     let mut lines = vec![facts, table(&HEADER, own.iter().map(|row| cells(row)).collect())];
