@@ -37,7 +37,7 @@ pub fn configuration(repaired: &Repaired) -> String {
     text.push_str("\n[start]\n");
     number(&mut text, "position", repaired.start.position, repaired.unit(Quantity::Position));
     number(&mut text, "velocity", repaired.start.velocity, repaired.unit(Quantity::Velocity));
-    if repaired.driven {
+    if repaired.driven() {
         text.push_str(
             "\n# The system was driven by a measured input, which a configuration cannot hold: choose a waveform.\n\
              [input]\nwaveform = \"none\"\n",

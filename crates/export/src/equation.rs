@@ -41,7 +41,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
     }
     // Effects say in words what a term alone does not: one a line, under its title.
     let mut terms: Vec<String> = Vec::new();
-    if repaired.driven {
+    if repaired.driven() {
         terms.push("input: g u(t)".to_owned());
     }
     terms.extend(repaired.system.effects().iter().map(|active| {
@@ -60,7 +60,7 @@ pub fn equation_text(repaired: &Repaired) -> String {
     for (symbol, _, value, unit) in coefficients(repaired) {
         let _ = write!(text, "\n  {symbol} = {value:.6e} {unit}");
     }
-    if repaired.driven {
+    if repaired.driven() {
         let _ = write!(text, "\n  g = {:.6e}, torque per unit of the input u", nominal.input_gain());
     }
     for (description, symbol, value, unit) in parameters(repaired) {
@@ -90,7 +90,7 @@ pub fn equation_latex(repaired: &Repaired) -> String {
         let _ = write!(left, r"+k({x}-\theta_\mathrm{{rest}})");
     }
     let mut right: Vec<String> = Vec::new();
-    if repaired.driven {
+    if repaired.driven() {
         right.push("g\\,u(t)".to_owned());
     }
     right.extend(repaired.system.effects().iter().map(|a| a.effect().description().latex.to_owned()));
@@ -100,7 +100,7 @@ pub fn equation_latex(repaired: &Repaired) -> String {
     for (_, symbol, value, unit) in coefficients(repaired) {
         let _ = writeln!(text, "  \\item ${symbol} = {}$ {}", latex_number(value), latex_unit(unit));
     }
-    if repaired.driven {
+    if repaired.driven() {
         let _ = writeln!(text, "  \\item $g = {}$", latex_number(nominal.input_gain()));
     }
     for (description, symbol, value, unit) in parameters(repaired) {

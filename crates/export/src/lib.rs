@@ -17,7 +17,7 @@
 //!     units: nominal.units(),
 //!     chain: Vec::new(),
 //!     left_out: Vec::new(),
-//!     driven: false,
+//!     input: None,
 //!     start: Start::release(0.7),
 //!     observed: Observed::Position,
 //!     noise: 5e-4,

@@ -35,7 +35,7 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     if let Some(delay) = terms.delay {
         let _ = writeln!(text, "  parameter Real input_delay = {delay:?}; // s");
     }
-    if repaired.driven {
+    if repaired.driven() {
         text.push_str("  input Real u;\n");
     }
     let start = repaired.start;
@@ -58,7 +58,7 @@ fn equations(text: &mut String, repaired: &Repaired, terms: &Terms) {
     let _ = writeln!(
         text,
         "  drive = {};",
-        match (repaired.driven, terms.delay) {
+        match (repaired.driven(), terms.delay) {
             (false, _) => "0",
             (true, None) => "input_gain * u",
             (true, Some(_)) => "input_gain * delay(u, input_delay)",

@@ -3,6 +3,7 @@
 use crate::Repaired;
 use crate::configuration::one_line;
 use crate::terms::Terms;
+use dynamics::Hold;
 use std::fmt::Write;
 
 /// Writes a Python module: `rhs(time, state)` for `scipy.integrate.solve_ivp`, where the state is position, velocity and what
@@ -25,8 +26,15 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
     text.push_str(
         "\nDry friction's sign is blurred over `small_speed`; at rest it creeps by less than that.\n",
     );
-    if repaired.driven {
-        text.push_str("The system is driven: give `rhs` the input as a function of time.\n");
+    if let Some(hold) = repaired.input {
+        let between = match hold {
+            Hold::Zero => "keeps its last sample",
+            Hold::Linear => "goes straight from sample to sample",
+        };
+        let _ = writeln!(
+            text,
+            "The system is driven: give `rhs` the input as a function of time, which {between}."
+        );
     }
     for sentence in &terms.left_out {
         let _ = writeln!(text, "Not part of it: {}.", one_line(sentence).replace('"', "'"));
@@ -54,7 +62,7 @@ fn derivative(text: &mut String, repaired: &Repaired, terms: &Terms) {
          direction = tanh(velocity / small_speed)\n"
     );
     let arrival = if terms.delay.is_some() { "max(time - input_delay, 0.0)" } else { "time" };
-    let drive = if repaired.driven { format!("input_gain * u({arrival})") } else { "0.0".to_owned() };
+    let drive = if repaired.driven() { format!("input_gain * u({arrival})") } else { "0.0".to_owned() };
     let _ = writeln!(text, "    drive = {drive}\n    torque = drive");
     for term in &terms.torques {
         let _ = writeln!(text, "    torque += {}  # {}", term.expression, term.title);

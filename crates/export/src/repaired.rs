@@ -1,7 +1,7 @@
 //! What is exported.
 
 use dynamics::chain::Observed;
-use dynamics::{Active, Quantity, Start, System, Units};
+use dynamics::{Active, Hold, Quantity, Start, System, Units};
 
 /// A nominal simulator with the effects that it lacked, and the sensor and sampling of the first record.
 #[derive(Debug, Clone, PartialEq)]
@@ -14,8 +14,8 @@ pub struct Repaired {
     pub chain: Vec<Active>,
     /// Parts of the diagnosis that cannot be part of the simulator, each in a sentence.
     pub left_out: Vec<String>,
-    /// True if an input drives it.
-    pub driven: bool,
+    /// What the input that drives it does between its samples; `None` where nothing drives it.
+    pub input: Option<Hold>,
     /// Where the motion of the first record starts.
     pub start: Start,
     /// Quantity that the sensor observes.
@@ -29,6 +29,12 @@ pub struct Repaired {
 }
 
 impl Repaired {
+    /// Whether an input drives it.
+    #[must_use]
+    pub fn driven(&self) -> bool {
+        self.input.is_some()
+    }
+
     /// Returns the unit's symbol of a quantity; that of the observed one follows from [`observed`](Self::observed).
     #[must_use]
     pub fn unit(&self, quantity: Quantity) -> &'static str {

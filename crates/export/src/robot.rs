@@ -126,7 +126,7 @@ fn comments(text: &mut String, repaired: &Repaired, terms: &JointTerms, indent: 
         let _ =
             writeln!(text, "{indent}<!-- Only the motion is known: every torque is per unit of inertia. -->");
     }
-    if repaired.driven {
+    if repaired.driven() {
         let _ = writeln!(
             text,
             "{indent}<!-- An input drives the system: torque {:?} per unit of it, by an actuator of yours. -->",

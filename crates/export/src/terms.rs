@@ -58,7 +58,7 @@ impl Terms {
             left_out: left_out(repaired),
             small_speed: small_speed(repaired),
         };
-        if repaired.driven {
+        if repaired.driven() {
             let gain = constant("input_gain", nominal.input_gain(), "torque or force per unit of the input");
             terms.constants.push(gain);
         }

@@ -2,7 +2,7 @@
 
 use crate::{Repaired, configuration, equation_latex, equation_text, files, python, urdf};
 use dynamics::chain::Observed;
-use dynamics::{Active, Coefficients, Coordinate, Nominal, Start, System};
+use dynamics::{Active, Coefficients, Coordinate, Hold, Nominal, Start, System};
 
 fn repaired(nominal: Nominal, effects: &[(&str, &[f64])]) -> Repaired {
     let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
@@ -11,7 +11,7 @@ fn repaired(nominal: Nominal, effects: &[(&str, &[f64])]) -> Repaired {
         units: nominal.units(),
         chain: Vec::new(),
         left_out: Vec::new(),
-        driven: false,
+        input: None,
         start: Start::release(0.5),
         observed: Observed::Position,
         noise: 1e-3,
@@ -52,7 +52,7 @@ fn a_drive_without_a_spring_has_no_spring_in_its_equation() {
     })
     .unwrap()
     .with_coordinate(Coordinate::Displacement);
-    let drive = Repaired { driven: true, ..repaired(nominal, &[]) };
+    let drive = Repaired { input: Some(Hold::Linear), ..repaired(nominal, &[]) };
     let text = equation_text(&drive);
     assert!(text.starts_with("I θ″ + c θ′ = what follows\n  input: g u(t)\n"), "{text}");
     assert!(text.contains("I = 9.500000e1 kg\n") && text.contains("θ is the displacement"), "{text}");

@@ -66,7 +66,7 @@ fn of_size(size: f64, effects: &[(&str, &[f64])]) -> Repaired {
         units: nominal.units(),
         chain: Vec::new(),
         left_out: Vec::new(),
-        driven: effects.iter().any(|(id, _)| is_driven(id)),
+        input: effects.iter().any(|(id, _)| is_driven(id)).then_some(Hold::Zero),
         start: Start { position: 0.5, velocity: 1.0 },
         observed: Observed::Position,
         noise: 0.0,
@@ -88,7 +88,7 @@ fn own(repaired: &Repaired) -> Vec<f64> {
     let knots: Vec<f64> = (0..40_000).map(|index| f64::from(index) * SECONDS / 40_000.0).collect();
     let values = knots.iter().map(|time| drive(*time)).collect();
     let input = Input::new(knots, values, Hold::Linear).unwrap();
-    let input = repaired.driven.then_some(&input);
+    let input = repaired.driven().then_some(&input);
     simulate(&repaired.system, repaired.start, input, &times(), &Tolerance::default()).unwrap().position
 }
 

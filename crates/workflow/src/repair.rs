@@ -56,7 +56,7 @@ pub(crate) fn repaired(found: &Diagnosis, given: &[Given], units: Units) -> Resu
         units,
         chain,
         left_out,
-        driven: first.is_some_and(|given| given.driven),
+        input: own.input_hold,
         start: Start {
             position: at_start(&found.series.position, noise),
             velocity: at_start(&found.series.velocity, noise * per_second),

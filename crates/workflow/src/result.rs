@@ -69,7 +69,7 @@ pub(crate) fn result(found: &Diagnosis, beside: &Beside<'_>) -> DiagnosisResult 
         equation: Equation { text: equation_text(beside.repaired), latex: equation_latex(beside.repaired) },
         units: [Quantity::Position, Quantity::Velocity, Quantity::Torque]
             .map(|quantity| quantity.unit(units).to_owned()),
-        backbone: if beside.repaired.driven { Backbone::default() } else { backbones(&found.series) },
+        backbone: if beside.repaired.driven() { Backbone::default() } else { backbones(&found.series) },
         surface: surface_cells(found, quantity),
     };
     result.verdict.summary = report::verdict_sentence(&result);

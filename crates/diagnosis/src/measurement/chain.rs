@@ -6,7 +6,7 @@ use crate::data::segments::Data;
 use crate::fit::fitted::Fit;
 use crate::measurement::signatures;
 use crate::model::candidate::Candidate;
-use dynamics::{DynamicsError, KnownEffect, Nominal, NominalSimulator};
+use dynamics::{DynamicsError, Hold, KnownEffect, Nominal, NominalSimulator};
 use record::{ClockKind, Quantity};
 
 /// The nominal oscillator with the sensor's step, also where the simulator states that as an effect.
@@ -34,6 +34,15 @@ pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> 
             ),
         })
         .collect()
+}
+
+/// What the input is taken to do between its samples: whoever runs the repaired simulator has to do the same.
+pub(crate) fn between_samples(hold: Hold) -> Finding {
+    let text = match hold {
+        Hold::Zero => "the input is taken to keep each sample's value until the next (zero-order hold)",
+        Hold::Linear => "the input is taken to go straight from sample to sample (linear interpolation)",
+    };
+    Finding { effect: None, text: text.to_owned() }
 }
 
 /// What is said of the chain: clock, rate, resolution, noise, and what stamps and values show. `kept` tells which samples of

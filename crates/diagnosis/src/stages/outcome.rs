@@ -140,6 +140,7 @@ impl All<'_> {
         let (records, kept, segments) = (request.records, &measured.kept, &refined.segments);
         let mut chain = chain::chain(records, kept, request.simulator, segments, fitted, remaining.noise)?;
         chain.findings.extend(measured.findings.iter().cloned());
+        chain.findings.extend(refined.hold.map(chain::between_samples));
         chain.findings.extend(encoder_hysteresis::finding(&refined.data, self.complete()));
         let is_known = |id: &str| request.simulator.effects().iter().any(|known| known.active.id() == id);
         for finding in &mut chain.findings {
