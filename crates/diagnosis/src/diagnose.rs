@@ -39,7 +39,7 @@ impl Sought {
     }
 
     /// The same with as much of the input as the sets need that were found. The recalibrated simulator, which may hardly follow the
-    /// input, has chosen how much of it is averaged; sets that follow it are bent by that, and others mend what it does.
+    /// input, has chosen how few knots it has; sets that follow it are bent by that, and others mend what it does.
     fn with_enough_input(
         mut self,
         request: &Request<'_>,
@@ -190,7 +190,7 @@ mod tests {
     }
 
     /// The linear oscillator that comes closest is one that the input does not move: no set begun there arrives, and an input that
-    /// is averaged as it allows bends those that do.
+    /// has as few knots as it allows bends those that do.
     #[test]
     fn a_spring_whose_bend_outweighs_it_is_found_under_an_input() {
         let (names, ratio) = chirped(&[6.0, 9.0]);

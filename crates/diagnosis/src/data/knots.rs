@@ -17,28 +17,29 @@ const PART: f64 = 0.01;
 impl Data {
     /// How many samples of the inputs one knot may stand for without a prediction noticing.
     pub(crate) fn spare_knots(&self, at: &Fit) -> usize {
+        let Some(change) = self.change(at) else { return 1 };
         let counts = std::iter::successors(Some(2), |count| Some(2 * count));
-        let close = counts.take_while(|&count| count <= MOST && self.change(count, at) <= PART);
+        let close = counts.take_while(|&count| count <= MOST && change(count) <= PART);
         close.last().unwrap_or(1)
     }
 
     /// Whether a set that was fitted with one knot for so many samples is bent to these: with all of them its prediction changes by
     /// more than what it leaves.
     pub(crate) fn spoils(&self, count: usize, at: &Fit) -> bool {
-        self.change(count, at) > 1.0
+        self.change(at).is_none_or(|change| change(count) > 1.0)
     }
 
-    /// Change of a prediction relative to what the fit left (RMS); infinite where there is nothing to spare.
-    fn change(&self, count: usize, at: &Fit) -> f64 {
-        if !self.driven() {
-            return f64::INFINITY;
-        }
-        let both =
-            residuals(self, at).and_then(|exact| Ok((exact, residuals(&self.with_fewer_knots(count), at)?)));
+    /// Change of a prediction, by how many samples one knot stands for, relative to what the fit left (RMS); none where there is
+    /// nothing to spare.
+    fn change(&self, at: &Fit) -> Option<impl Fn(usize) -> f64> {
+        let exact = self.driven().then(|| residuals(self, at).ok())??;
         let left = at.squares / at.samples().max(1) as f64 * self.samples() as f64;
-        both.map_or(f64::INFINITY, |(exact, own)| {
-            let change: f64 = own.iter().zip(&exact).map(|(own, exact)| (own - exact).norm_squared()).sum();
-            (change / left).sqrt()
+        Some(move |count: usize| {
+            residuals(&self.with_fewer_knots(count), at).map_or(f64::INFINITY, |own| {
+                let pairs = own.iter().zip(&exact);
+                let change: f64 = pairs.map(|(own, exact)| (own - exact).norm_squared()).sum();
+                (change / left).sqrt()
+            })
         })
     }
 
