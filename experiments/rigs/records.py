@@ -29,10 +29,10 @@ KINDS = ["composite"] * 10 + ["single"] * 4 + ["pair"] * 2 + ["unlisted"] * 2 + 
 
 
 class Bank:
-    """What is drawn from where; two that are unlike in their ranges and in their unlisted laws."""
+    """What is drawn from where: two that are unlike in their ranges and in their unlisted laws, and short records beside the first."""
 
     def __init__(self, name):
-        first = name == "train"
+        first = name != "score"
         self.unlisted = FIRST if first else SECOND_LIST
         self.rates = (30.0, 2500.0) if first else (15.0, 5000.0)
         self.swings = (8.0, 800.0) if first else (5.0, 2000.0)
@@ -43,6 +43,9 @@ class Bank:
         self.displacement = 0.25 if first else 0.4
         self.wide = 0.15 if first else 0.2
         self.driven = 0.15 if first else 0.25
+        self.least = 400
+        if name == "short":
+            self.rates, self.swings, self.samples, self.least = (15.0, 500.0), (4.0, 40.0), (150, 900), 150
 
 
 def log_uniform(draws, low, high):
@@ -57,7 +60,7 @@ class Rig:
         self.driven = draws.random() < bank.driven or driven_only
         self.records = 1 if draws.random() < 0.6 else int(draws.integers(2, 5))
         total = log_uniform(draws, *bank.samples)
-        count = max(int(total / self.records), 400)
+        count = max(int(total / self.records), bank.least)
         self.swings = log_uniform(draws, *bank.swings)
         if not self.driven:
             # A free decay is recorded while there is something to see.
@@ -566,7 +569,7 @@ def make(out, bank, seed, number, use_engine, kind=None):
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, required=True, help="folder to write to")
-    parser.add_argument("--bank", choices=["train", "score"], default="score", help="ranges and unlisted laws to draw from")
+    parser.add_argument("--bank", choices=["train", "score", "short"], default="score", help="ranges and unlisted laws to draw from")
     parser.add_argument("--cases", type=int, default=240)
     parser.add_argument("--first", type=int, default=0, help="number of the first case, to make them in parts")
     parser.add_argument("--seed", type=int, default=2)

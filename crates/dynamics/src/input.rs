@@ -14,6 +14,26 @@ pub enum Hold {
     Linear,
 }
 
+impl Hold {
+    /// Its name in configurations and results.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Zero => "zero",
+            Self::Linear => "linear",
+        }
+    }
+
+    /// What the input does, in words that follow "the input".
+    #[must_use]
+    pub fn in_words(self) -> &'static str {
+        match self {
+            Self::Zero => "keeps its last sample",
+            Self::Linear => "goes straight from sample to sample",
+        }
+    }
+}
+
 /// A measured input: values at times, and what happens in between. Before the first time it has the first
 /// value, after the last the last.
 #[derive(Debug, Clone, PartialEq)]

@@ -62,6 +62,7 @@ mod system;
 mod tests;
 mod times;
 mod units;
+pub mod weak_form;
 
 pub use active::Active;
 pub use description::{Class, Description, Kind, Parameter, Range};

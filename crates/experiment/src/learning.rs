@@ -4,9 +4,10 @@ use crate::experiment::DataSettings;
 use crate::json_schema::{asking_for_task, put};
 use crate::prediction::all_known;
 use crate::schema::{DATA, PLAIN, TOP};
+use dynamics::Hold;
 use learn::Entry;
 use learn::baselines::BASELINES;
-use learn::data::{InputHold, Making, Split, SplitKind};
+use learn::data::{Making, Split, SplitKind};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use settings::{Default, Document, Field, Kind, Resolved, Section, SettingsError, json_schema};
@@ -101,11 +102,11 @@ enum HoldKey {
 }
 
 impl HoldKey {
-    fn stated(self) -> Option<InputHold> {
+    fn stated(self) -> Option<Hold> {
         match self {
             Self::Auto => None,
-            Self::Zero => Some(InputHold::Zero),
-            Self::Linear => Some(InputHold::Linear),
+            Self::Zero => Some(Hold::Zero),
+            Self::Linear => Some(Hold::Linear),
         }
     }
 }

@@ -3,7 +3,6 @@
 use crate::Repaired;
 use crate::configuration::one_line;
 use crate::terms::Terms;
-use dynamics::Hold;
 use std::fmt::Write;
 
 /// Writes a Python module: `rhs(time, state)` for `scipy.integrate.solve_ivp`, where the state is position, velocity and what
@@ -27,10 +26,7 @@ fn declarations(repaired: &Repaired, terms: &Terms) -> String {
         "\nDry friction's sign is blurred over `small_speed`; at rest it creeps by less than that.\n",
     );
     if let Some(hold) = repaired.input {
-        let between = match hold {
-            Hold::Zero => "keeps its last sample",
-            Hold::Linear => "goes straight from sample to sample",
-        };
+        let between = hold.in_words();
         let _ = writeln!(
             text,
             "The system is driven: give `rhs` the input as a function of time, which {between}."

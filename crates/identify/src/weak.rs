@@ -10,6 +10,7 @@
 
 use crate::observed::{input, order};
 use crate::{Basis, Estimated, IdentifyError, LinearOscillator};
+use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 use record::{Clock, Record};
 use std::f64::consts::TAU;
@@ -20,6 +21,8 @@ const MOST_SAMPLES: usize = 8192;
 const FREQUENCIES: u32 = 400;
 /// Windows for each coefficient that is fitted.
 const WINDOWS_EACH: usize = 3;
+/// Exponent of the windows (1 − s²)ⁿ.
+const EXPONENT: i32 = 4;
 /// A step between samples that is so many times the usual one is a gap.
 const GAP: f64 = 4.0;
 /// Standard errors that a restoring torque has to stand above zero.
@@ -159,7 +162,11 @@ impl<'a> Samples<'a> {
             return None;
         }
         let (mut target, [mut damping, mut stiffness, mut shift, mut gain]) = (0.0, [0.0; 4]);
-        let derivatives = |time: f64| window(2.0 * (time - start) / width - 1.0, 2.0 / width);
+        let half = 0.5 * width;
+        let derivatives = |time: f64| {
+            let [phi, slope, curvature] = test_function((time - start) / half - 1.0, EXPONENT);
+            [phi, slope / half, curvature / (half * half)]
+        };
         for (at, (time, weight)) in trapezoids(times.iter().copied()).enumerate() {
             let [phi, slope, curvature] = derivatives(time).map(|value| weight * value);
             let value = self.values.get(from + at)?;
@@ -189,11 +196,4 @@ fn trapezoids(times: impl Iterator<Item = f64> + Clone) -> impl Iterator<Item = 
     times
         .zip(beside)
         .map(|(time, (before, after))| (time, 0.5 * (after.unwrap_or(time) - before.unwrap_or(time))))
-}
-
-/// The window φ(s) = (1 − s²)⁴ on −1 to 1 with its first two derivatives in time, where ds/dt = `rate`.
-fn window(s: f64, rate: f64) -> [f64; 3] {
-    let inside = (1.0 - s * s).max(0.0);
-    let cubed = inside * inside * inside;
-    [cubed * inside, -8.0 * s * cubed * rate, (-8.0 * cubed + 48.0 * s * s * inside * inside) * rate * rate]
 }

@@ -1,6 +1,6 @@
 //! Simulated data sets for tests, made by the reference integrator, which shares no code with this crate's own.
 
-use crate::data::{DataSet, InputHold, Making, Split, SplitKind, Trajectory};
+use crate::data::{DataSet, Making, Split, SplitKind, Trajectory};
 use crate::{Context, Learner};
 use dynamics::reference::{Tolerance, simulate};
 use dynamics::{Active, Hold, Input, Nominal, NominalSimulator, Start, System};
@@ -67,7 +67,7 @@ pub(crate) fn making(nominal: Option<NominalSimulator>) -> Making {
         },
         unit: "rad".to_owned(),
         nominal,
-        hold: Some(InputHold::Zero),
+        hold: Some(Hold::Zero),
         warm_up_s: None,
         period_s: None,
         noise: None,

@@ -38,11 +38,11 @@ pub(crate) fn not_followed(simulator: &NominalSimulator, quantity: Quantity) -> 
 
 /// What the input is taken to do between its samples: whoever runs the repaired simulator has to do the same.
 pub(crate) fn between_samples(hold: Hold) -> Finding {
-    let text = match hold {
-        Hold::Zero => "the input is taken to keep each sample's value until the next (zero-order hold)",
-        Hold::Linear => "the input is taken to go straight from sample to sample (linear interpolation)",
+    let name = match hold {
+        Hold::Zero => "zero-order hold",
+        Hold::Linear => "linear interpolation",
     };
-    Finding { effect: None, text: text.to_owned() }
+    Finding { effect: None, text: format!("for the model, the input {} ({name})", hold.in_words()) }
 }
 
 /// What is said of the chain: clock, rate, resolution, noise, and what stamps and values show. `kept` tells which samples of

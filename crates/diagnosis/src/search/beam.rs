@@ -15,7 +15,7 @@ use crate::model::dictionary::{Dictionary, Gain};
 use crate::noise::spectrum::DECAYS;
 use crate::search::archive::{Archive, is_another};
 use crate::search::proposals::{
-    Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, simplified,
+    Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, reshaped, simplified,
 };
 use crate::search::weak_form::from_weak_form;
 use rayon::prelude::*;
@@ -322,11 +322,23 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
         }
     }
     polish(data, pool);
+    reshape(data, pool);
     without_members(data, pool);
 }
 
-/// Fits every part of the best set that is known to end farther from the data than it begins where the best set ended: begun at the
-/// recalibrated simulator it came to a minimum of its own, and what is beside it in the best set would seem to be needed.
+/// Begins the best set once more with each shape that its members may have. Friction that stops the motion half a swing too early
+/// or too late has a hollow of its own for each such half swing, and what is added there mends what it does.
+fn reshape(data: &Data, pool: &mut Archive) {
+    let ranked = pool.ranked(pool.autocorrelation_time());
+    let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
+    for fit in fit_all(data, &begun, |_| Stopping::SEARCH) {
+        pool.admit(data, fit);
+    }
+}
+
+/// Fits every part of the best set that was rejected, or is known to end farther from the data than it begins where the best set
+/// ended: begun at the recalibrated simulator it came to a minimum of its own, and what is beside it in the best set would seem to be
+/// needed.
 fn without_members(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
     let Some(best) = ranked.first().map(|best| (*best).clone()) else { return };
@@ -336,7 +348,9 @@ fn without_members(data: &Data, pool: &mut Archive) {
         let gone = members.iter().enumerate().filter(|(place, _)| part >> place & 1 == 1);
         proposal(data, &best, &gone.map(|(_, member)| *member).collect::<Vec<_>>(), &[])
     });
-    let begun: Vec<Proposal> = without.filter(|own| begins_closer(data, pool, own)).collect();
+    let is_rejected = |own: &Proposal| pool.rejected.contains(&own.hypothesis.candidates);
+    let is_worth_it = |own: &Proposal| is_rejected(own) || begins_closer(data, pool, own);
+    let begun: Vec<Proposal> = without.filter(is_worth_it).collect();
     for fit in fit_all(data, &begun, |_| Stopping::FINAL) {
         pool.admit(data, fit);
     }

@@ -17,6 +17,9 @@ const FIRST_SIZE: f64 = 1e-3;
 /// Squares where a set begins, relative to those it is known to end with, below which it is begun once more.
 pub(crate) const CLOSER: f64 = 0.9;
 
+/// Log likelihood by which it begins closer for certain, be the squares mostly those of the noise.
+const SURELY: f64 = 10.0;
+
 /// A set to fit and where to begin.
 #[derive(Debug, Clone)]
 pub(crate) struct Proposal {
@@ -121,6 +124,27 @@ pub(crate) fn generalized(data: &Data, base: &Fit, candidates: &[Candidate]) -> 
     proposals
 }
 
+/// A set begun where it ended but for one member's shape, which is each of those that it may begin with.
+pub(crate) fn reshaped(data: &Data, ended: &Fit) -> Vec<Proposal> {
+    let parts = ended.hypothesis.parts(&data.facts, &ended.point.globals);
+    let mut begun = Vec::new();
+    let mut first = ended.hypothesis.calibrated.len();
+    for (member, part) in ended.hypothesis.candidates.iter().zip(parts) {
+        let parameters = member.parameters(&data.facts);
+        let has_shape = parameters.iter().any(|parameter| parameter.shape);
+        for shape in member.shapes(&data.facts).into_iter().filter(|_| has_shape) {
+            let mut point = ended.point.clone();
+            let places = point.globals.iter_mut().skip(first).zip(parameters.iter().zip(shape));
+            for (place, (_, shape)) in places.filter(|(_, (parameter, _))| parameter.shape) {
+                *place = shape;
+            }
+            begun.push(Proposal { hypothesis: ended.hypothesis.clone(), point });
+        }
+        first += part.len();
+    }
+    begun
+}
+
 /// Puts what a member tends to in its place, with the member's size: friction that begins from nothing often ends where it
 /// stops the motion half a swing too early or too late.
 pub(crate) fn simplified(data: &Data, base: &Fit, candidates: &[Candidate]) -> Vec<Proposal> {
@@ -144,7 +168,7 @@ pub(crate) fn left_over(data: &Data, ended: &Fit) -> Option<Proposal> {
 pub(crate) fn begins_closer(data: &Data, pool: &Archive, proposal: &Proposal) -> bool {
     pool.find(&proposal.hypothesis.candidates).is_some_and(|known| {
         let begin = squares(data, &proposal.hypothesis, &proposal.point);
-        begin.is_ok_and(|begin| begin < CLOSER * known.squares)
+        begin.is_ok_and(|begin| begin < CLOSER * known.squares || known.nats_behind(begin) > SURELY)
     })
 }
 

@@ -2,12 +2,12 @@
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{Weighed, best_if_nothing_is_left};
-use crate::fit::fitted::{Fit, Point, extended};
+use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::archive::{Archive, vanished};
-use crate::search::proposals::{fit_all, generalized, left_over, proposal};
+use crate::search::proposals::{Proposal, fit_all, generalized, left_over, proposal};
 use rayon::prelude::*;
 
 /// Sets that are refined in any case.
@@ -122,20 +122,8 @@ pub(crate) fn without(
     keep: impl Fn(usize) -> bool,
     effort: Stopping,
 ) -> Option<Fit> {
-    let parts = full.hypothesis.parts(&data.facts, &full.point.globals);
-    let members: Vec<_> = full
-        .hypothesis
-        .candidates
-        .iter()
-        .zip(parts)
-        .enumerate()
-        .filter(|(index, _)| keep(*index))
-        .map(|(_, (candidate, part))| (*candidate, part.to_vec()))
-        .collect();
-    let candidates: Vec<_> = members.iter().map(|(candidate, _)| *candidate).collect();
-    let hypothesis = full.hypothesis.with(&candidates);
-    let calibrated = full.point.globals.iter().copied().take(full.hypothesis.calibrated.len());
-    let globals = calibrated.chain(members.into_iter().flat_map(|(_, part)| part)).collect();
-    let starts = full.point.starts.iter().map(|start| extended(start, &hypothesis)).collect();
-    fit(data, &hypothesis, Point { globals, starts }, Moving::All, effort).ok()
+    let members = full.hypothesis.candidates.iter().enumerate();
+    let gone: Vec<Candidate> = members.filter(|(index, _)| !keep(*index)).map(|(_, own)| *own).collect();
+    let Proposal { hypothesis, point } = proposal(data, full, &gone, &[]);
+    fit(data, &hypothesis, point, Moving::All, effort).ok()
 }

@@ -18,6 +18,7 @@ use crate::model::hypothesis::{Calibrated, Hypothesis};
 use crate::model::matrices::solve;
 use crate::search::archive::Archive;
 use crate::search::proposals::CLOSER;
+use dynamics::weak_form::test_function;
 use dynamics::{Coefficients, Input};
 use nalgebra::DMatrix;
 use record::Quantity;
@@ -26,6 +27,9 @@ use std::f64::consts::TAU;
 /// Length of a bump in periods, and how many begin within its length.
 const PERIODS: f64 = 0.75;
 const OVERLAP: f64 = 4.0;
+
+/// Exponent of a bump (1 − s²)ⁿ.
+const EXPONENT: i32 = 4;
 
 /// Fewest samples that a bump is integrated over.
 const FEWEST: usize = 8;
@@ -250,7 +254,7 @@ fn slopes(times: &[f64], values: &[f64]) -> Vec<f64> {
     std::iter::once(first).chain(inner).chain([last]).take(times.len()).collect()
 }
 
-/// Weights of the samples in the integrals of a function times φ, φ̇ and φ̈, with φ = (1 − s²)⁴ for |s| < 1.
+/// Weights of the samples in the integrals of a function times φ, φ̇ and φ̈, with φ = (1 − s²)ⁿ for |s| < 1.
 struct Bump {
     first: usize,
     weights: Vec<[f64; 3]>,
@@ -269,11 +273,8 @@ impl Bump {
             // φ is 0 at the ends of a segment.
             let before = at.checked_sub(1).and_then(|before| times.get(before)).unwrap_or(&time);
             let width = 0.5 * (times.get(at + 1).unwrap_or(&time) - before);
-            let s = (time - center) / half;
-            let rest = 1.0 - s * s;
-            let slope = -8.0 * s * rest.powi(3) / half;
-            let bend = (48.0 * s * s - 8.0 * rest) * rest * rest / (half * half);
-            Some([rest.powi(4), slope, bend].map(|phi| phi * width))
+            let [phi, slope, bend] = test_function((time - center) / half, EXPONENT);
+            Some([phi, slope / half, bend / (half * half)].map(|phi| phi * width))
         };
         Some(Self { first, weights: (first..end).filter_map(weight).collect() })
     }

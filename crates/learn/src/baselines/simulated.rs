@@ -1,7 +1,7 @@
 //! Simulators as models: the nominal one as it is, recalibrated, repaired by a diagnosis, and the true law fitted
 //! exactly.
 
-use crate::data::{DataSet, InputHold, Trajectory};
+use crate::data::{DataSet, Trajectory};
 use crate::flow::{Fit, Shooter, Shooting, Shot, State, first_guess, fit};
 use crate::judge::validation_error;
 use crate::{Ahead, Coefficient, Context, Fitted, LearnError, Model, Past, Place, Predicted, Torque};
@@ -35,20 +35,13 @@ pub fn system_of(nominal: &NominalSimulator) -> Result<System, LearnError> {
     Ok(System::new(*nominal.nominal(), acting)?)
 }
 
-fn hold_of(data: &DataSet) -> Hold {
-    match data.hold {
-        InputHold::Zero => Hold::Zero,
-        InputHold::Linear => Hold::Linear,
-    }
-}
-
 fn input_of(times_s: &[f64], values: Option<&[f64]>, hold: Hold) -> Result<Option<Input>, LearnError> {
     Ok(values.map(|values| Input::new(times_s.to_vec(), values.to_vec(), hold)).transpose()?)
 }
 
 impl Simulated {
     fn new(system: System, data: &DataSet, fitted: usize) -> Self {
-        Self { system, hold: hold_of(data), period_s: data.period_s, fitted, coefficients: Vec::new() }
+        Self { system, hold: data.hold, period_s: data.period_s, fitted, coefficients: Vec::new() }
     }
 
     /// The state at the past's first sample whose motion lies nearest to it: Gauss–Newton with exact sensitivities.
@@ -218,7 +211,7 @@ fn calibrated(
     let columns = [free, &[Free::StartPosition, Free::StartVelocity]].concat();
     let shooter = SystemShooter {
         model: Motion::new(&system, &columns, Settings::default())?,
-        hold: hold_of(data),
+        hold: data.hold,
         weights: free.len(),
     };
     let start = free.iter().map(|quantity| {
@@ -356,6 +349,6 @@ pub fn repaired(data: &DataSet, context: &Context<'_>) -> Result<Fitted, LearnEr
     let fitted_numbers =
         found.calibration.len() + acting.iter().map(|active| active.values().len()).sum::<usize>();
     let system = System::new(found.repaired.nominal, acting)?;
-    let hold = found.repaired.input_hold.unwrap_or(hold_of(data));
+    let hold = found.repaired.input_hold.unwrap_or(data.hold);
     Ok(fitted(Simulated { hold, ..Simulated::new(system, data, fitted_numbers) }, 1, true))
 }

@@ -14,7 +14,7 @@ pub use set::{DataSet, Making, Scale};
 pub use smoothing::{LocalState, local_states};
 pub(crate) use smoothing::{interpolated, local_state};
 pub use split::{Split, SplitKind};
-pub use trajectory::{InputHold, Trajectory};
+pub use trajectory::Trajectory;
 pub use windows::{Window, windows};
 
 /// A count with its noun.

@@ -2,9 +2,9 @@
 
 use super::period::{noise_floor, period};
 use super::split::split;
-use super::{InputHold, Split, Trajectory, local_states};
+use super::{Split, Trajectory, local_states};
 use crate::LearnError;
-use dynamics::NominalSimulator;
+use dynamics::{Hold, NominalSimulator};
 use serde::{Deserialize, Serialize};
 
 /// Mean and spread of what models see, from the training part.
@@ -38,7 +38,7 @@ pub struct DataSet {
     /// What is believed of the system, where something is.
     pub nominal: Option<NominalSimulator>,
     /// What inputs do between samples.
-    pub hold: InputHold,
+    pub hold: Hold,
     /// Time at the start of a stretch that is given to a model as its past, in seconds.
     pub warm_up_s: f64,
     /// Typical period of the motion, in seconds.
@@ -59,7 +59,7 @@ pub struct Making {
     /// What is believed of the system.
     pub nominal: Option<NominalSimulator>,
     /// What inputs do between samples; kept where it is left open, but see [`crate::data_set`].
-    pub hold: Option<InputHold>,
+    pub hold: Option<Hold>,
     /// Length of the past given to a model, in seconds; a period where it is left open.
     pub warm_up_s: Option<f64>,
     /// Typical period in seconds; read from the training part where it is left open.
@@ -100,7 +100,7 @@ impl DataSet {
             test: parts.test,
             unit: making.unit,
             nominal: making.nominal,
-            hold: making.hold.unwrap_or(InputHold::Zero),
+            hold: making.hold.unwrap_or(Hold::Zero),
             warm_up_s,
             period_s,
             noise,

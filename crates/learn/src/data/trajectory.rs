@@ -1,29 +1,6 @@
 //! One record, or a stretch of it, as learners see it.
 
 use crate::LearnError;
-use serde::{Deserialize, Serialize};
-
-/// What the input does between its samples.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum InputHold {
-    /// It keeps the last value, as a digital controller's output does.
-    #[default]
-    Zero,
-    /// It goes straight to the next value.
-    Linear,
-}
-
-impl InputHold {
-    /// Its name in configurations and results.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Zero => "zero",
-            Self::Linear => "linear",
-        }
-    }
-}
 
 /// Positions over time, with the input where there is one.
 ///

@@ -3,8 +3,9 @@
 use super::field::Field;
 use super::run::Run;
 use super::start::{State, first_guess};
-use crate::data::{DataSet, InputHold, Trajectory};
+use crate::data::{DataSet, Trajectory};
 use crate::{Ahead, Coefficient, LearnError, Model, Past, Place, Predicted, Stored, Tensor, Torque};
+use dynamics::Hold;
 use nalgebra::{DMatrix, Matrix2, Vector2};
 use rand::Rng;
 use rand_distr::{Distribution, StandardNormal};
@@ -19,7 +20,7 @@ pub struct Running {
     /// Typical period in seconds.
     pub period_s: f64,
     /// What inputs do between samples.
-    pub hold: InputHold,
+    pub hold: Hold,
     /// Size of a position beyond which the motion runs away.
     pub bound: f64,
     /// Standard deviation of a measured position about a predicted one.

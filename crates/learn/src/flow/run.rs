@@ -7,8 +7,8 @@
 
 use super::field::{Field, Slope};
 use super::start::State;
-use crate::data::InputHold;
 use crate::{LearnError, Place};
+use dynamics::Hold;
 
 /// Events within a sampling interval beyond which the motion counts as at rest.
 const MOST_EVENTS: usize = 6;
@@ -23,7 +23,7 @@ pub struct Run<'a> {
     /// Longest step in seconds.
     pub longest_step_s: f64,
     /// What the input does between samples.
-    pub hold: InputHold,
+    pub hold: Hold,
     /// Size of a position beyond which the motion runs away.
     pub bound: f64,
 }
@@ -91,7 +91,7 @@ impl Run<'_> {
         // Without an input nothing drives.
         let at = |number: usize| input.and_then(|input| input.get(number)).copied().unwrap_or(0.0);
         for (number, (&from, &to)) in times_s.iter().zip(times_s.iter().skip(1)).enumerate() {
-            let end = if self.hold == InputHold::Linear { at(number + 1) } else { at(number) };
+            let end = if self.hold == Hold::Linear { at(number + 1) } else { at(number) };
             going.interval(to - from, at(number), end);
             if !(going.state.position.abs() <= self.bound && going.state.velocity.is_finite()) {
                 return Err(LearnError::Diverged { time_s: to - first, bound: self.bound });
@@ -282,7 +282,7 @@ mod tests {
     }
 
     fn run<'a>(library: &'a Library, weights: &'a [f64]) -> Run<'a> {
-        Run { field: library, weights, longest_step_s: 0.01, hold: InputHold::Zero, bound: 1e3 }
+        Run { field: library, weights, longest_step_s: 0.01, hold: Hold::Zero, bound: 1e3 }
     }
 
     #[test]

@@ -5,14 +5,15 @@ use super::run::Run;
 use super::shooting::{Shooter, Shot};
 use super::start::State;
 use crate::LearnError;
-use crate::data::{DataSet, InputHold, Trajectory};
+use crate::data::{DataSet, Trajectory};
+use dynamics::Hold;
 
 /// A field that predicts pieces.
 #[derive(Clone, Copy)]
 pub struct FieldShooter<'a> {
     field: &'a dyn Field,
     longest_step_s: f64,
-    hold: InputHold,
+    hold: Hold,
     bound: f64,
 }
 

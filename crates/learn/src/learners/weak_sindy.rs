@@ -10,6 +10,7 @@ use super::library::{Regression, Term, restore};
 use super::sindy::{FIELDS, SparseSettings};
 use crate::data::{DataSet, LocalState, Trajectory, local_states};
 use crate::{Context, Entry, Fitted, Kind, LearnError, Learner, Place};
+use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 
 /// Identifier.
@@ -47,7 +48,7 @@ impl Learner for WeakSindy {
 const MOST_WINDOWS: usize = 4_000;
 
 /// Exponent of the test functions (1 − s²)⁴: smooth enough that sums over samples are integrals.
-const EXPONENT: i32 = 4;
+pub(super) const EXPONENT: i32 = 4;
 
 /// The regression in weak form: a row for each window of one period, every eighth of a period; groups are periods.
 pub(crate) fn regression(data: &DataSet, terms: &[Term]) -> Regression {
@@ -92,7 +93,7 @@ fn weak_row(
     let times = part.times_s();
     for state in inside {
         let s = (state.time_s - center) / half;
-        let [value, slope, curvature] = test_function(s);
+        let [value, slope, curvature] = test_function(s, EXPONENT);
         let (slope, curvature) = (slope / half, curvature / (half * half));
         let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
         let weight = 0.5 * (time(state.sample + 1) - time(state.sample.saturating_sub(1)));
@@ -113,30 +114,4 @@ fn weak_row(
         }
     }
     (row, sum)
-}
-
-/// (1 − s²)ⁿ with its first two derivatives with respect to s; 0 outside of −1 to 1.
-pub(super) fn test_function(s: f64) -> [f64; 3] {
-    let (n, base) = (f64::from(EXPONENT), 1.0 - s * s);
-    if base <= 0.0 {
-        return [0.0; 3];
-    }
-    let (low, middle) = (base.powi(EXPONENT - 2), base.powi(EXPONENT - 1));
-    [base.powi(EXPONENT), -2.0 * n * s * middle, -2.0 * n * middle + 4.0 * n * (n - 1.0) * s * s * low]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::test_function;
-
-    #[test]
-    fn a_test_function_has_the_derivatives_it_states() {
-        for s in [-0.9, -0.3, 0.0, 0.5, 0.99] {
-            let at = |s: f64| test_function(s);
-            let slope = (at(s + 1e-6)[0] - at(s - 1e-6)[0]) / 2e-6;
-            let curvature = (at(s + 1e-6)[1] - at(s - 1e-6)[1]) / 2e-6;
-            assert!((at(s)[1] - slope).abs() < 1e-7 && (at(s)[2] - curvature).abs() < 1e-7, "{s}");
-        }
-        assert_eq!(test_function(1.5), [0.0; 3]);
-    }
 }

@@ -3,9 +3,10 @@
 use super::Settings;
 use super::grid::evened;
 use crate::baselines::Arx;
-use crate::data::{DataSet, InputHold, Scale, Trajectory};
+use crate::data::{DataSet, Scale, Trajectory};
 use crate::{Ahead, LearnError, Model, Past};
 use burn::tensor::{Device, Tensor};
+use dynamics::Hold;
 use neural::tensor;
 use serde::{Deserialize, Serialize};
 
@@ -33,7 +34,7 @@ pub struct Frame {
     /// True where there is an input.
     pub driven: bool,
     /// Behavior of inputs between samples.
-    pub hold: InputHold,
+    pub hold: Hold,
     /// Scales of the training part.
     pub scale: Scale,
     /// The linear prediction of a block in scaled units, row-major: past positions by block.

@@ -1,10 +1,11 @@
 //! Even times: sequence models count samples, records have stamps.
 
-use crate::data::{InputHold, Trajectory, interpolated};
+use crate::data::{Trajectory, interpolated};
 use crate::{Ahead, LearnError, Past};
+use dynamics::Hold;
 
 /// Mean of an input from `time` on for `interval` seconds; before the first and after the last sample it stays.
-fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f64, f64)) -> f64 {
+fn averaged(times: &[f64], input: &[f64], hold: Hold, (time, interval): (f64, f64)) -> f64 {
     let at = |time: f64| {
         let next = times.partition_point(|&other| other <= time).min(times.len().saturating_sub(1));
         let before = next.saturating_sub(1);
@@ -13,9 +14,9 @@ fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f6
         let (from, to) = (pick(times, before), pick(times, next));
         let share = if to > from { ((time - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 };
         match hold {
-            InputHold::Linear => pick(input, before) + share * (pick(input, next) - pick(input, before)),
-            InputHold::Zero if share < 1.0 => pick(input, before),
-            InputHold::Zero => pick(input, next),
+            Hold::Linear => pick(input, before) + share * (pick(input, next) - pick(input, before)),
+            Hold::Zero if share < 1.0 => pick(input, before),
+            Hold::Zero => pick(input, next),
         }
     };
     // Midpoints: where stamps are even, the first of them reads the sample itself.
@@ -25,7 +26,7 @@ fn averaged(times: &[f64], input: &[f64], hold: InputHold, (time, interval): (f6
 }
 
 /// A trajectory at even times from its first sample on.
-pub(super) fn evened(part: &Trajectory, interval: f64, hold: InputHold) -> Result<Trajectory, LearnError> {
+pub(super) fn evened(part: &Trajectory, interval: f64, hold: Hold) -> Result<Trajectory, LearnError> {
     // A trajectory has samples.
     let first = part.times_s().first().copied().unwrap_or_default();
     let count = (part.duration_s() / interval * (1.0 + 1e-9)).floor() as usize + 1;
@@ -60,7 +61,7 @@ pub(super) fn past_positions(past: &Past<'_>, interval: f64, count: usize) -> Re
 /// without an input.
 pub(super) fn inputs(
     (past, ahead): (&Past<'_>, &Ahead<'_>),
-    hold: InputHold,
+    hold: Hold,
     interval: f64,
     [before, after]: [usize; 2],
 ) -> Option<Vec<f64>> {
@@ -88,7 +89,7 @@ mod tests {
         let values: Vec<f64> = times.iter().map(|time| (7.0 * time).sin()).collect();
         let input: Vec<f64> = times.iter().map(|time| (5.0 * time).cos()).collect();
         let part = Trajectory::new("a", times, values, Some(input)).unwrap();
-        let even = evened(&part, 0.02, InputHold::Zero).unwrap();
+        let even = evened(&part, 0.02, Hold::Zero).unwrap();
         assert_eq!(even.len(), 50);
         for (own, expected) in even.values().iter().zip(part.values()) {
             assert!((own - expected).abs() < 1e-9);

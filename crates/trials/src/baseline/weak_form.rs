@@ -10,6 +10,7 @@
 
 use super::BaselineRecord;
 use dynamics::Nominal;
+use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -166,7 +167,9 @@ impl<'a> Motion<'a> {
             let next = at(times, (index + 1).min(times.len() - 1));
             let before = at(times, index.saturating_sub(1));
             let width = 0.5 * (next - before);
-            let [bump, slope, curvature] = test_function(time - center, half).map(|value| value * width);
+            let [bump, slope, curvature] = test_function((time - center) / half, EXPONENT);
+            let weights = [bump, slope / half, curvature / (half * half)];
+            let [bump, slope, curvature] = weights.map(|value| value * width);
             let position = at(&self.record.values, index) - rest;
             let velocity = at(&self.velocity, index);
             // Nothing drives a record without an input.
@@ -208,18 +211,6 @@ impl<'a> Motion<'a> {
         }
         row
     }
-}
-
-/// The test function (1 − s²)^p at s = `time`/`half`, its slope and its second derivative.
-fn test_function(time: f64, half: f64) -> [f64; 3] {
-    let s = (time / half).clamp(-1.0, 1.0);
-    let p = f64::from(EXPONENT);
-    let bump = (1.0 - s * s).powi(EXPONENT);
-    let slope = -2.0 * p * s * (1.0 - s * s).powi(EXPONENT - 1) / half;
-    let curvature = (4.0 * p * (p - 1.0) * s * s * (1.0 - s * s).powi(EXPONENT - 2)
-        - 2.0 * p * (1.0 - s * s).powi(EXPONENT - 1))
-        / (half * half);
-    [bump, slope, curvature]
 }
 
 /// Slopes of straight lines through the samples within half a window: even windows leave no error of second order.

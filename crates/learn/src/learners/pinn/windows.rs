@@ -2,10 +2,11 @@
 
 use super::trajectory::Shape;
 use crate::Place;
-use crate::data::{DataSet, InputHold, Scale, Trajectory, interpolated, local_states};
+use crate::data::{DataSet, Scale, Trajectory, interpolated, local_states};
 use crate::flow::{Field, Slope};
 use crate::learners::library::{Library, Term};
 use crate::linear::{inverse, raised, solve};
+use dynamics::Hold;
 use nalgebra::{DMatrix, DVector};
 
 /// Sizes that the residuals are divided by.
@@ -103,7 +104,7 @@ pub(super) fn stretches(data: &DataSet, jumps: bool, seconds: f64, samples: usiz
 }
 
 impl Window {
-    pub(super) fn new(piece: &Trajectory, hold: InputHold) -> Self {
+    pub(super) fn new(piece: &Trajectory, hold: Hold) -> Self {
         // A piece has more than three samples.
         let first = piece.times_s().first().copied().unwrap_or_default();
         let half_s = (0.5 * piece.duration_s()).max(f64::MIN_POSITIVE);
@@ -119,12 +120,12 @@ impl Window {
 
 /// The input at a time, smooth. One that is held jumps at every sample, which no motion follows: what it feels is the mean
 /// over the interval before.
-fn input_at(piece: &Trajectory, time: f64, hold: InputHold) -> f64 {
+fn input_at(piece: &Trajectory, time: f64, hold: Hold) -> f64 {
     let Some(input) = piece.input() else { return 0.0 };
     let at = |time: f64| interpolated(piece.times_s(), input, time);
     match hold {
-        InputHold::Linear => at(time),
-        InputHold::Zero => {
+        Hold::Linear => at(time),
+        Hold::Zero => {
             let interval = piece.duration_s() / piece.len().saturating_sub(1).max(1) as f64;
             // Simpson's rule.
             (at(time - interval) + 4.0 * at(time - 0.5 * interval) + at(time)) / 6.0

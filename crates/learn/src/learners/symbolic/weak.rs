@@ -1,9 +1,11 @@
 //! Records in weak form, ready for any expression: ∫φ̈·θ = Σ wₖ·∫φ·gₖ over windows of a period.
 
-use super::super::weak_sindy::test_function;
-use crate::data::{InputHold, Trajectory, local_states};
+use super::super::weak_sindy::EXPONENT;
+use crate::data::{Trajectory, local_states};
 use crate::expression::Expression;
 use crate::{LearnError, Place};
+use dynamics::Hold;
+use dynamics::weak_form::test_function;
 use nalgebra::{DMatrix, DVector};
 
 /// States with the windows that they are in.
@@ -17,7 +19,7 @@ pub(super) struct Weak {
 
 impl Weak {
     /// Windows of one period, a quarter of a period apart or as far as keeps them to `most`.
-    pub(super) fn new(parts: &[Trajectory], period_s: f64, hold: InputHold, most: usize) -> Self {
+    pub(super) fn new(parts: &[Trajectory], period_s: f64, hold: Hold, most: usize) -> Self {
         let whole: f64 = parts.iter().map(Trajectory::duration_s).sum();
         let step = (whole / most.max(1) as f64).max(0.25 * period_s);
         let half = 0.5 * period_s;
@@ -35,7 +37,7 @@ impl Weak {
                 let mut weights = Vec::new();
                 // Both places were found among the states.
                 for state in states.get(from..to).unwrap_or_default() {
-                    let [value, _, curvature] = test_function((state.time_s - center) / half);
+                    let [value, _, curvature] = test_function((state.time_s - center) / half, EXPONENT);
                     let time = |at: usize| times.get(at).copied().unwrap_or(state.time_s);
                     let interval = 0.5 * (time(state.sample + 1) - time(state.sample.saturating_sub(1)));
                     let observed = part.values().get(state.sample).copied().unwrap_or(state.position);
@@ -48,8 +50,8 @@ impl Weak {
             places.extend(states.iter().map(|state| {
                 let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1)));
                 let input = match hold {
-                    InputHold::Zero => 0.5 * (state.input + before.copied().unwrap_or(state.input)),
-                    InputHold::Linear => state.input,
+                    Hold::Zero => 0.5 * (state.input + before.copied().unwrap_or(state.input)),
+                    Hold::Linear => state.input,
                 };
                 let direction = state.velocity.signum();
                 Place { position: state.position, velocity: state.velocity, direction, input }

@@ -1,9 +1,10 @@
 //! A first guess of a field's weights without integrating: accelerations matched at states read from the records.
 
 use crate::Place;
-use crate::data::{DataSet, InputHold, LocalState, Trajectory, local_states};
+use crate::data::{DataSet, LocalState, Trajectory, local_states};
 use crate::flow::{Field, Penalty, Slope};
 use crate::linear::{raised, solve};
+use dynamics::Hold;
 use nalgebra::{DMatrix, DVector};
 
 /// States that are matched at most.
@@ -43,8 +44,8 @@ fn matched(part: &Trajectory, data: &DataSet) -> Vec<(Place, f64)> {
     let of_state = |state: LocalState| {
         let before = part.input().and_then(|input| input.get(state.sample.saturating_sub(1))).copied();
         let input = match data.hold {
-            InputHold::Zero => 0.5 * (state.input + before.unwrap_or(state.input)),
-            InputHold::Linear => state.input,
+            Hold::Zero => 0.5 * (state.input + before.unwrap_or(state.input)),
+            Hold::Linear => state.input,
         };
         let direction = state.velocity.signum();
         (Place { position: state.position, velocity: state.velocity, direction, input }, state.acceleration)
