@@ -15,11 +15,13 @@ use crate::evidence::weights::price;
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit, residuals};
 use crate::fit::stopping::Stopping;
+use crate::model::candidate::Candidate;
 use crate::model::matrices::{element, solve};
 use crate::model::projection::Projection;
 use crate::model::tangent::matrix;
 use crate::noise::floor;
 use crate::search::archive::Archive;
+use crate::search::proposals::{Proposal, fit_all, proposal};
 use dynamics::{DynamicsError, Input};
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -77,6 +79,8 @@ impl ClockRates {
             .chain(ranked.iter().skip(BEST).filter(|fit| few(fit)))
             .copied()
             .collect();
+        let alone = ranked.first().map_or_else(Vec::new, |best| alone(data, best, sets));
+        let chosen: Vec<&Fit> = chosen.into_iter().chain(&alone).collect();
         let all: Vec<Rated> =
             chosen.par_iter().filter_map(|fit| rated(segments, data, fit).ok().flatten()).collect();
         let worth = |own: &Rated| {
@@ -131,6 +135,19 @@ impl Data {
         });
         Ok(Self { segments: segments.collect(), inputs: inputs.collect::<Result<_, _>>()?, ..self.clone() })
     }
+}
+
+/// Each member of the best set alone, begun where that ended, if nothing is known of it alone: without the rates it may have had no
+/// size.
+fn alone(data: &Data, best: &Fit, known: &Archive) -> Vec<Fit> {
+    let members: Vec<Candidate> = best.hypothesis.counted().copied().collect();
+    let without = |member: &Candidate| {
+        let others: Vec<Candidate> = members.iter().copied().filter(|own| own != member).collect();
+        proposal(data, best, &others, &[])
+    };
+    let begun: Vec<Proposal> = members.iter().map(without).collect();
+    let unknown = begun.into_iter().filter(|own| known.find(&own.hypothesis.candidates).is_none());
+    fit_all(data, &unknown.collect::<Vec<_>>(), |_| Stopping::SEARCH)
 }
 
 /// The time that it is where a clock that is fast by a rate shows another.

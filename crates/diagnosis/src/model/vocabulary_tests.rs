@@ -58,8 +58,14 @@ fn parameters_are_the_laws_own() {
 }
 
 /// A swing of 22 rad/s that decays at 0.1/s, released once.
-const SWING: MainMode =
-    MainMode { frequency: 22.0, decay_rate: 0.1, inertia: 1.0, starts_once: true, repeats: None };
+const SWING: MainMode = MainMode {
+    frequency: 22.0,
+    decay_rate: 0.1,
+    inertia: 1.0,
+    resolution: 0.25,
+    starts_once: true,
+    repeats: None,
+};
 
 /// Four repetitions of a driven motion at 1.01 rad/s: whatever depends on it has lines at 2.02, 3.03, ...
 #[test]
@@ -92,6 +98,8 @@ fn a_harmonic_is_no_second_body() {
     // Near the swing itself no decay tells it apart, and a body that hardly swings is none.
     assert!(!is_itself(22.0, 2.0, &swing));
     assert!(!is_itself(60.0, 50.0, &swing));
+    // Within half a turn of it over the record it is the swing's own, by clocks that differ.
+    assert!(is_itself(22.2, 0.1, &swing) && !is_itself(22.2, 0.1, &MainMode { resolution: 0.5, ..swing }));
 }
 
 #[test]

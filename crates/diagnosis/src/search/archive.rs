@@ -4,6 +4,7 @@ use crate::data::segments::Data;
 use crate::evidence::score::score;
 use crate::fit::fitted::Fit;
 use crate::model::candidate::{Candidate, MainMode};
+use std::f64::consts::TAU;
 
 /// Every set that was fitted, best fit of each.
 #[derive(Debug, Clone, Default)]
@@ -88,22 +89,15 @@ pub(crate) fn is_another(data: &Data, fit: &Fit) -> bool {
     let parts = fit.hypothesis.parts(&data.facts, &fit.point.globals);
     let mut members = fit.hypothesis.candidates.iter().zip(parts);
     let starts_once = data.segments.len() <= data.inputs.len();
-    let swing = match fit.hypothesis.swinging(&data.facts, &fit.point.globals) {
-        Ok((nominal, stiffness)) => MainMode {
-            frequency: (stiffness / nominal.inertia()).max(0.0).sqrt(),
-            decay_rate: 0.5 * nominal.damping() / nominal.inertia(),
-            inertia: nominal.inertia(),
-            starts_once,
-            repeats: data.facts.repeats,
-        },
-        Err(_) => MainMode {
-            frequency: data.facts.frequency,
-            decay_rate: f64::INFINITY,
-            inertia: data.facts.inertia,
-            starts_once,
-            repeats: data.facts.repeats,
-        },
+    let (frequency, decay_rate, inertia) = match fit.hypothesis.swinging(&data.facts, &fit.point.globals) {
+        Ok((nominal, stiffness)) => {
+            let inertia = nominal.inertia();
+            ((stiffness / inertia).max(0.0).sqrt(), 0.5 * nominal.damping() / inertia, inertia)
+        }
+        Err(_) => (data.facts.frequency, f64::INFINITY, data.facts.inertia),
     };
+    let (resolution, repeats) = (TAU / data.facts.duration, data.facts.repeats);
+    let swing = MainMode { frequency, decay_rate, inertia, resolution, starts_once, repeats };
     members.any(|(candidate, part)| !candidate.is_itself(part, &swing))
 }
 

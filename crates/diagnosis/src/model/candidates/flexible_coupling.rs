@@ -96,8 +96,8 @@ impl CandidateLaw for FlexibleCoupling {
     }
 
     /// A second body that hardly swings at all is a drift, and one whose line in the spectrum lies within its
-    /// own half-width of the swing's or of a harmonic is no second line: it shows a damping or a force that
-    /// changes with amplitude. Only where it is struck once, at a record's beginning, does its decay tell it
+    /// own half-width of the swing's or of a harmonic, or comes to less than half a turn beside it, is no second line: it shows a damping or
+    /// a force that changes with amplitude, or clocks that differ. Only where it is struck once, at a record's beginning, does its decay tell it
     /// from the harmonic of order n: that one decays n times as fast as the swing. At the ends of its
     /// parameters' ranges one whose mode does not decay within the records is a forcing, one much slower than
     /// the swing a drift.
@@ -107,7 +107,7 @@ impl CandidateLaw for FlexibleCoupling {
         let order = (line / swing.frequency).round().max(1.0);
         // Beside the swing itself it has to stand clear of the swing's own line too.
         let width = if order > 1.0 { rate } else { rate.max(swing.decay_rate) };
-        let apart = (line - order * swing.frequency).abs() > width;
+        let apart = (line - order * swing.frequency).abs() > width.max(0.5 * swing.resolution);
         let harmonic = order * swing.decay_rate;
         let differs = rate > ANOTHER_DECAY * harmonic || rate * ANOTHER_DECAY < harmonic;
         let decays_apart = swing.starts_once && order > 1.0 && differs;

@@ -10,6 +10,8 @@ pub(crate) struct MainMode {
     /// Decay rate of its amplitude in 1/s.
     pub(crate) decay_rate: f64,
     pub(crate) inertia: f64,
+    /// Angular frequencies that the longest record is too short to tell apart: lines that close come to less than a turn between them.
+    pub(crate) resolution: f64,
     /// Whether each record has one start state, at its beginning.
     pub(crate) starts_once: bool,
     /// How a driven motion repeats.
