@@ -25,8 +25,10 @@ const BEND: f64 = 1.35;
 /// other.
 const STEP: f64 = 0.85;
 
-/// Part of a record's samples beyond which outliers are no exceptions.
+/// Rate beyond which outliers are no exceptions, and by how many standard deviations of a count it has to be exceeded: of few samples
+/// more are wrong by chance.
 const MOST: f64 = 0.02;
+const BY_CHANCE: f64 = 3.0;
 
 /// Rounds of leaving out: a wrong sample hides another within its neighborhood.
 const ROUNDS: usize = 3;
@@ -61,8 +63,9 @@ pub(crate) fn kept(observations: &Observations) -> Vec<bool> {
             break;
         }
     }
-    let dropped = kept.iter().filter(|kept| !**kept).count();
-    if dropped as f64 > MOST * observations.len() as f64 { everything } else { kept }
+    let dropped = kept.iter().filter(|kept| !**kept).count() as f64;
+    let most = MOST * observations.len() as f64;
+    if dropped > most + BY_CHANCE * most.sqrt() { everything } else { kept }
 }
 
 /// Standard deviation of the white noise of samples, from their distances to their neighbors; rounding is part of it,
@@ -317,6 +320,19 @@ mod tests {
             errors.iter().zip(&kept).filter(|(error, kept)| error.abs() < 2.0 * NOISE && !**kept).count();
         assert!(found as f64 >= 0.9 * large as f64, "{found} of {large}");
         assert_eq!(blamed, 0);
+    }
+
+    /// Of 250 samples seven are wrong by chance where one in fifty is; of 30 no noise of its own is left.
+    #[test]
+    fn of_few_samples_more_may_be_wrong() {
+        let times = even(250);
+        for (every, found) in [(35, 7), (8, 0)] {
+            let noise = normal(250, 8);
+            let wrong = |at: usize| if at % every == 5 { 60.0 * NOISE } else { 0.0 };
+            let values = times.iter().zip(noise).enumerate();
+            let values = values.map(|(at, (time, noise))| swing(*time) + noise + wrong(at)).collect();
+            assert_eq!(named(times.clone(), values), found, "{every}");
+        }
     }
 
     #[test]

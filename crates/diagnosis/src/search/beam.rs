@@ -361,10 +361,10 @@ fn moves(asked: &Asked<'_>, base: &Fit, is_best: bool) -> (Vec<Proposal>, Vec<Fi
     let &Asked { data, candidates, .. } = asked;
     let mut own = around(asked, base, is_best);
     own.extend(simplified(data, base, candidates));
+    own.extend(generalized(data, base, candidates));
     if !is_best {
         return (own, Vec::new());
     }
-    own.extend(generalized(data, base, candidates));
     let (proposals, dropped) = swaps(asked, base);
     own.extend(proposals);
     (own, dropped)
