@@ -2,8 +2,9 @@
 //!
 //! What no law of the vocabulary explains is soaked up by several effects at once, and each of these then seems to be
 //! needed. A law that is none of them but explains the same in one piece shows that they are not. Such laws are fitted
-//! wherever the best set of all has several members or one that not every mechanism has, beside the best set of each size that is made of plain
-//! laws and the measuring chain, and in the place of each class of the best of these: a torque along the position, and a damping and a stiffness of higher order, alone and together.
+//! wherever the best set of all has several members or one that not every mechanism has, beside the best sets of plain laws and in the place of
+//! each class of the best of them: a torque along the position, and a damping and a stiffness of higher order, alone and together. The
+//! first is also fitted beside the best set of each size that is made of plain laws and of what the measuring chain does.
 
 use crate::data::segments::Data;
 use crate::evidence::weights::{EVEN, Weighed, Weighing};
@@ -15,7 +16,10 @@ use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use rayon::prelude::*;
 
-/// Takes sets with a torque without a name into an archive.
+/// Sets of plain laws that they are fitted beside.
+const SETS: usize = 2;
+
+/// Takes the best sets of plain laws with a torque without a name into an archive.
 pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, vocabulary: usize) {
     let weighing = Weighing::of(data, calibrated, archive, vocabulary);
     let weighed = weighing.weigh(archive);
@@ -24,8 +28,11 @@ pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, voc
     if weighed.first().is_none_or(|best| is_plain(best.fit)) {
         return;
     }
-    let bases = bases(&weighed);
-    let along = bases.par_iter().map(|set| {
+    let plain: Vec<&Fit> =
+        weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain()).take(SETS).collect();
+    let bases = bases(&weighed, &plain);
+    let simple = of_each_size(&weighed, &bases);
+    let along = bases.par_iter().chain(&simple).map(|set| {
         let time = set.autocorrelation_time();
         beside(data, set, time, EVEN).ok().flatten()
     });
@@ -40,20 +47,26 @@ pub(crate) fn nameless(data: &Data, calibrated: &Fit, archive: &mut Archive, voc
     }
 }
 
-/// Of sets of laws that every mechanism has, and of what the measuring chain does, the best of each size; and for each class of
-/// the best of all these the best without it. What a larger set explains beside a smaller one may be the torque without a name.
-fn bases<'b>(weighed: &[Weighed<'b>]) -> Vec<&'b Fit> {
+/// The best set of each size that is made of plain laws and of what the measuring chain does, but for those that are `known`: what a
+/// larger one explains beside it may be a torque along the position.
+fn of_each_size<'b>(weighed: &[Weighed<'b>], known: &[&'b Fit]) -> Vec<&'b Fit> {
     let is_simple = |own: &Candidate| own.is_plain() || own.system().is_none();
-    let all =
-        || weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.candidates.iter().all(is_simple));
-    let mut bases: Vec<&Fit> = Vec::new();
     let size = |fit: &Fit| fit.hypothesis.counted().count();
-    for fit in all() {
-        if !bases.iter().any(|known| size(known) == size(fit)) {
-            bases.push(fit);
+    let mut best: Vec<&Fit> = Vec::new();
+    for fit in weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.counted().all(is_simple)) {
+        if !best.iter().any(|other| size(other) == size(fit)) {
+            best.push(fit);
         }
     }
-    for member in all().next().iter().flat_map(|best| &best.hypothesis.candidates) {
+    best.retain(|fit| !known.iter().any(|other| other.hypothesis == fit.hypothesis));
+    best
+}
+
+/// Some sets, and for each class of the first of these the best plain set without it.
+fn bases<'b>(weighed: &[Weighed<'b>], plain: &[&'b Fit]) -> Vec<&'b Fit> {
+    let mut bases = plain.to_vec();
+    let all = || weighed.iter().map(|own| own.fit).filter(|fit| fit.hypothesis.is_plain());
+    for member in plain.first().iter().flat_map(|best| &best.hypothesis.candidates) {
         let class = member.evidence_class();
         let without = all().find(|fit| fit.hypothesis.lacks(class));
         bases.extend(without.filter(|own| !bases.iter().any(|known| known.hypothesis == own.hypothesis)));
