@@ -330,6 +330,7 @@ pub(crate) fn go_on(asked: &Asked<'_>, explored: &mut Explored) {
 /// or too late has a hollow of its own for each such half swing, and what is added there mends what it does.
 fn reshape(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
+    // Of no set nothing is begun.
     let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
     for fit in fit_all(data, &begun, |_| Stopping::SEARCH) {
         pool.admit(data, fit);
