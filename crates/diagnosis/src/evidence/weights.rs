@@ -67,8 +67,7 @@ where
 
 /// Log likelihood ratio of a fit over another on the same data, tempered.
 pub(crate) fn ratio(fit: &Fit, other: &Fit, time: f64) -> f64 {
-    let worth = fit.samples() as f64 / time;
-    0.5 * worth * (other.squares.max(f64::MIN_POSITIVE) / fit.squares.max(f64::MIN_POSITIVE)).ln()
+    other.nats_behind(fit.squares, time)
 }
 
 /// What sets of effects are weighed by on the same samples.

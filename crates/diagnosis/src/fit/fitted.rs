@@ -52,10 +52,10 @@ impl Fit {
         self.point.freedom(self.samples())
     }
 
-    /// Log likelihood that other squares of the same samples are ahead of this fit's, at the autocorrelation time of what it leaves.
-    pub(crate) fn nats_behind(&self, squares: f64) -> f64 {
-        let worth = self.samples() as f64 / self.autocorrelation_time();
-        0.5 * worth * (self.squares / squares.max(f64::MIN_POSITIVE)).ln()
+    /// Log likelihood that other squares of the same samples are ahead of this fit's, tempered by an autocorrelation time.
+    pub(crate) fn nats_behind(&self, squares: f64, time: f64) -> f64 {
+        let worth = self.samples() as f64 / time;
+        0.5 * worth * (self.squares.max(f64::MIN_POSITIVE) / squares.max(f64::MIN_POSITIVE)).ln()
     }
 
     pub(crate) fn autocorrelation_time(&self) -> f64 {

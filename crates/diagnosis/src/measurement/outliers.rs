@@ -322,7 +322,7 @@ mod tests {
         assert_eq!(blamed, 0);
     }
 
-    /// Of 250 samples seven are wrong by chance where one in fifty is; of 30 no noise of its own is left.
+    /// Of 250 samples seven are wrong by chance where one in fifty is; thirty are no exceptions.
     #[test]
     fn of_few_samples_more_may_be_wrong() {
         let times = even(250);

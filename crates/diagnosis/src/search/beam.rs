@@ -113,9 +113,7 @@ fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> b
 
 /// Whether a linearized gain would count by itself, however much structure is left beside it.
 pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
-    let left = (base.squares - gain).max(f64::MIN_POSITIVE);
-    let score = 0.5 * base.samples() as f64 / time * (base.squares / left).ln();
-    score > PROMISE * threshold + looked.ln()
+    base.nats_behind(base.squares - gain, time) > PROMISE * threshold + looked.ln()
 }
 
 /// The same of candidates that no columns stand for: those bring start states of their own into every

@@ -168,7 +168,8 @@ pub(crate) fn left_over(data: &Data, ended: &Fit) -> Option<Proposal> {
 pub(crate) fn begins_closer(data: &Data, pool: &Archive, proposal: &Proposal) -> bool {
     pool.find(&proposal.hypothesis.candidates).is_some_and(|known| {
         let begin = squares(data, &proposal.hypothesis, &proposal.point);
-        begin.is_ok_and(|begin| begin < CLOSER * known.squares || known.nats_behind(begin) > SURELY)
+        let time = known.autocorrelation_time();
+        begin.is_ok_and(|begin| begin < CLOSER * known.squares || known.nats_behind(begin, time) > SURELY)
     })
 }
 
