@@ -19,7 +19,11 @@ fn main() -> Result<(), Error> {
         let found = estimate(&record, method, &EstimateOptions::default())?;
         let error =
             found.damping_ratio_std_error.map_or("none stated".to_owned(), |error| format!("{error:.1e}"));
-        println!("{method}: ζ = {:.6}, standard error {error}, {}", found.damping_ratio, found.reached);
+        println!(
+            "{method}: ζ = {:.6}, standard error {error}, {}",
+            found.damping_ratio,
+            found.reached.in_words()
+        );
         if let Some(law) = &found.equation {
             println!("    it found the law {law}");
         }

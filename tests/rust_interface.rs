@@ -65,7 +65,7 @@ fn an_estimate_is_that_of_the_command_line() {
         let found = estimate(&record, method, &EstimateOptions::default()).unwrap();
         assert_eq!(told["estimate"]["zeta"].as_f64(), Some(found.damping_ratio));
         assert_eq!(told["estimate"]["zeta_std_error"].as_f64(), found.damping_ratio_std_error);
-        assert_eq!(told["estimate"]["reached"].as_str(), Some(found.reached));
+        assert_eq!(told["estimate"]["reached"].as_str(), Some(found.reached.name()));
         assert_eq!(told["error_percent"].as_f64(), Some(found.error_percent));
         assert_eq!(told["envelope"]["peaks"].as_u64(), Some(found.peaks as u64));
     }

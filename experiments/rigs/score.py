@@ -35,7 +35,7 @@ LISTED = 0.01
 class Case:
     """A truth with its answer, nuisances struck."""
 
-    def __init__(self, name, truth, answer):
+    def __init__(self, name, truth, answer, least=0.0):
         self.id, self.truth, self.kind, self.answered = name, truth, truth["kind"], answer is not None
         answer = answer or {"verdict": {"status": "no answer", "effects": []}, "effects": []}
         nuisances = set(truth["nuisances"]) - {effect["id"] for effect in truth["effects"]}
@@ -59,6 +59,10 @@ class Case:
             for name, value in self.probability.items():
                 key = CLASSES.get(name, name)
                 self.classes[key] = min(1.0, self.classes.get(key, 0.0) + value)
+        likely = [name for name in self.named if self.classes.get(CLASSES.get(name, name), 0.0) >= least]
+        if self.named and not likely:
+            self.status = "unknown"
+        self.named = likely
         self.named_classes = {CLASSES.get(name, name) for name in self.named}
 
 
@@ -156,11 +160,11 @@ def table(cases):
     return rows
 
 
-def read(answers, truths):
+def read(answers, truths, least=0.0):
     cases = []
     for file in sorted(truths.glob("*.json")):
         answer = answers / file.stem / "diagnosis.json"
-        cases.append(Case(file.stem, json.loads(file.read_text()), json.loads(answer.read_text()) if answer.exists() else None))
+        cases.append(Case(file.stem, json.loads(file.read_text()), json.loads(answer.read_text()) if answer.exists() else None, least))
     return cases
 
 
@@ -169,9 +173,10 @@ def main():
     parser.add_argument("answers", type=Path)
     parser.add_argument("truths", type=Path)
     parser.add_argument("--cases", action="store_true", help="print every case too")
+    parser.add_argument("--least", type=float, default=0.0, help="strike names whose class has a smaller probability")
     parser.add_argument("--only-answered", action="store_true", help="leave out cases without an answer, as while a batch runs")
     arguments = parser.parse_args()
-    cases = read(arguments.answers, arguments.truths)
+    cases = read(arguments.answers, arguments.truths, arguments.least)
     if arguments.only_answered:
         cases = [case for case in cases if case.answered]
     if arguments.cases:

@@ -92,7 +92,7 @@ fn told<'py>(py: Python<'py>, found: &Estimate) -> PyResult<Bound<'py, PyDict>> 
     told.set_item("peaks", found.peaks)?;
     told.set_item("least_squares", found.least_squares)?;
     told.set_item("error_percent", found.error_percent)?;
-    told.set_item("reached", found.reached)?;
+    told.set_item("reached", found.reached.name())?;
     told.set_item("because", &found.because)?;
     told.set_item("steps", found.steps)?;
     told.set_item("equation", found.equation.as_deref())?;

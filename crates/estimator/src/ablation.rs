@@ -3,30 +3,6 @@
 use rand::RngExt;
 use seed::Seed;
 
-/// A part of an estimator that is taken away for a fit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub enum Ablation {
-    /// Every parameter of the learned part (network, process, expression) is held at zero; what stands beside it,
-    /// such as a straight line, is trained.
-    LearnedPartAtZero,
-    /// What the learned part reads is replaced by white noise of the same range; its targets stay as they are.
-    NoiseForInput,
-}
-
-impl Ablation {
-    /// Both, in the order of tables.
-    pub const ALL: [Self; 2] = [Self::LearnedPartAtZero, Self::NoiseForInput];
-
-    /// The name as files write it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::LearnedPartAtZero => "learned_part_at_zero",
-            Self::NoiseForInput => "noise_for_input",
-        }
-    }
-}
-
 /// White noise, uniform between the least and the largest of `values`, one number for each.
 pub(crate) fn noise_like(values: &[f64], seed: &Seed) -> Vec<f64> {
     let mut generator = seed.generator();

@@ -1,7 +1,8 @@
 //! What an estimator is given besides the envelope.
 
-use crate::ablation::{Ablation, noise_like};
+use crate::ablation::noise_like;
 use crate::error::FitError;
+use results::Ablation;
 use seed::Seed;
 use serde::Serialize;
 use serde::de::DeserializeOwned;

@@ -4,6 +4,7 @@ use crate::context::FitContext;
 use crate::error::FitError;
 use crate::estimate::Estimate;
 use envelope::Envelope;
+use results::Estimand;
 use settings::{Field, Resolved, SettingsError};
 
 /// Property of an estimator, read by the test battery and the tables, so that nobody has
@@ -27,32 +28,6 @@ pub enum Tag {
     Ablation,
     /// The floor row of tables: not meant to be right.
     Null,
-}
-
-/// Relation of an estimator's converged value to the slope of the least-squares line through ln A.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Estimand {
-    /// It is that slope: a converged fit that differs from certified least squares is wrong.
-    LeastSquares,
-    /// It approximates that slope by a skill learned beforehand: it differs by the error of its training.
-    Approximation,
-    /// It is something else, and may differ from least squares.
-    Own,
-    /// It is nothing: the floor row.
-    Nothing,
-}
-
-impl Estimand {
-    /// The name as files write it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::LeastSquares => "least_squares",
-            Self::Approximation => "approximation",
-            Self::Own => "own",
-            Self::Nothing => "nothing",
-        }
-    }
 }
 
 /// An estimator with its settings in force.

@@ -1,36 +1,8 @@
 //! What an estimator gives.
 
+use results::Reached;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, StudentsT};
-
-/// State in which a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Reached {
-    /// The method's own condition for a solution holds.
-    Converged,
-    /// The budget ended first.
-    BudgetSpent,
-    /// The loss stopped being finite or grew without bound; the best state before is reported.
-    Diverged,
-    /// Somebody asked to stop; the best state so far is reported.
-    Interrupted,
-    /// No step improves the fit, and the method's own condition does not hold either.
-    Stalled,
-}
-
-impl Reached {
-    /// The name as results write it.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Converged => "converged",
-            Self::BudgetSpent => "budget_spent",
-            Self::Diverged => "diverged",
-            Self::Interrupted => "interrupted",
-            Self::Stalled => "stalled",
-        }
-    }
-}
 
 /// State in which a fit ended, and the reason.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

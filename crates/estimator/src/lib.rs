@@ -16,9 +16,9 @@ mod error;
 mod estimate;
 mod scaling;
 
-pub use ablation::Ablation;
 pub use context::{Cancel, Checkpoints, FitContext, Observer, Silent, Step};
-pub use entry::{Entry, Estimand, Estimator, Tag};
+pub use entry::{Entry, Estimator, Tag};
 pub use error::FitError;
-pub use estimate::{Estimate, ModelFile, Prediction, Reached, Stop, Uncertainty};
+pub use estimate::{Estimate, ModelFile, Prediction, Stop, Uncertainty};
+pub use results::{Ablation, Estimand, Reached};
 pub use scaling::Scaling;

@@ -29,6 +29,21 @@ impl Origin {
             Self::Unstated => "unstated",
         }
     }
+
+    /// The origin that all of several records share; unstated where they differ, or where there are none.
+    ///
+    /// ```
+    /// use record::Origin;
+    ///
+    /// assert_eq!(Origin::shared([Origin::Measured, Origin::Measured]), Origin::Measured);
+    /// assert_eq!(Origin::shared([Origin::Measured, Origin::Simulated]), Origin::Unstated);
+    /// ```
+    #[must_use]
+    pub fn shared(origins: impl IntoIterator<Item = Self>) -> Self {
+        let mut origins = origins.into_iter();
+        let first = origins.next().unwrap_or_default();
+        if origins.all(|other| other == first) { first } else { Self::Unstated }
+    }
 }
 
 /// Statements about a record. They are compared with the record, never used in its place.

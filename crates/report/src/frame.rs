@@ -71,7 +71,7 @@ impl<'a> Frame<'a> {
             pipelines: tables::pipelines(pipelines),
             data: tables::data(data),
             findings: remarks::noticed(data),
-            ..Self::bare(texts, kicker, verdict, verdict::origin(&data.origin))
+            ..Self::bare(texts, kicker, verdict, verdict::origin(data.origin))
         }
     }
 }

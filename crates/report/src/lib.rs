@@ -43,7 +43,7 @@ pub use classes::{
     ClassStatement, Standing, class_statements, class_title, is_calibrated_already, listed, nameless_share,
     unlikely_classes, verdict_sentence,
 };
-pub use comparison::{ABLATION_READING, ablation_cell, may_differ};
+pub use comparison::{ABLATION_READING, ablation_cell, beside_least_squares};
 pub use error::ReportError;
 pub use remarks::{bar_state, is_exponential, is_of_the_chain_only, noticed, truth_rows, warnings};
 pub use run_table::{csv as run_table_csv, markdown as run_table_markdown, text_cells as run_table_text};

@@ -84,15 +84,12 @@ mod tests {
         result.estimator_title = EVIL.into();
         result.data.path = EVIL.into();
         result.data.digest = EVIL.into();
-        result.data.origin = EVIL.into();
         result.data.clock = EVIL.into();
         result.data.clock_reason = EVIL.into();
         result.data.unit = EVIL.into();
         result.data.findings = vec![EVIL.into()];
         result.envelope.pipeline = EVIL.into();
-        result.estimate.reached = EVIL.into();
         result.estimate.stopped_because = EVIL.into();
-        result.seeds[0].reached = EVIL.into();
         result.pipelines[0].pipeline = EVIL.into();
         result.pipelines[0].clock = EVIL.into();
         if let Some(row) = sample.trace.last_mut() {
@@ -181,12 +178,12 @@ mod tests {
     #[test]
     fn the_origin_is_loud() {
         for (origin, label) in [
-            ("measured", "Measured record"),
-            ("simulated", "Simulated record"),
-            ("unstated", "Origin not stated"),
+            (results::Origin::Measured, "Measured record"),
+            (results::Origin::Simulated, "Simulated record"),
+            (results::Origin::Unstated, "Origin not stated"),
         ] {
             let mut sample = Sample::new();
-            sample.result.data.origin = origin.into();
+            sample.result.data.origin = origin;
             assert!(sample.render().unwrap().contains(label));
         }
     }

@@ -1,8 +1,8 @@
 //! A run as it might have been, for the tests.
 
 use results::{
-    DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary,
-    PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow,
+    DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary, Origin,
+    PipelineOutcome, PipelineRow, RESULT_SCHEMA, Reached, SeedRow, TraceRow,
 };
 use serde::Serialize;
 
@@ -138,7 +138,7 @@ fn result() -> EstimationResult {
         data: DataSummary {
             path: "data/pendulum/run-03/free-decay-from-30-degrees.csv".into(),
             digest: "sha256:9f86d081884c7d659a2feaa0c55ad015a3bf4f1b2b0b822cd15d6c15b0f00a08".into(),
-            origin: "measured".into(),
+            origin: Origin::Measured,
             samples: 2_481,
             clock: "uniform-index".into(),
             clock_reason: "the time stamps jump by up to 41 ms, the sensor's own rate is steady".into(),
@@ -188,7 +188,7 @@ fn result() -> EstimationResult {
             interval_95: Some([0.182_023, 0.199_899]),
             zeta_std_error: Some(0.000_205_3),
             zeta_interval_95: Some([0.008_343, 0.009_163]),
-            reached: "converged".into(),
+            reached: Reached::Converged,
             stopped_because: "the relative change of the loss stayed below 1e-12 for 20 steps".into(),
         },
         error_percent: 3.1e-7,
@@ -204,7 +204,7 @@ fn result() -> EstimationResult {
                 decay_rate: DECAY_RATE * (1.0 + error_percent / 100.0),
                 zeta: 0.008_753 * (1.0 + error_percent / 100.0),
                 error_percent,
-                reached: if seed == 10 { "budget_spent" } else { "converged" }.into(),
+                reached: if seed == 10 { Reached::BudgetSpent } else { Reached::Converged },
                 steps: 2_060,
                 seconds: 12.34,
             })
@@ -260,17 +260,17 @@ fn write_samples() {
     std::fs::write(folder.join("measured.html"), sample.render().unwrap()).unwrap();
 
     let result = &mut sample.result;
-    result.data.origin = "simulated".into();
+    result.data.origin = Origin::Simulated;
     result.data.findings.clear();
-    result.estimate.reached = "interrupted".into();
+    result.estimate.reached = Reached::Interrupted;
     result.estimate.stopped_because = "the user asked for it".into();
     result.oracle.residual_autocorrelation = 0.02;
     result.seeds.truncate(1);
     std::fs::write(folder.join("simulated.html"), sample.render().unwrap()).unwrap();
 
     let result = &mut sample.result;
-    result.data.origin = "unstated".into();
-    result.estimate.reached = "converged".into();
+    result.data.origin = Origin::Unstated;
+    result.estimate.reached = Reached::Converged;
     result.error_percent = 2.37;
     result.pass = false;
     sample.trace.clear();
@@ -281,7 +281,7 @@ fn write_samples() {
     sample.name = "x".repeat(200);
     sample.result.estimator_title = "An estimator with a title that goes on and on and on".into();
     sample.result.data.path = "y/".repeat(200);
-    sample.result.estimate.reached = "diverged".into();
+    sample.result.estimate.reached = Reached::Diverged;
     sample.result.data.findings = vec!["z".repeat(300)];
     sample.result.estimate.decay_rate = 1.234_567e-9;
     sample.result.estimate.std_error = Some(3.2e-12);

@@ -117,7 +117,7 @@ pub(crate) fn training(result: &EstimationResult) -> Vec<Fact> {
     vec![
         fact("ζ differs from the reference by", error),
         fact("Stopped because", result.estimate.stopped_because.clone()),
-        fact("State", reached(&result.estimate.reached)),
+        fact("State", result.estimate.reached.in_words()),
         fact("Steps", count(result.steps)),
         fact("Time", quantity(&significant(result.seconds, 3), "s")),
         fact("Trained parameters", whole(result.parameters)),
@@ -195,7 +195,7 @@ pub(crate) fn seeds(rows: &[SeedRow]) -> Vec<SeedView> {
             decay_rate: significant(row.decay_rate, 7),
             zeta: significant(row.zeta, 7),
             error: percent(row.error_percent),
-            state: reached(&row.reached),
+            state: row.reached.in_words().to_owned(),
             steps: count(row.steps),
             seconds: significant(row.seconds, 3),
             is_worst: Some(index) == worst,
@@ -247,15 +247,6 @@ pub(crate) fn pipelines(rows: &[PipelineRow]) -> Vec<PipelineView<'_>> {
             }
         })
         .collect()
-}
-
-/// `reached` in words.
-pub(crate) fn reached(state: &str) -> String {
-    match state {
-        "converged" => "converged".to_owned(),
-        "budget_spent" => "budget of steps spent".to_owned(),
-        other => other.to_owned(),
-    }
 }
 
 pub(crate) fn whole(value: usize) -> String {

@@ -1,7 +1,10 @@
 //! A comparison of many methods on one envelope.
 
-use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison};
+use super::estimation::{
+    DataSummary, EnvelopeSummary, NOT_BEGUN, OracleSummary, PipelineRow, TruthComparison,
+};
 use super::interval::null_is_not_a_number;
+use super::method::{Ablation, Estimand, Family, Reached};
 use serde::{Deserialize, Serialize};
 
 /// Result of a comparison of methods: the content of `result.json` with `task = "compare"`.
@@ -49,6 +52,18 @@ pub struct ComparisonResult {
     pub cautions: Vec<Caution>,
 }
 
+impl ComparisonResult {
+    /// The methods whose value is held against least squares.
+    pub fn held_to_least_squares(&self) -> impl Iterator<Item = &MethodRow> {
+        self.results.iter().filter(|row| row.estimand != Estimand::Own)
+    }
+
+    /// The methods that estimate something else, for which a distance from least squares is no error.
+    pub fn of_their_own(&self) -> impl Iterator<Item = &MethodRow> {
+        self.results.iter().filter(|row| row.estimand == Estimand::Own)
+    }
+}
+
 /// Physical quantities that follow from frequency, decay rate and the rig's moment of inertia.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Derived {
@@ -86,27 +101,20 @@ pub struct MethodRow {
     pub id: String,
     /// Name in words.
     pub title: String,
-    /// `"classical"`, `"learned"` or `"library"`.
-    pub family: String,
-    /// Relation of its converged value to least squares: `"least_squares"` where it has to be equal,
-    /// `"approximation"` where it differs by the error of a training, `"own"` where it estimates something else,
-    /// `"nothing"` for the null estimator.
-    #[serde(default = "least_squares")]
-    pub estimand: String,
+    /// Where it comes from.
+    pub family: Family,
+    /// Relation of its converged value to least squares.
+    #[serde(default)]
+    pub estimand: Estimand,
     /// Estimate, or the reason why there is none.
     pub outcome: MethodOutcome,
-}
-
-/// What was meant before there was a word for it.
-fn least_squares() -> String {
-    "least_squares".to_owned()
 }
 
 /// A method's first seed fitted without a part of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct AblationRow {
-    /// `"learned_part_at_zero"` or `"noise_for_input"`.
-    pub ablation: String,
+    /// The part that was taken away.
+    pub ablation: Ablation,
     /// |ζ − ζ_oracle| / ζ_oracle · 100 of that fit; `None` where it gave no estimate.
     pub error_percent: Option<f64>,
     /// Why it gave none.
@@ -125,6 +133,35 @@ pub enum MethodOutcome {
         /// Why.
         reason: String,
     },
+}
+
+impl MethodOutcome {
+    /// Whether its turn had not come when the run was interrupted.
+    #[must_use]
+    pub fn is_not_begun(&self) -> bool {
+        matches!(self, Self::Failed { reason } if reason == NOT_BEGUN)
+    }
+
+    /// Whether the run was interrupted before this method had finished.
+    #[must_use]
+    pub fn is_interrupted(&self) -> bool {
+        self.is_not_begun() || self.estimate().is_some_and(|own| own.reached == Reached::Interrupted)
+    }
+
+    /// The estimate, where there is one.
+    #[must_use]
+    pub fn estimate(&self) -> Option<&MethodEstimate> {
+        match self {
+            Self::Estimate(estimate) => Some(estimate),
+            Self::Failed { .. } => None,
+        }
+    }
+
+    /// Whether there is an estimate that passes.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.estimate().is_some_and(|estimate| estimate.pass)
+    }
 }
 
 /// A method's estimate over its seeds.
@@ -155,8 +192,8 @@ pub struct MethodEstimate {
     pub parameters: usize,
     /// Median wall time of a fit, in seconds.
     pub seconds: f64,
-    /// `"converged"`, `"budget_spent"`, `"diverged"`, `"interrupted"` or `"stalled"`.
-    pub reached: String,
+    /// State in which the first seed's fit ended.
+    pub reached: Reached,
     /// Reason, in a sentence, why the first seed's fit stopped.
     pub stopped_because: String,
     /// True if every seed is within the tolerance; one that estimates something else than least squares passes

@@ -4,6 +4,7 @@
 
 use super::calibration::Calibration;
 use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
+use record::Origin;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -328,8 +329,8 @@ pub struct RecordRow {
     pub path: String,
     /// SHA-256 of the file's bytes, hexadecimal, prefixed `sha256:`.
     pub digest: String,
-    /// `measured`, `simulated` or `unstated`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// Samples in the file.
     pub samples: usize,
     /// From the first sample to the last, in seconds.

@@ -1,7 +1,8 @@
 //! What an estimation found, and the parts that several answers share.
 
+use super::method::Reached;
 use crate::interval::null_is_not_a_number;
-use record::{Clock, Record, Source, Statements};
+use record::{Clock, Origin, Record, Source, Statements};
 use serde::{Deserialize, Serialize};
 
 /// The `schema` field of an estimation's `result.json`.
@@ -85,8 +86,8 @@ pub struct DataSummary {
     pub path: String,
     /// SHA-256 of the file's bytes, hexadecimal, prefixed `sha256:`.
     pub digest: String,
-    /// `"measured"`, `"simulated"` or `"unstated"`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// Samples in the file.
     pub samples: usize,
     /// The clock in force: `"host"`, `"uniform-index"` or `"index-with-gaps"`.
@@ -131,7 +132,7 @@ impl DataSummary {
         Self {
             path: source.path.clone(),
             digest: source.digest.clone(),
-            origin: statements.origin.unwrap_or_default().name().to_owned(),
+            origin: statements.origin.unwrap_or_default(),
             samples: record.len(),
             clock: clock.kind.name().to_owned(),
             clock_reason: clock.reason.clone(),
@@ -216,8 +217,8 @@ pub struct EstimateSummary {
     pub zeta_std_error: Option<f64>,
     /// 95 % interval of ζ, where the estimator states one.
     pub zeta_interval_95: Option<[f64; 2]>,
-    /// `"converged"`, `"budget_spent"`, `"diverged"`, `"stalled"` or `"interrupted"`.
-    pub reached: String,
+    /// State in which the training ended.
+    pub reached: Reached,
     /// Reason, in a sentence, why the training stopped.
     pub stopped_because: String,
 }
@@ -235,7 +236,7 @@ pub struct SeedRow {
     #[serde(deserialize_with = "null_is_not_a_number")]
     pub error_percent: f64,
     /// State in which this seed's fit ended, as in [`EstimateSummary::reached`].
-    pub reached: String,
+    pub reached: Reached,
     /// Training steps taken.
     pub steps: u64,
     /// Wall time, in seconds.

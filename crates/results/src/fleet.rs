@@ -2,6 +2,7 @@
 
 use super::batch::FailedCase;
 use super::diagnosis::VerdictStatus;
+use record::Origin;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -81,8 +82,8 @@ pub struct FleetCase {
     pub id: String,
     /// Labels that it gives itself.
     pub labels: BTreeMap<String, String>,
-    /// `measured`, `simulated` or `unstated`; `unstated` too where its records differ.
-    pub origin: String,
+    /// Where its numbers came from; unstated too where its records differ.
+    pub origin: Origin,
     /// Status of its verdict.
     pub status: VerdictStatus,
     /// Probabilities of classes by id.

@@ -1,5 +1,6 @@
 //! What `task = "learn"` leaves: learners and baselines on records they never saw.
 
+use record::Origin;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -43,8 +44,8 @@ pub struct LearnProblem {
     pub id: String,
     /// Title in words.
     pub title: String,
-    /// `"measured"`, `"simulated"` or `"unstated"`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// Why there is nothing else; `None` where there is.
     pub absent: Option<String>,
     /// Unit of the positions.

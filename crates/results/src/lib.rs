@@ -15,6 +15,7 @@ mod fleet;
 mod interval;
 mod launch;
 mod learning;
+mod method;
 mod prediction;
 mod rigs;
 mod search;
@@ -33,6 +34,9 @@ pub use diagnosis::{
     Equation, GapMaps, GapSummary, KindRow, LeftOverRow, MapCell, NextExperiment, ParameterRow, RecordRow,
     RivalRow, SeriesRow, SetRow, StageRow, SurfaceCell, VerdictStatus,
 };
+/// Where a record's numbers came from.
+pub use record::Origin;
+
 pub use estimation::{
     DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, NOT_BEGUN, OracleSummary,
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
@@ -44,6 +48,7 @@ pub use learning::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnSeriesRow,
     LearnTest, LearnTorqueRow, LearnTraceRow, LearnValidation,
 };
+pub use method::{Ablation, Estimand, Family, Reached};
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
     PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,

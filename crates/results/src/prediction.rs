@@ -1,7 +1,9 @@
 //! Many methods scored on peaks that were held out, over several problems.
 
-use super::estimation::DataSummary;
+use super::estimation::{DataSummary, NOT_BEGUN};
 use super::interval::null_is_not_a_number;
+use super::method::Family;
+use record::Origin;
 use serde::{Deserialize, Serialize};
 
 /// Result of a study of held-out prediction: the content of `result.json` with `task = "predict"`.
@@ -41,8 +43,8 @@ pub struct ProblemRow {
     pub id: String,
     /// Title in words.
     pub title: String,
-    /// `"measured"`, `"simulated"` or `"unstated"`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// Outcome, or the reason why there is none.
     pub outcome: ProblemOutcome,
 }
@@ -121,8 +123,8 @@ pub struct PredictionRow {
     pub id: String,
     /// Name in words.
     pub title: String,
-    /// `"classical"` or `"learned"`.
-    pub family: String,
+    /// Where it comes from.
+    pub family: Family,
     /// Outcome, or the reason why there is none.
     pub outcome: PredictionOutcome,
 }
@@ -138,6 +140,14 @@ pub enum PredictionOutcome {
         /// Why the first one did not.
         reason: String,
     },
+}
+
+impl PredictionOutcome {
+    /// Whether its turn had not come when the run was interrupted.
+    #[must_use]
+    pub fn is_not_begun(&self) -> bool {
+        matches!(self, Self::Failed { reason } if reason == NOT_BEGUN)
+    }
 }
 
 /// A method's scores on a problem.
@@ -233,8 +243,8 @@ pub struct PairedComparison {
 pub struct PredictionCsvRow {
     /// Name of the problem.
     pub problem: String,
-    /// `"measured"`, `"simulated"` or `"unstated"`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// `"interpolation"` or `"extrapolation"`.
     pub split: String,
     /// Identifier of the method, or `best-exponential`.

@@ -3,6 +3,7 @@
 use super::batch::FailedCase;
 use super::diagnosis::VerdictStatus;
 use super::interval::{WithInterval, null_is_not_a_number, nulls_are_not_numbers};
+use record::Origin;
 use serde::{Deserialize, Serialize};
 
 /// The `schema` field of a diagnosis of several rigs.
@@ -34,8 +35,8 @@ pub struct RigRow {
     pub name: String,
     /// Its folder, as it was named.
     pub folder: String,
-    /// `measured`, `simulated` or `unstated`; `unstated` too where its records differ.
-    pub origin: String,
+    /// Where its numbers came from; unstated too where its records differ.
+    pub origin: Origin,
     /// Status of its own verdict.
     pub status: VerdictStatus,
     /// Its own verdict in words.

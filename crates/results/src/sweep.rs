@@ -1,6 +1,8 @@
 //! A sweep and the table of its runs.
 
+use super::method::Reached;
 use super::{RESULT_SCHEMA, SearchOutcome, SweepSearch};
+use record::Origin;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
@@ -197,8 +199,8 @@ pub struct RunTableRow {
     pub estimator: String,
     /// The values of [`RunTable::columns`] that the run has.
     pub settings: Map<String, Value>,
-    /// `"measured"`, `"simulated"` or `"unstated"`; empty where that is not known.
-    pub origin: String,
+    /// Where the record came from; `None` where that is not known.
+    pub origin: Option<Origin>,
     /// λ/ω.
     pub zeta: Option<f64>,
     /// Standard error of ζ, where the method states one.
@@ -215,8 +217,8 @@ pub struct RunTableRow {
     pub worst_error_percent: Option<f64>,
     /// The largest that passes.
     pub tolerance_percent: Option<f64>,
-    /// `"converged"`, `"budget_spent"`, `"diverged"`, `"stalled"` or `"interrupted"`; empty without an estimate.
-    pub reached: String,
+    /// State in which the first seed's fit ended; `None` without an estimate.
+    pub reached: Option<Reached>,
     /// Steps of the first seed's fit.
     pub steps: Option<u64>,
     /// Number of trained parameters.
@@ -238,7 +240,7 @@ impl RunTableRow {
             task: String::new(),
             estimator: String::new(),
             settings: Map::new(),
-            origin: String::new(),
+            origin: None,
             zeta: None,
             zeta_std_error: None,
             zeta_interval_95: None,
@@ -247,7 +249,7 @@ impl RunTableRow {
             error_percent: None,
             worst_error_percent: None,
             tolerance_percent: None,
-            reached: String::new(),
+            reached: None,
             steps: None,
             parameters: None,
             seconds: None,

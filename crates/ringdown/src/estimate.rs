@@ -3,10 +3,10 @@
 use crate::error::Error;
 use crate::record::Record;
 use envelope::Extraction;
-use estimator::{Cancel, Estimator, FitContext, Silent};
+use estimator::{Cancel, Estimator, FitContext, Reached, Silent, Stop, Uncertainty};
 use experiment::{Experiment, Pipeline, Single, Task, resolve};
 use oracle::DecayFit;
-use oracle::classical::CLASSICAL;
+use oracle::classical::{self, CLASSICAL};
 use registry::ESTIMATORS;
 use seed::Seed;
 use settings::Document;
@@ -71,8 +71,8 @@ pub struct Estimate {
     pub least_squares: f64,
     /// |ζ − ζ of least squares| over that, in percent: how well the method solved the problem that it was given.
     pub error_percent: f64,
-    /// State that the fit reached: `converged`, `budget_spent`, `stalled`, `diverged`.
-    pub reached: &'static str,
+    /// State in which the fit ended.
+    pub reached: Reached,
     /// Reason for stopping there: a sentence; where it did not converge, with what to do.
     pub because: String,
     /// Training steps taken.
@@ -93,7 +93,7 @@ pub struct Estimate {
 /// let record = Simulation::of(&Nominal::swinging(2.0, 0.01)?).noise(1e-4).run()?;
 /// let found = estimate(&record, "sindy", &EstimateOptions::default())?;
 /// assert!((found.damping_ratio - 0.01).abs() < 1e-4);
-/// assert_eq!(found.reached, "converged");
+/// assert_eq!(found.reached, ringdown_lab::Reached::Converged);
 /// # Ok::<(), ringdown_lab::Error>(())
 /// ```
 pub fn estimate(record: &Record, method: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
@@ -101,7 +101,7 @@ pub fn estimate(record: &Record, method: &str, options: &EstimateOptions) -> Res
 }
 
 /// Estimates as [`estimate`] does; a request to stop ends the fit after its current step with the best so far, and
-/// [`Estimate::reached`] says `interrupted`.
+/// [`Estimate::reached`] says [`Reached::Interrupted`].
 ///
 /// # Errors
 /// As [`estimate`].
@@ -202,15 +202,8 @@ impl Prepared {
             seed: options.seed,
             source,
         })?;
-        let made = self.estimate(fit.decay_rate, fit.uncertainty.map(|own| (own.std_error, own.interval_95)));
-        let made = Estimate {
-            reached: fit.stop.reached.name(),
-            because: fit.stop.because,
-            steps: fit.steps,
-            equation: fit.equation,
-            ..made
-        };
-        made.finite(name, options.seed)
+        let made = self.estimate(fit.decay_rate, fit.uncertainty, fit.stop);
+        Estimate { steps: fit.steps, equation: fit.equation, ..made }.finite(name, options.seed)
     }
 
     fn classical(&self, id: &str, options: &EstimateOptions) -> Result<Estimate, Error> {
@@ -222,36 +215,36 @@ impl Prepared {
         let fit = (route.fit)(envelope, &Seed::new(options.seed).child(id))
             .map_err(|source| Error::LeastSquares { record: id.to_owned(), source })?;
         let degrees = envelope.len() as f64 - 2.0;
-        let uncertainty = fit
-            .std_error
-            .and_then(|error| estimator::Uncertainty::students_t(fit.decay_rate, error, degrees));
-        let made = self.estimate(fit.decay_rate, uncertainty.map(|own| (own.std_error, own.interval_95)));
+        let uncertainty =
+            fit.std_error.and_then(|error| Uncertainty::students_t(fit.decay_rate, error, degrees));
         let reached = match fit.reached {
-            oracle::classical::Reached::Converged => "converged",
-            oracle::classical::Reached::BudgetSpent => "budget_spent",
-            oracle::classical::Reached::Stalled => "stalled",
+            classical::Reached::Converged => Reached::Converged,
+            classical::Reached::BudgetSpent => Reached::BudgetSpent,
+            classical::Reached::Stalled => Reached::Stalled,
         };
-        Estimate { reached, because: fit.because, steps: fit.steps, ..made }.finite(id, options.seed)
+        let stop = Stop { reached, because: fit.because };
+        let made = self.estimate(fit.decay_rate, uncertainty, stop);
+        Estimate { steps: fit.steps, ..made }.finite(id, options.seed)
     }
 
     /// An estimate from a decay rate and its stated error, which takes the scatter of the peaks to be even, brought to the
     /// scatter of this record.
-    fn estimate(&self, rate: f64, stated: Option<(f64, [f64; 2])>) -> Estimate {
+    fn estimate(&self, rate: f64, stated: Option<Uncertainty>, stop: Stop) -> Estimate {
         let envelope = &self.extraction.envelope;
         let factor = self.reference.scatter_factor;
         Estimate {
             damping_ratio: envelope.damping_ratio(rate),
             damping_ratio_std_error: stated
-                .map(|(error, _)| envelope.damping_ratio_error(rate, factor * error)),
+                .map(|own| envelope.damping_ratio_error(rate, factor * own.std_error)),
             decay_rate: rate,
             decay_rate_interval_95: stated
-                .map(|(_, interval)| interval.map(|bound| rate + factor * (bound - rate))),
+                .map(|own| own.interval_95.map(|bound| rate + factor * (bound - rate))),
             omega_rad_s: envelope.omega_rad_s(),
             peaks: envelope.len(),
             least_squares: self.reference.zeta,
             error_percent: scoring::error_percent(rate, self.reference.decay_rate),
-            reached: "",
-            because: String::new(),
+            reached: stop.reached,
+            because: stop.because,
             steps: 0,
             equation: None,
         }

@@ -9,6 +9,7 @@ use learn::data::{Making, Trajectory};
 use learn::learners::LEARNERS;
 use learn::{Learner, Step};
 use rayon::prelude::*;
+use record::Origin;
 use results::{LearnKind, LearnResult, RESULT_SCHEMA};
 use seed::Seed;
 use settings::Document;
@@ -114,7 +115,7 @@ pub fn learn(
     };
     let mut rows: Vec<_> = asked.par_iter().flat_map_iter(each).collect();
     sort(&mut rows);
-    let told = described(&problem.id, &problem.title, &origin(records), Ok(&ready));
+    let told = described(&problem.id, &problem.title, origin(records), Ok(&ready));
     Ok(LearnResult {
         schema: RESULT_SCHEMA.to_owned(),
         task: "learn".to_owned(),
@@ -171,7 +172,7 @@ fn data_set(
 }
 
 /// Origin of the records, as far as one states it.
-fn origin(records: &[Record]) -> String {
+fn origin(records: &[Record]) -> Origin {
     let stated = |record: &Record| record.loaded.origin.or(record.loaded.source.statements.origin);
-    records.iter().find_map(stated).unwrap_or_default().name().to_owned()
+    records.iter().find_map(stated).unwrap_or_default()
 }

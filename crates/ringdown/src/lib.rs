@@ -57,6 +57,7 @@ pub use ::record::{
     ClockChoice, CsvColumns, Filter, Format, Missing, Origin, Quantity, ReadOptions, TimeUnit, Unit,
 };
 pub use dynamics::{Coefficients, Description};
+pub use estimator::Reached;
 pub use experiment::Pipeline;
 pub use export::Repaired;
 pub use results as result;

@@ -125,7 +125,7 @@ fn a_request_to_stop_ends_a_fit_with_the_best_so_far() {
     let cancel = Cancel::new();
     cancel.request();
     let found = estimate_until(&record, "pinn", &EstimateOptions::default(), &cancel).unwrap();
-    assert_eq!(found.reached, "interrupted");
+    assert_eq!(found.reached, ringdown_lab::Reached::Interrupted);
 }
 
 #[test]
@@ -178,5 +178,5 @@ fn a_learner_of_ones_own_is_scored_beside_the_baselines() {
     };
     // The nominal simulator is the truth; standing still is wrong by the swing's own size.
     assert!(error("nominal") < 0.005 && error("still") > 0.05, "{} {}", error("nominal"), error("still"));
-    assert_eq!(told.problems[0].origin, "simulated");
+    assert_eq!(told.problems[0].origin.name(), "simulated");
 }

@@ -7,8 +7,8 @@ use crate::sweep::SweepFolder;
 use jiff::Timestamp;
 use results::{
     ComparisonResult, DIAGNOSIS_SCHEMA, EstimationResult, LearnEnd, LearnKind, LearnResult, LearnRow,
-    MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, RigsResult, RunState, RunTableRow, SweepManifest,
-    SweepState, TRIALS_SCHEMA,
+    MethodOutcome, MethodRow, RESULT_SCHEMA, RIGS_SCHEMA, Reached, RigsResult, RunState, RunTableRow,
+    SweepManifest, SweepState, TRIALS_SCHEMA,
 };
 use serde::Deserialize;
 use serde_json::Value;
@@ -238,7 +238,7 @@ fn estimation(result: &EstimationResult) -> Content {
     let row = RunTableRow {
         task: result.task.clone(),
         estimator: result.estimator.clone(),
-        origin: result.data.origin.clone(),
+        origin: Some(result.data.origin),
         zeta: Some(estimate.zeta),
         zeta_std_error: estimate.zeta_std_error,
         zeta_interval_95: estimate.zeta_interval_95,
@@ -247,15 +247,15 @@ fn estimation(result: &EstimationResult) -> Content {
         error_percent: Some(result.error_percent),
         worst_error_percent: Some(result.worst_error_percent),
         tolerance_percent: Some(result.tolerance_percent),
-        reached: estimate.reached.clone(),
+        reached: Some(estimate.reached),
         steps: Some(result.steps),
         parameters: Some(result.parameters),
         seconds: Some(result.seconds),
         pass: Some(result.pass),
         ..RunTableRow::without_numbers("", RunState::Done, "")
     };
-    let is_interrupted =
-        estimate.reached == "interrupted" || result.seeds.iter().any(|seed| seed.reached == "interrupted");
+    let is_interrupted = estimate.reached == Reached::Interrupted
+        || result.seeds.iter().any(|seed| seed.reached == Reached::Interrupted);
     Content {
         task: result.task.clone(),
         estimator: result.estimator.clone(),
@@ -301,16 +301,11 @@ fn learning(result: &LearnResult) -> Content {
 }
 
 fn comparison(result: &ComparisonResult) -> Content {
-    // A method whose turn never came says so in its reason.
-    let is_interrupted = |row: &MethodRow| match &row.outcome {
-        MethodOutcome::Estimate(estimate) => estimate.reached == "interrupted",
-        MethodOutcome::Failed { reason } => reason.starts_with("interrupted"),
-    };
     Content {
         task: result.task.clone(),
         estimator: format!("{} methods", result.results.len()),
         summary: String::new(),
-        is_interrupted: result.results.iter().any(is_interrupted),
+        is_interrupted: result.results.iter().any(|row| row.outcome.is_interrupted()),
         rows: result.results.iter().map(|row| method(result, row)).collect(),
     }
 }
@@ -319,7 +314,7 @@ fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
     let shared = RunTableRow {
         task: result.task.clone(),
         estimator: row.id.clone(),
-        origin: result.data.origin.clone(),
+        origin: Some(result.data.origin),
         oracle_zeta: Some(result.oracle.zeta),
         tolerance_percent: Some(result.tolerance_percent),
         pass: Some(false),
@@ -333,7 +328,7 @@ fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
             decay_rate: Some(found.decay_rate),
             error_percent: Some(found.error_percent),
             worst_error_percent: Some(found.worst_error_percent),
-            reached: found.reached.clone(),
+            reached: Some(found.reached),
             steps: Some(found.steps),
             parameters: Some(found.parameters),
             seconds: Some(found.seconds),

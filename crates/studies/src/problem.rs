@@ -8,7 +8,7 @@ use experiment::{
     DataSettings, Law, Pipeline, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
 };
 use oracle::DecayFit;
-use record::{Clock, ClockChoice, read_file};
+use record::{Clock, ClockChoice, Origin, read_file};
 use results::{DataSummary, LawSummary};
 use seed::Seed;
 use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
@@ -20,8 +20,8 @@ pub struct Ready {
     pub id: String,
     /// Title in tables.
     pub title: String,
-    /// `"measured"`, `"simulated"` or `"unstated"`.
-    pub origin: String,
+    /// Where its numbers came from.
+    pub origin: Origin,
     /// Unit of the amplitudes.
     pub unit: String,
     /// Summary of the record; `None` of a simulation.
@@ -51,7 +51,7 @@ pub struct Missing {
     /// Title in tables.
     pub title: String,
     /// Origin as the configuration states it.
-    pub origin: String,
+    pub origin: Origin,
     /// Sentence that names the file and where it can be had.
     pub reason: String,
 }
@@ -69,8 +69,7 @@ pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Read
         ProblemSource::Record { data, .. } => Ok(Err(Missing {
             id: problem.id.clone(),
             title: problem.title.clone(),
-            // What nobody stated is `unstated`.
-            origin: data.statements().origin.unwrap_or_default().name().to_owned(),
+            origin: data.statements().origin.unwrap_or_default(),
             reason: missing(&problem.id, data),
         })),
     }
@@ -142,7 +141,7 @@ fn draw(
     Ok(Ready {
         id: problem.id.clone(),
         title: problem.title.clone(),
-        origin: "simulated".to_owned(),
+        origin: Origin::Simulated,
         unit: "rad".to_owned(),
         data: None,
         truth: Some(Truth {

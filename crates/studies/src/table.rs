@@ -7,8 +7,8 @@ use crate::trial::best_exponential;
 use crate::verdict::verdict;
 use experiment::PredictionStudy;
 use results::{
-    ExponentialScores, NOT_BEGUN, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow,
-    ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
+    ExponentialScores, Family, NOT_BEGUN, PredictionCsvRow, PredictionOutcome, PredictionResult,
+    PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
 };
 
 /// Name of the best exponential in `predictions.csv`.
@@ -24,7 +24,7 @@ pub struct StudiedMethod {
     /// Title in tables.
     pub title: &'static str,
     /// `"classical"` or `"learned"`.
-    pub family: &'static str,
+    pub family: Family,
 }
 
 /// All trials on one problem: those of the best exponential, and of every method.
@@ -77,7 +77,7 @@ pub fn result(
             Ok(ready) => ProblemRow {
                 id: ready.id.clone(),
                 title: ready.title.clone(),
-                origin: ready.origin.clone(),
+                origin: ready.origin,
                 outcome: trials.next().and_then(|trials| examine(study, ready, methods, trials)).map_or_else(
                     || absent("no exponential could be fitted"),
                     |study| ProblemOutcome::Studied(Box::new(study)),
@@ -86,7 +86,7 @@ pub fn result(
             Err(missing) => ProblemRow {
                 id: missing.id.clone(),
                 title: missing.title.clone(),
-                origin: missing.origin.clone(),
+                origin: missing.origin,
                 outcome: absent(&missing.reason),
             },
         })
@@ -131,7 +131,7 @@ fn examine(
             number: method.number,
             id: method.id.to_owned(),
             title: method.title.to_owned(),
-            family: method.family.to_owned(),
+            family: method.family,
             outcome: outcome(ready, placed, &trials.exponential, common),
         })
         .collect();
@@ -204,7 +204,7 @@ fn add_rows(rows: &mut Vec<PredictionCsvRow>, problem: &Ready, method: &str, tri
             }
             rows.push(PredictionCsvRow {
                 problem: problem.id.clone(),
-                origin: problem.origin.clone(),
+                origin: problem.origin,
                 split: split.kind.name().to_owned(),
                 method: method.to_owned(),
                 time_s,

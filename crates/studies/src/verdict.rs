@@ -1,7 +1,7 @@
 //! What the scores of a problem come to, in sentences that claim no more than they carry.
 
 use report::format;
-use results::{HeldOutScore, NOT_BEGUN, PredictionOutcome, PredictionRow, ProblemStudy};
+use results::{HeldOutScore, PredictionOutcome, PredictionRow, ProblemStudy};
 
 /// Names in one list, beyond which the rest is counted.
 const MOST_NAMES: usize = 6;
@@ -10,7 +10,7 @@ const MOST_NAMES: usize = 6;
 /// who worse, and who cannot be told from it. The last stretch of a record is one trial, of which no test
 /// can be made.
 pub(crate) fn verdict(study: &ProblemStudy, significance: f64) -> Vec<String> {
-    let waits = |row: &PredictionRow| matches!(&row.outcome, PredictionOutcome::Failed { reason } if reason == NOT_BEGUN);
+    let waits = |row: &PredictionRow| row.outcome.is_not_begun();
     if !study.methods.is_empty() && study.methods.iter().all(waits) {
         return vec!["Interrupted before a method was fitted: nothing is compared.".to_owned()];
     }

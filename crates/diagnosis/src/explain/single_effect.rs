@@ -10,7 +10,7 @@ use crate::measurement::signatures as chain_statistics;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::vanished;
-use crate::search::beam::alone;
+use crate::search::gains::alone;
 use crate::search::proposals::fit_all;
 use dynamics::NominalSimulator;
 

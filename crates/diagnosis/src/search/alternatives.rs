@@ -14,8 +14,8 @@ use crate::model::candidate::Candidate;
 use crate::model::candidates::EvidenceClass;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;
-use crate::search::beam::singles;
-use crate::search::proposals::{Proposal, additions, fit_all, proposal};
+use crate::search::gains::singles;
+use crate::search::proposals::{Proposal, additions, proposal, take_in};
 use rayon::prelude::*;
 
 /// Effects that are added to the best set at most.
@@ -45,9 +45,7 @@ pub(crate) fn alternatives(
         if added.is_empty() {
             break;
         }
-        for fit in fit_all(data, &added, |_| Stopping::SEARCH) {
-            archive.admit(data, fit);
-        }
+        take_in(data, archive, added, Stopping::SEARCH);
         let better = best(archive);
         if better.hypothesis.candidates == top.hypothesis.candidates {
             break;
@@ -59,10 +57,10 @@ pub(crate) fn alternatives(
     let replaced: Vec<(Option<Fit>, Vec<Proposal>)> =
         classes.par_iter().map(|&class| without(data, &top, class, candidates, known)).collect();
     let (bare, begun): (Vec<Option<Fit>>, Vec<Vec<Proposal>>) = replaced.into_iter().unzip();
-    let begun: Vec<Proposal> = begun.into_iter().flatten().collect();
-    for fit in fit_all(data, &begun, |_| Stopping::SEARCH).into_iter().chain(bare.into_iter().flatten()) {
+    for fit in bare.into_iter().flatten() {
         archive.admit(data, fit);
     }
+    take_in(data, archive, begun.into_iter().flatten().collect(), Stopping::SEARCH);
 }
 
 /// A set without a class, and proposals of what could take its place: other classes, and each kind of this one.

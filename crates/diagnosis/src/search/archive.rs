@@ -2,8 +2,10 @@
 
 use crate::data::segments::Data;
 use crate::evidence::score::score;
-use crate::fit::fitted::Fit;
+use crate::fit::fitted::{Fit, Point};
 use crate::model::candidate::{Candidate, MainMode};
+use crate::model::hypothesis::Hypothesis;
+use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 
 /// Every set that was fitted, best fit of each.
@@ -12,12 +14,31 @@ pub(crate) struct Archive {
     pub(crate) fits: Vec<Fit>,
     /// Sets with a strength that ended at zero: the data have no use for it, or with the wrong sign.
     pub(crate) rejected: Vec<Vec<Candidate>>,
+    /// Where fits have begun, to the bit: [`Self::is_new`].
+    begun: BTreeSet<Vec<u64>>,
 }
 
 impl Archive {
     /// The calibrated simulator alone.
     pub(crate) fn of(calibrated: &Fit) -> Self {
-        Self { fits: vec![calibrated.clone()], rejected: Vec::new() }
+        Self::from(vec![calibrated.clone()], Vec::new())
+    }
+
+    /// Some fits, and sets that were rejected.
+    pub(crate) fn from(fits: Vec<Fit>, rejected: Vec<Vec<Candidate>>) -> Self {
+        Self { fits, rejected, begun: BTreeSet::new() }
+    }
+
+    /// Whether no fit of so many steps at most has begun at a point yet: another one would end where that has.
+    pub(crate) fn is_new(&mut self, hypothesis: &Hypothesis, point: &Point, steps: usize) -> bool {
+        let ranks = hypothesis.ranks().into_iter().chain([steps]).map(|number| number as u64);
+        let values = point.globals.iter().chain(point.starts.iter().flatten());
+        self.begun.insert(ranks.chain(values.map(|value| value.to_bits())).collect())
+    }
+
+    /// Squares that a fit of a set has to come below to be of use: those that are known of it.
+    pub(crate) fn known_squares(&self, hypothesis: &Hypothesis) -> f64 {
+        self.find(&hypothesis.candidates).map_or(f64::INFINITY, |known| known.squares)
     }
 
     pub(crate) fn find(&self, candidates: &[Candidate]) -> Option<&Fit> {
@@ -143,10 +164,7 @@ mod tests {
             ..base.clone()
         };
         let (leader, other) = (set(&[GRAVITY, SECOND_BODY], 0.1), set(&[GRAVITY], 0.5));
-        let pool = |fits: &[&Fit]| Archive {
-            fits: fits.iter().map(|fit| (*fit).clone()).collect(),
-            rejected: Vec::new(),
-        };
+        let pool = |fits: &[&Fit]| Archive::from(fits.iter().map(|fit| (*fit).clone()).collect(), Vec::new());
         let found = pool(&[&base, &leader, &other]);
         let all = [GRAVITY, SECOND_BODY, Candidate::new(&QuadraticDrag)];
         assert_eq!(found.misled(&pool(&[&base, &leader]), &all), None);

@@ -12,123 +12,20 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::{Dictionary, Gain};
-use crate::noise::spectrum::DECAYS;
 use crate::search::archive::{Archive, is_another};
+use crate::search::asked::Asked;
+use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
 use crate::search::proposals::{
     Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, reshaped, simplified,
+    take_in,
 };
 use crate::search::weak_form::from_weak_form;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 
-/// How wide to search.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Breadth {
-    /// Most effects in a set.
-    pub(crate) most_effects: usize,
-    /// Single candidates fitted in the first round.
-    pub(crate) singles: usize,
-    /// Pairs fitted in the first round.
-    pub(crate) pairs: usize,
-    /// Sets that later rounds go on from.
-    pub(crate) beam: usize,
-    /// Candidates fitted at each of them.
-    pub(crate) additions: usize,
-}
-
-/// What is asked of a search.
-#[derive(Clone, Copy)]
-pub(crate) struct Asked<'a> {
-    pub(crate) data: &'a Data,
-    /// The calibrated nominal simulator, where a search begins.
-    pub(crate) calibrated: &'a Fit,
-    pub(crate) candidates: &'a [Candidate],
-    pub(crate) breadth: &'a Breadth,
-    /// The increase of the score that a further effect has to bring for the search to go on.
-    pub(crate) threshold: f64,
-}
-
 /// Squares relative to the smallest up to which a fit that has not converged goes on, and how many of those.
 const NEAR: f64 = 1.5;
 const POLISHED: usize = 6;
-
-/// Gains of single entries, the best shape of each candidate, best first.
-pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
-    let mut best: Vec<(Candidate, Gain)> = Vec::new();
-    for (index, entry) in dictionary.entries.iter().enumerate() {
-        let Some(gain) = dictionary.gain(&[index]) else { continue };
-        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
-            Some((_, known)) if gain.squares > known.squares => *known = gain,
-            Some(_) => {}
-            None => best.push((entry.candidate, gain)),
-        }
-    }
-    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
-    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
-    gains
-}
-
-/// Joint gains of two candidates, the best shapes of each pair, best first.
-fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
-    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
-    for (first, one) in dictionary.entries.iter().enumerate() {
-        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
-            if one.candidate == other.candidate {
-                continue;
-            }
-            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
-            let pair = (one.candidate, other.candidate);
-            match best.iter_mut().find(|(known, _)| *known == pair) {
-                Some((_, known)) if gain.squares > known.squares => *known = gain,
-                Some(_) => {}
-                None => best.push((pair, gain)),
-            }
-        }
-    }
-    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
-    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
-    gains
-}
-
-/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
-pub(crate) const WHITE: f64 = 1.5;
-
-/// Part of the threshold that the linearized gain has to promise at a white residual.
-const PROMISE: f64 = 0.5;
-
-/// Every candidate alone, at the best of its shapes.
-pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> Vec<Proposal> {
-    let linear = singles(dictionary);
-    let linear = linear.iter().map(|gain| additions(&data.facts, dictionary, gain));
-    let further = dictionary.further.iter().map(|(candidate, start, _)| vec![(*candidate, start.clone())]);
-    linear.chain(further).map(|added| proposal(data, calibrated, &[], &added)).collect()
-}
-
-/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
-/// show only once the first is in. The best of many frequencies promises something where there is nothing:
-/// the logarithm of how many `looked` at there were, for a sine and a cosine in white noise.
-fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
-    time > WHITE || stands_out(base, time, gain, threshold, looked)
-}
-
-/// Whether a linearized gain would count by itself, however much structure is left beside it.
-pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
-    base.nats_behind(base.squares - gain, time) > PROMISE * threshold + looked.ln()
-}
-
-/// The same of candidates that no columns stand for: those bring start states of their own into every
-/// segment, and a line in the spectrum of many short ones has to be worth these.
-fn stands_alone(
-    base: &Fit,
-    time: f64,
-    (candidate, gain): (Candidate, f64),
-    threshold: f64,
-    looked: f64,
-) -> bool {
-    let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
-    let price = starts * (base.samples() as f64 / time).max(2.0).ln();
-    stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
-}
 
 /// Score behind the best from which on a set is not gone on from.
 const FAR_BEHIND: f64 = 60.0;
@@ -209,7 +106,10 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
         squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
     };
     while !waiting.is_empty() {
-        let fits = fit_all(data, &waiting, |proposal| Stopping::SEARCH.below(of_use(proposal)));
+        waiting.retain(|own| pool.is_new(&own.hypothesis, &own.point, Stopping::SEARCH.steps));
+        let fits = fit_all(data, &waiting, |own| {
+            Stopping::SEARCH.below(of_use(own).min(pool.known_squares(&own.hypothesis)))
+        });
         waiting = fits
             .iter()
             .filter_map(|fit| left_over(data, fit))
@@ -330,9 +230,7 @@ fn reshape(data: &Data, pool: &mut Archive) {
     let ranked = pool.ranked(pool.autocorrelation_time());
     // Of no set nothing is begun.
     let begun = ranked.first().map(|best| reshaped(data, best)).unwrap_or_default();
-    for fit in fit_all(data, &begun, |_| Stopping::SEARCH) {
-        pool.admit(data, fit);
-    }
+    take_in(data, pool, begun, Stopping::SEARCH);
 }
 
 /// Fits every part of the best set that was rejected, or is known to end farther from the data than it begins where the best set
@@ -350,9 +248,7 @@ fn without_members(data: &Data, pool: &mut Archive) {
     let is_rejected = |own: &Proposal| pool.rejected.contains(&own.hypothesis.candidates);
     let is_worth_it = |own: &Proposal| is_rejected(own) || begins_closer(data, pool, own);
     let begun: Vec<Proposal> = without.filter(is_worth_it).collect();
-    for fit in fit_all(data, &begun, |_| Stopping::FINAL) {
-        pool.admit(data, fit);
-    }
+    take_in(data, pool, begun, Stopping::FINAL);
 }
 
 /// What to fit around a set, and the sets that were fitted to find that out.

@@ -11,8 +11,9 @@ use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;
-use crate::search::beam::{Asked, singles, stands_out};
-use crate::search::proposals::{Proposal, additions, left_over, proposal};
+use crate::search::asked::Asked;
+use crate::search::gains::{singles, stands_out};
+use crate::search::proposals::{Proposal, additions, begins_closer, left_over, proposal};
 use rayon::prelude::*;
 
 /// Chains that are grown, each from another class.
@@ -23,12 +24,13 @@ pub(crate) fn chains(asked: &Asked<'_>, archive: &mut Archive) {
     let &Asked { data, calibrated, breadth, .. } = asked;
     let first: Vec<Vec<Proposal>> =
         next(asked, calibrated).into_iter().take(MOST).map(|own| vec![own]).collect();
+    let known: &Archive = archive;
     let grown: Vec<Vec<Fit>> = first
         .into_par_iter()
         .map(|mut begun| {
             let mut chain: Vec<Fit> = Vec::new();
             while let Some(set) = begun.pop() {
-                let Some(ended) = fitted(data, set) else { break };
+                let Some(ended) = fitted(data, known, set) else { break };
                 let size = ended.hypothesis.counted().count();
                 let is_known = chain.iter().any(|own| own.hypothesis == ended.hypothesis);
                 chain.push(ended);
@@ -45,8 +47,12 @@ pub(crate) fn chains(asked: &Asked<'_>, archive: &mut Archive) {
     }
 }
 
-/// A fit of a set without those of its members that end at no size.
-fn fitted(data: &Data, set: Proposal) -> Option<Fit> {
+/// A fit of a set without those of its members that end at no size: the known one, if it does not begin closer than that ends.
+fn fitted(data: &Data, archive: &Archive, set: Proposal) -> Option<Fit> {
+    let known = archive.find(&set.hypothesis.candidates).cloned();
+    if let Some(known) = known.filter(|_| !begins_closer(data, archive, &set)) {
+        return Some(known);
+    }
     let ended = fit(data, &set.hypothesis, set.point, Moving::All, Stopping::SEARCH).ok()?;
     match left_over(data, &ended) {
         Some(left) => fit(data, &left.hypothesis, left.point, Moving::All, Stopping::SEARCH).ok(),

@@ -2,8 +2,10 @@
 
 pub(crate) mod alternatives;
 pub(crate) mod archive;
+pub(crate) mod asked;
 pub(crate) mod beam;
 pub(crate) mod chains;
+pub(crate) mod gains;
 pub(crate) mod nameless;
 pub(crate) mod null;
 pub(crate) mod plain;

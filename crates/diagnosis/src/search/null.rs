@@ -3,7 +3,7 @@
 use crate::model::dictionary::Dictionary;
 use crate::model::matrices::{element, entry};
 use crate::noise::statistics::quantile;
-use crate::search::beam::singles;
+use crate::search::gains::singles;
 use nalgebra::{DMatrix, DVector};
 use rand_distr::{Distribution, StandardNormal};
 use seed::Seed;

@@ -10,8 +10,8 @@ use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::model::dictionary::Dictionary;
 use crate::search::archive::Archive;
-use crate::search::beam::singles;
-use crate::search::proposals::{Proposal, additions, fit_all, proposal};
+use crate::search::gains::singles;
+use crate::search::proposals::{Proposal, additions, proposal, take_in};
 use rayon::prelude::*;
 
 /// Fits every set of the plain laws among the candidates and takes those that keep all members into an archive. A set
@@ -28,12 +28,9 @@ pub(crate) fn plain_family(data: &Data, calibrated: &Fit, candidates: &[Candidat
             })
             .collect();
         let begun: Vec<Proposal> = begun.into_iter().flatten().collect();
-        let fits = fit_all(data, &begun, |_| Stopping::SEARCH);
-        for fit in fits {
-            let set = fit.hypothesis.candidates.clone();
-            archive.admit(data, fit);
-            // What is known of the set may be a better fit than this one.
-            family.extend(archive.find(&set).cloned());
-        }
+        let sets: Vec<Vec<Candidate>> = begun.iter().map(|own| own.hypothesis.candidates.clone()).collect();
+        take_in(data, archive, begun, Stopping::SEARCH);
+        // What is known of a set may be a better fit than this one.
+        family.extend(sets.iter().filter_map(|set| archive.find(set).cloned()));
     }
 }

@@ -186,9 +186,20 @@ pub(crate) fn fit_all(
     fits.into_iter().flatten().collect()
 }
 
+/// Fits proposals where no fit of the archive has begun yet, and takes them in. A set that is known is of use only where it
+/// ends closer.
+pub(crate) fn take_in(data: &Data, archive: &mut Archive, mut proposals: Vec<Proposal>, effort: Stopping) {
+    proposals.retain(|own| archive.is_new(&own.hypothesis, &own.point, effort.steps));
+    let known: &Archive = archive;
+    let fits = fit_all(data, &proposals, |own| effort.below(known.known_squares(&own.hypothesis)));
+    for fit in fits {
+        archive.admit(data, fit);
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{begins_closer, left_over, proposal, simplified};
+    use super::{Proposal, begins_closer, left_over, proposal, simplified};
     use crate::data::segments::Data;
     use crate::evidence::score::calibrated_swing;
     use crate::fit::fitted::{Fit, Point};
@@ -236,6 +247,17 @@ mod tests {
     }
 
     #[test]
+    fn no_fit_begins_twice_at_one_point() {
+        let (data, alone) = swing(&[(DRAG, &[0.01])]);
+        let mut archive = Archive::default();
+        let mut is_new = |own: &Proposal, steps| archive.is_new(&own.hypothesis, &own.point, steps);
+        let begun = proposal(&data, &alone, &[], &[]);
+        assert!(is_new(&begun, 40) && !is_new(&begun, 40));
+        assert!(is_new(&begun, 60), "one of more steps ends elsewhere");
+        assert!(is_new(&proposal(&data, &alone, &[], &[(DRAG, vec![1e-9])]), 40), "it begins elsewhere");
+    }
+
+    #[test]
     fn what_is_left_of_a_set_begins_where_it_ended() {
         let (data, full) = swing(&[(COULOMB, &[0.5]), (DRAG, &[0.01])]);
         assert!(left_over(&data, &full).is_none());
@@ -246,7 +268,7 @@ mod tests {
         assert!((begin / ended.squares - 1.0).abs() < 1e-9, "{begin} {}", ended.squares);
         let known = |squares: f64| {
             let known = Fit { hypothesis: left.hypothesis.clone(), squares, ..ended.clone() };
-            Archive { fits: vec![known], rejected: Vec::new() }
+            Archive::from(vec![known], Vec::new())
         };
         assert!(begins_closer(&data, &known(1.2 * begin), &left));
         assert!(!begins_closer(&data, &known(begin), &left));

@@ -7,7 +7,7 @@ use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
 use crate::model::candidate::Candidate;
 use crate::search::archive::{Archive, vanished};
-use crate::search::proposals::{Proposal, fit_all, generalized, left_over, proposal};
+use crate::search::proposals::{Proposal, generalized, left_over, proposal, take_in};
 use rayon::prelude::*;
 
 /// Sets that are refined in any case.
@@ -66,12 +66,10 @@ pub(crate) fn refine(
         rejected.extend(gone.into_iter().map(|fit| fit.hypothesis.candidates));
         all.extend(fits);
     }
-    let mut refined = Archive { fits: all, rejected };
+    let mut refined = Archive::from(all, rejected);
     // A special case and what it is a case of are judged on the same samples. Fits stand in the order of their evidence.
     if let Some(best) = refined.fits.iter().find(|fit| !fit.hypothesis.candidates.is_empty()).cloned() {
-        for fit in fit_all(data, &generalized(data, &best, candidates), |_| Stopping::FINAL) {
-            refined.admit(data, fit);
-        }
+        take_in(data, &mut refined, generalized(data, &best, candidates), Stopping::FINAL);
     }
     refined
 }

@@ -10,7 +10,7 @@ use crate::tables::{self, PipelineView};
 use crate::verdict::origin;
 
 pub(crate) fn markdown(result: &ComparisonResult) -> String {
-    let origin = origin(&result.data.origin);
+    let origin = origin(result.data.origin);
     let verdict = verdict::verdict(result);
     let mut blocks = vec![
         format!("# One damping ratio by {} methods", result.results.len()),

@@ -1,9 +1,9 @@
 //! A row for each method: the paper's Tables 4 and 5.
 
-use results::{AblationRow, ComparisonResult, MethodOutcome, MethodRow};
+use results::{Ablation, AblationRow, ComparisonResult, Family, MethodOutcome, MethodRow};
 
 use crate::format::{count, duration, fixed, significant};
-use crate::tables::{reached, whole};
+use crate::tables::whole;
 
 /// How to read these tables.
 pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀ is that of certified least squares; the worst is the largest over a \
@@ -18,21 +18,10 @@ pub(super) const READING: &str = "The error is |ζ − ζ₀|/ζ₀, where ζ₀
 pub const ABLATION_READING: &str = "an error that stays small says that the learned part, or what it read, contributed nothing to \
      the decay rate";
 
-/// Whether a value of this relation to least squares can differ from it.
-#[must_use]
-pub fn may_differ(estimand: &str) -> &'static str {
-    match estimand {
-        "least_squares" => "no",
-        "approximation" => "by its training",
-        "own" => "yes",
-        _ => "–",
-    }
-}
-
 /// The error of a fit without a part, in percent; – where there is no such part.
 #[must_use]
-pub fn ablation_cell(ablations: &[AblationRow], name: &str) -> String {
-    match ablations.iter().find(|row| row.ablation == name) {
+pub fn ablation_cell(ablations: &[AblationRow], part: Ablation) -> String {
+    match ablations.iter().find(|row| row.ablation == part) {
         None => "–".to_owned(),
         Some(row) => row.error_percent.map_or_else(|| "no estimate".to_owned(), error),
     }
@@ -90,8 +79,7 @@ impl MethodView {
 
 /// The tables that have rows, in the paper's order.
 pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
-    let is_known = |family: &str| matches!(family, "classical" | "learned");
-    let table = |id, title, of: &dyn Fn(&str) -> bool| MethodTable {
+    let table = |id, title, family| MethodTable {
         id,
         title,
         columns: &COLUMNS,
@@ -99,14 +87,14 @@ pub(super) fn tables(result: &ComparisonResult) -> Vec<MethodTable> {
             .results
             .iter()
             .chain(&result.libraries)
-            .filter(|row| of(&row.family))
+            .filter(|row| row.family == family)
             .map(view)
             .collect(),
     };
     [
-        table("classical", "Table 4: classical numerical methods", &|family| family == "classical"),
-        table("learned", "Table 5: learned methods", &|family| family == "learned"),
-        table("further", "Further methods", &|family| !is_known(family)),
+        table("classical", "Table 4: classical numerical methods", Family::Classical),
+        table("learned", "Table 5: learned methods", Family::Learned),
+        table("further", "Further methods", Family::Library),
     ]
     .into_iter()
     .filter(|table| !table.rows.is_empty())
@@ -130,11 +118,11 @@ fn view(row: &MethodRow) -> MethodView {
                 count(estimate.steps),
                 whole(estimate.parameters),
                 duration(estimate.seconds),
-                may_differ(&row.estimand).to_owned(),
-                ablation_cell(&estimate.ablations, "learned_part_at_zero"),
-                ablation_cell(&estimate.ablations, "noise_for_input"),
+                row.estimand.may_differ().to_owned(),
+                ablation_cell(&estimate.ablations, Ablation::LearnedPartAtZero),
+                ablation_cell(&estimate.ablations, Ablation::NoiseForInput),
             ],
-            state: reached(&estimate.reached),
+            state: estimate.reached.in_words().to_owned(),
             because: estimate.stopped_because.clone(),
             passes: estimate.pass,
         },
@@ -166,7 +154,7 @@ mod tests {
             tables(result).iter().map(|table| (table.id, table.rows.len())).collect()
         };
         assert_eq!(sizes(&result), [("classical", 11), ("learned", 10)]);
-        result.results[20].family = "dreamt".into();
+        result.results[20].family = Family::Library;
         assert_eq!(sizes(&result), [("classical", 11), ("learned", 9), ("further", 1)]);
         result.results.truncate(3);
         assert_eq!(sizes(&result), [("classical", 3)]);

@@ -24,8 +24,9 @@ use crate::{ReportError, RunTexts};
 
 pub(crate) use markdown::markdown;
 use methods::MethodTable;
-pub use methods::{ABLATION_READING, ablation_cell, may_differ};
+pub use methods::{ABLATION_READING, ablation_cell};
 use parts::WordTable;
+pub use verdict::beside_least_squares;
 
 #[derive(Template)]
 #[template(path = "comparison.html")]

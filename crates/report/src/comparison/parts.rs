@@ -1,6 +1,6 @@
 //! What the sections of the page on a comparison share.
 
-use results::{ComparisonResult, MethodEstimate, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodEstimate, MethodRow};
 
 /// A table of three columns: what a row is about, and two things said of it.
 pub(super) struct WordTable {
@@ -21,8 +21,5 @@ pub(super) fn estimates(result: &ComparisonResult) -> impl Iterator<Item = (&Met
 }
 
 pub(super) fn estimate(row: &MethodRow) -> Option<&MethodEstimate> {
-    match &row.outcome {
-        MethodOutcome::Estimate(estimate) => Some(estimate),
-        MethodOutcome::Failed { .. } => None,
-    }
+    row.outcome.estimate()
 }

@@ -1,7 +1,8 @@
 //! A comparison as it might have been, for the tests.
 
 use results::{
-    AblationRow, Caution, ComparisonResult, Derived, EnvelopeRow, MethodEstimate, MethodOutcome, MethodRow,
+    Ablation, AblationRow, Caution, ComparisonResult, Derived, EnvelopeRow, Estimand, Family, MethodEstimate,
+    MethodOutcome, MethodRow, Origin, Reached,
 };
 
 use crate::sample::{Sample, table};
@@ -40,10 +41,10 @@ const LINES: [Line; 21] = [
 fn estimate(line: &Line, zeta: f64, omega: f64) -> MethodEstimate {
     let (id, _, error, worst, std_error, seeds, steps, parameters, seconds) = *line;
     let (reached, because) = match id {
-        "gradient-descent" => ("budget_spent", "all 10 000 steps were taken"),
-        "differential-evolution" => ("budget_spent", "all 300 generations were bred"),
-        _ if steps == 0 => ("converged", "solved in closed form"),
-        _ => ("converged", "the gradient fell below 1e-12 of its first value"),
+        "gradient-descent" => (Reached::BudgetSpent, "all 10 000 steps were taken"),
+        "differential-evolution" => (Reached::BudgetSpent, "all 300 generations were bred"),
+        _ if steps == 0 => (Reached::Converged, "solved in closed form"),
+        _ => (Reached::Converged, "the gradient fell below 1e-12 of its first value"),
     };
     let zeta = zeta * (1.0 - error / 100.0);
     MethodEstimate {
@@ -58,17 +59,17 @@ fn estimate(line: &Line, zeta: f64, omega: f64) -> MethodEstimate {
         steps,
         parameters,
         seconds,
-        reached: reached.into(),
+        reached,
         stopped_because: because.into(),
         pass: true,
         ablations: match id {
             "pinn" => vec![
                 AblationRow {
-                    ablation: "learned_part_at_zero".into(),
+                    ablation: Ablation::LearnedPartAtZero,
                     error_percent: Some(0.0),
                     failure: None,
                 },
-                AblationRow { ablation: "noise_for_input".into(), error_percent: Some(98.7), failure: None },
+                AblationRow { ablation: Ablation::NoiseForInput, error_percent: Some(98.7), failure: None },
             ],
             _ => Vec::new(),
         },
@@ -85,8 +86,8 @@ pub(crate) fn result() -> ComparisonResult {
             number: Some(number),
             id: line.0.into(),
             title: line.1.into(),
-            estimand: "least_squares".into(),
-            family: if number <= 11 { "classical" } else { "learned" }.into(),
+            estimand: Estimand::LeastSquares,
+            family: if number <= 11 { Family::Classical } else { Family::Learned },
             outcome: if line.0 == "symbolic" {
                 MethodOutcome::Failed {
                     reason: "the budget of 200 generations ran out before any expression of two constants \
@@ -205,12 +206,12 @@ fn write_samples() {
     std::fs::write(folder.join("comparison.md"), super::markdown(&sample.result)).unwrap();
 
     sample.result = passing();
-    sample.result.data.origin = "simulated".into();
+    sample.result.data.origin = Origin::Simulated;
     std::fs::write(folder.join("comparison-pass.html"), sample.render().unwrap()).unwrap();
 
     // What a page has to withstand rather than what it is for.
     sample.run.name = "x".repeat(200);
-    sample.result.data.origin = "unstated".into();
+    sample.result.data.origin = Origin::Unstated;
     for row in &mut sample.result.results {
         row.title = format!("{} of a name that goes on and on and on and on", row.title);
     }
@@ -218,7 +219,7 @@ fn write_samples() {
         found.error_percent = f64::NAN;
         found.worst_error_percent = f64::INFINITY;
         found.pass = false;
-        found.reached = "diverged".into();
+        found.reached = Reached::Diverged;
     }
     sample.result.results[5].outcome = MethodOutcome::Failed { reason: "z".repeat(300) };
     sample.result.cautions[0].statement = "w".repeat(300);

@@ -1,6 +1,6 @@
 //! What a comparison came to, in a sentence or two.
 
-use results::{ComparisonResult, MethodOutcome, MethodRow};
+use results::{ComparisonResult, MethodRow, Reached};
 
 use super::parts::{estimate, estimates};
 use crate::format;
@@ -9,9 +9,22 @@ use crate::verdict::{Tone, Verdict, in_a_sentence};
 /// Names in one list, beyond which the rest is counted.
 const MOST_NAMES: usize = 4;
 
-/// How many methods are within the tolerance on every seed.
-pub(super) fn passed(result: &ComparisonResult) -> usize {
-    estimates(result).filter(|(_, estimate)| estimate.pass).count()
+/// How many of the methods that are held to least squares are within the tolerance on every seed, and how many there are.
+pub(super) fn passed(result: &ComparisonResult) -> (usize, usize) {
+    let held = || result.held_to_least_squares();
+    (held().filter(|row| row.outcome.passes()).count(), held().count())
+}
+
+/// What is said of methods that estimate something else than least squares, to go on with behind a sentence about the others;
+/// empty where there are none.
+#[must_use]
+pub fn beside_least_squares(result: &ComparisonResult) -> String {
+    let names: Vec<String> = result.of_their_own().map(|row| in_a_sentence(&row.title)).collect();
+    match names.len() {
+        0 => String::new(),
+        1 => format!("; {} estimates something else", listed(&names)),
+        _ => format!("; {} estimate something else", listed(&names)),
+    }
 }
 
 pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
@@ -23,23 +36,26 @@ pub(super) fn verdict(result: &ComparisonResult) -> Verdict {
             sentence: "No method was fitted: there is nothing to compare.".to_owned(),
         };
     }
-    let passed = passed(result);
+    let (passed, held) = passed(result);
     let tolerance = format::quantity(&format::exact(result.tolerance_percent), "%");
-    let first = if passed == count {
-        agreement(result, count, &tolerance)
+    let first = if held == 0 {
+        "No method is held to least squares".to_owned()
+    } else if passed == held {
+        agreement(result, held, &tolerance)
     } else {
-        let who = agree(passed, count);
-        format!("{who} with certified least squares within {tolerance}{}.", shortfalls(result))
+        let who = agree(passed, held);
+        format!("{who} with certified least squares within {tolerance}{}", shortfalls(result))
     };
+    let first = format!("{first}{}.", beside_least_squares(result));
     let mut sentences = vec![first];
     sentences.extend(unfinished(result));
-    let was_interrupted = result.results.iter().any(is_interrupted);
+    let was_interrupted = result.results.iter().any(|row| row.outcome.is_interrupted());
     let (tone, label) = if was_interrupted {
         sentences.push("The run was interrupted: an unfinished run is no result.".to_owned());
         (Tone::Caution, "Interrupted")
-    } else if passed == count && result.pass {
+    } else if passed == held && result.pass {
         (Tone::Good, "All within tolerance")
-    } else if passed == 0 {
+    } else if passed == 0 && held > 0 {
         (Tone::Bad, "None within tolerance")
     } else {
         (Tone::Bad, "Not all within tolerance")
@@ -63,7 +79,7 @@ fn agreement(result: &ComparisonResult, count: usize, tolerance: &str) -> String
             format!("; the largest difference is {} ({})", format::percent(error), in_a_sentence(&row.title))
         }
     });
-    format!("{who} with certified least squares within {tolerance}{largest}.")
+    format!("{who} with certified least squares within {tolerance}{largest}")
 }
 
 fn agree(passed: usize, count: usize) -> String {
@@ -105,7 +121,7 @@ fn shortfalls(result: &ComparisonResult) -> String {
 /// The methods within the tolerance that stopped before they converged.
 fn unfinished(result: &ComparisonResult) -> Option<String> {
     let names: Vec<String> = estimates(result)
-        .filter(|(_, estimate)| estimate.pass && estimate.reached != "converged")
+        .filter(|(_, estimate)| estimate.pass && estimate.reached != Reached::Converged)
         .map(|(row, _)| in_a_sentence(&row.title))
         .collect();
     (!names.is_empty()).then(|| format!("Within the tolerance, but stopped unconverged: {}.", listed(&names)))
@@ -114,20 +130,13 @@ fn unfinished(result: &ComparisonResult) -> Option<String> {
 /// The method with the largest error over its seeds; of equals the first.
 fn worst(result: &ComparisonResult) -> Option<(&MethodRow, f64)> {
     let mut found: Option<(&MethodRow, f64)> = None;
-    for (row, estimate) in estimates(result) {
+    for (row, estimate) in result.held_to_least_squares().filter_map(|row| Some((row, estimate(row)?))) {
         let error = estimate.worst_error_percent;
         if error.is_finite() && found.is_none_or(|(_, largest)| error > largest) {
             found = Some((row, error));
         }
     }
     found
-}
-
-fn is_interrupted(row: &MethodRow) -> bool {
-    match &row.outcome {
-        MethodOutcome::Estimate(estimate) => estimate.reached == "interrupted",
-        MethodOutcome::Failed { reason } => reason.starts_with("interrupted"),
-    }
 }
 
 /// Names in a row, the last few only counted.
@@ -143,6 +152,7 @@ pub(super) fn listed(names: &[String]) -> String {
 mod tests {
     use super::*;
     use crate::comparison::sample;
+    use results::{Estimand, MethodOutcome};
 
     fn of(result: &ComparisonResult) -> (Tone, &'static str, String) {
         let verdict = verdict(result);
@@ -214,6 +224,19 @@ mod tests {
         let mut result = sample::passing();
         result.pass = false;
         assert_eq!(of(&result).0, Tone::Bad);
+    }
+
+    /// The distance of what estimates something else is no shortfall, and no agreement either.
+    #[test]
+    fn methods_of_their_own_estimand_are_not_counted() {
+        let mut result = sample::passing();
+        result.results[3].estimand = Estimand::Own;
+        let title = in_a_sentence(&result.results[3].title);
+        let (tone, _, text) = of(&result);
+        assert_eq!(tone, Tone::Good);
+        assert!(text.starts_with("All 20 methods agree"), "{text}");
+        assert!(text.contains(&format!("; {title} estimates something else.")), "{text}");
+        assert_eq!(passed(&result), (20, 20));
     }
 
     #[test]

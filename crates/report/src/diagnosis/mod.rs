@@ -116,7 +116,7 @@ fn headline(result: &DiagnosisResult) -> Verdict {
 }
 
 fn origin(result: &DiagnosisResult) -> Origin {
-    verdict::origin_of_all(result.records.iter().map(|record| record.origin.as_str()), None)
+    verdict::origin_of_all(result.records.iter().map(|record| record.origin), None)
 }
 
 fn warnings(result: &DiagnosisResult) -> Vec<String> {

@@ -260,7 +260,7 @@ pub(super) fn records(result: &DiagnosisResult) -> Vec<RecordView<'_>> {
             fact("Samples", whole(*samples)),
             fact("Length", quantity(&significant(*duration_s, 4), "s")),
             fact("Clock", format!("{clock}: {clock_reason}")),
-            fact("Origin", origin.as_str()),
+            fact("Origin", origin.name()),
             fact("Digest", digest.as_str()),
         ];
         facts.extend(read_as(&reading.sentence).map(|text| fact("Read as", text)));

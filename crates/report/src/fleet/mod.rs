@@ -75,7 +75,7 @@ struct CaseView<'a> {
     tone: &'static str,
     /// Classes that are likelier there than not, with their probabilities, the most probable first.
     effects: String,
-    origin: &'a str,
+    origin: &'static str,
     over_noise: String,
     closure: String,
     nameless: String,
@@ -153,7 +153,7 @@ fn headline(result: &FleetResult) -> Verdict {
 
 /// That of the records, where all share it.
 fn origin(result: &FleetResult) -> Origin {
-    let stated = result.cases.iter().map(|case| case.origin.as_str());
+    let stated = result.cases.iter().map(|case| case.origin);
     verdict::origin_of_all(
         stated,
         Some("Some were measured, others simulated or not said to be either: the table of cases says which."),
@@ -224,7 +224,7 @@ fn case<'a>(case: &'a FleetCase, labels: &[String]) -> CaseView<'a> {
         status,
         tone,
         effects: if effects.is_empty() { absent() } else { effects.join(", ") },
-        origin: &case.origin,
+        origin: case.origin.name(),
         over_noise: number(FleetNumber::OVER_NOISE).map_or_else(absent, |value| significant(value, 3)),
         closure: number(FleetNumber::CLOSURE).map_or_else(absent, share),
         nameless: number(FleetNumber::NAMELESS).map_or_else(absent, share),

@@ -24,12 +24,7 @@ pub(super) fn figures(
 
 /// In which words the data set is named under a plot: simulated and measured are always told apart.
 fn named(problem: &LearnProblem) -> String {
-    let kind = match problem.origin.as_str() {
-        "measured" => "measured",
-        "simulated" => "simulated",
-        _ => "origin not stated",
-    };
-    format!("{} ({kind})", problem.title)
+    format!("{} ({})", problem.title, crate::verdict::kind(problem.origin))
 }
 
 fn free_runs(

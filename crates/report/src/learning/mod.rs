@@ -86,7 +86,7 @@ fn view<'a>(problem: &'a LearnProblem, learning: &'a Learning) -> ProblemView<'a
     let law = |row: &&LearnRow| row.equation.as_ref().map(|equation| format!("{}: {equation}", row.title));
     ProblemView {
         title: &problem.title,
-        origin: verdict::origin(&problem.origin),
+        origin: verdict::origin(problem.origin),
         absent: problem.absent.as_deref().unwrap_or_default(),
         facts: if problem.absent.is_some() { Vec::new() } else { facts(problem) },
         laws: methods.iter().filter_map(law).collect(),
@@ -195,6 +195,6 @@ fn headline(result: &LearnResult) -> Verdict {
 }
 
 fn origin(result: &LearnResult) -> Origin {
-    let origins = result.problems.iter().map(|problem| problem.origin.as_str());
+    let origins = result.problems.iter().map(|problem| problem.origin);
     verdict::origin_of_all(origins, Some("Each section says that of its data set."))
 }

@@ -1,6 +1,6 @@
 use crate::{RunTexts, render};
 use results::{
-    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest,
+    LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest, Origin,
     RESULT_SCHEMA,
 };
 use std::collections::BTreeMap;
@@ -44,7 +44,7 @@ fn page(learner: f64) -> String {
     let problem = LearnProblem {
         id: "swing".to_owned(),
         title: "A swing".to_owned(),
-        origin: "simulated".to_owned(),
+        origin: Origin::Simulated,
         absent: None,
         unit: "rad".to_owned(),
         data: LearnData { records: 6, train: 3, validation: 1, test: 2 },

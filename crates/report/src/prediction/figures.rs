@@ -143,12 +143,7 @@ impl Peaks<'_> {
 
 /// In which words the record is named under a plot: simulated and measured are always told apart.
 fn named(problem: &ProblemRow) -> String {
-    let kind = match problem.origin.as_str() {
-        "measured" => "measured",
-        "simulated" => "simulated",
-        _ => "origin not stated",
-    };
-    format!("{} ({kind})", problem.title)
+    format!("{} ({})", problem.title, crate::verdict::kind(problem.origin))
 }
 
 fn log_amplitude(

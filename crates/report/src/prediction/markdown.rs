@@ -25,7 +25,7 @@ pub(crate) fn markdown(result: &PredictionResult) -> String {
 }
 
 fn problem(row: &ProblemRow) -> Vec<String> {
-    let origin = verdict::origin(&row.origin);
+    let origin = verdict::origin(row.origin);
     let mut blocks =
         vec![format!("## {}", escape(&row.title)), format!("**{}.** {}", origin.label, origin.note)];
     match &row.outcome {

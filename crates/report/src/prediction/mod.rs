@@ -65,7 +65,7 @@ fn view<'a>(row: &'a ProblemRow, prediction: &Prediction) -> ProblemView<'a> {
     let mut view = ProblemView {
         id: format!("problem-{}", anchor(&row.id)),
         title: &row.title,
-        origin: verdict::origin(&row.origin),
+        origin: verdict::origin(row.origin),
         absent: "",
         facts: Vec::new(),
         verdict: &[],

@@ -1,9 +1,9 @@
 //! A study of held-out prediction as it might have been, for the tests.
 
 use results::{
-    Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
-    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
-    RESULT_SCHEMA, SplitSummary,
+    Coverage, ExponentialScores, Family, HeldOutScore, LawSummary, MethodScores, Origin, PairedComparison,
+    PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
+    ProblemStudy, RESULT_SCHEMA, SplitSummary,
 };
 
 use crate::sample::{Sample, table};
@@ -35,7 +35,7 @@ fn row(id: &str, title: &str, error: f64, has_truth: bool, equation: Option<&str
         number: Some(12),
         id: id.into(),
         title: title.into(),
-        family: "learned".into(),
+        family: Family::Learned,
         outcome: PredictionOutcome::Scored(Box::new(MethodScores {
             draws: if has_truth { 20 } else { 1 },
             failed_fits: 0,
@@ -89,10 +89,10 @@ fn study(has_truth: bool) -> ProblemStudy {
 }
 
 pub(crate) fn result() -> PredictionResult {
-    let problem = |id: &str, title: &str, origin: &str, outcome| ProblemRow {
+    let problem = |id: &str, title: &str, origin, outcome| ProblemRow {
         id: id.into(),
         title: title.into(),
-        origin: origin.into(),
+        origin,
         outcome,
     };
     PredictionResult {
@@ -101,12 +101,17 @@ pub(crate) fn result() -> PredictionResult {
         seed: 0,
         splits: SplitSummary { block_peaks: 3, every: 4, last_share: 1.0 / 3.0, significance: 0.05 },
         problems: vec![
-            problem("dry", "Dry friction", "simulated", ProblemOutcome::Studied(Box::new(study(true)))),
-            problem("rig", "The paper's rig", "measured", ProblemOutcome::Studied(Box::new(study(false)))),
+            problem("dry", "Dry friction", Origin::Simulated, ProblemOutcome::Studied(Box::new(study(true)))),
+            problem(
+                "rig",
+                "The paper's rig",
+                Origin::Measured,
+                ProblemOutcome::Studied(Box::new(study(false))),
+            ),
             problem(
                 "gone",
                 "A lost record",
-                "measured",
+                Origin::Measured,
                 ProblemOutcome::Absent { reason: "the record lost.csv is not there".into() },
             ),
         ],
@@ -116,7 +121,7 @@ pub(crate) fn result() -> PredictionResult {
 
 fn rows() -> Vec<PredictionCsvRow> {
     let mut rows = Vec::new();
-    for (problem, origin) in [("dry", "simulated"), ("rig", "measured")] {
+    for (problem, origin) in [("dry", Origin::Simulated), ("rig", Origin::Measured)] {
         for (method, bend) in
             [("best-exponential", 0.0), ("sindy", 0.02), ("gaussian-process", 0.01), ("ols", 0.0)]
         {
@@ -125,12 +130,12 @@ fn rows() -> Vec<PredictionCsvRow> {
                 let log = -0.7 - 0.2 * time - 0.02 * time * time;
                 PredictionCsvRow {
                     problem: problem.into(),
-                    origin: origin.into(),
+                    origin,
                     split: "extrapolation".into(),
                     method: method.into(),
                     time_s: time,
                     log_amplitude: log + 0.03 * (7.0 * time).sin(),
-                    truth: (origin == "simulated").then_some(log),
+                    truth: (origin == Origin::Simulated).then_some(log),
                     held_out: peak >= 48,
                     predicted: -0.7 - 0.25 * time - bend * time * time,
                     std_error: Some(0.03),

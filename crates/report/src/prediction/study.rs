@@ -88,8 +88,8 @@ pub(super) fn studied(result: &PredictionResult) -> impl Iterator<Item = &Proble
 
 /// The page's verdict counts; what the numbers carry, each problem's own sentences say.
 pub(super) fn headline(result: &PredictionResult) -> Verdict {
-    let of = |origin: &str| studied(result).filter(|row| row.origin == origin).count();
-    let (simulated, measured) = (of("simulated"), of("measured"));
+    let of = |origin| studied(result).filter(|row| row.origin == origin).count();
+    let (simulated, measured) = (of(results::Origin::Simulated), of(results::Origin::Measured));
     let all = studied(result).count();
     let other = all - simulated - measured;
     let mut kinds = vec![format!("{simulated} simulated"), format!("{measured} measured")];
@@ -114,6 +114,6 @@ pub(super) fn headline(result: &PredictionResult) -> Verdict {
 }
 
 pub(super) fn origin(result: &PredictionResult) -> Origin {
-    let origins = studied(result).map(|row| row.origin.as_str());
+    let origins = studied(result).map(|row| row.origin);
     verdict::origin_of_all(origins, Some("Each section says that of its problem."))
 }

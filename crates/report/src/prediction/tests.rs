@@ -71,7 +71,6 @@ fn what_comes_from_files_is_escaped() {
     let mut folder = Folder::new();
     folder.name = EVIL.into();
     folder.result.problems[0].title = EVIL.into();
-    folder.result.problems[0].origin = EVIL.into();
     folder.result.problems[2].outcome = ProblemOutcome::Absent { reason: EVIL.into() };
     let study = study(&mut folder, 0);
     study.unit = EVIL.into();

@@ -115,7 +115,7 @@ fn headline(result: &RigsResult) -> Verdict {
 }
 
 fn origin(result: &RigsResult) -> Origin {
-    verdict::origin_of_all(result.rigs.iter().map(|rig| rig.origin.as_str()), None)
+    verdict::origin_of_all(result.rigs.iter().map(|rig| rig.origin), None)
 }
 
 fn warnings(result: &RigsResult) -> Vec<String> {
@@ -123,7 +123,7 @@ fn warnings(result: &RigsResult) -> Vec<String> {
     if !result.complete {
         warnings.push("It was interrupted: some rigs were not looked at.".to_owned());
     }
-    let mut origins: Vec<&str> = result.rigs.iter().map(|rig| rig.origin.as_str()).collect();
+    let mut origins: Vec<&str> = result.rigs.iter().map(|rig| rig.origin.name()).collect();
     origins.sort_unstable();
     origins.dedup();
     if origins.len() > 1 {

@@ -4,7 +4,6 @@ use results::{RunState, RunTable, RunTableRow};
 use serde_json::Value;
 
 use crate::format::{count, duration, interval, significant};
-use crate::tables::reached;
 
 /// A column of the table.
 pub(super) struct Column {
@@ -64,7 +63,7 @@ pub(super) fn row(table: &RunTable, row: &RunTableRow) -> RowView {
             or_absent(row.oracle_zeta.map(|zeta| significant(zeta, 8))),
             or_absent(row.error_percent.map(gap)),
             or_absent(row.worst_error_percent.map(gap)),
-            reached(&row.reached),
+            or_absent(row.reached.map(|state| state.in_words().to_owned())),
             or_absent(row.steps.map(count)),
             or_absent(row.seconds.map(duration)),
         ]

@@ -77,7 +77,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
 
 /// That of the record, where all runs share it.
 fn origin(table: &RunTable) -> Origin {
-    let stated = table.rows.iter().map(|row| row.origin.as_str()).filter(|origin| !origin.is_empty());
+    let stated = table.rows.iter().filter_map(|row| row.origin);
     verdict::origin_of_all(
         stated,
         Some("Some were measured, others simulated or not said to be either: table.csv says which."),

@@ -1,6 +1,6 @@
 //! Of the page and the texts on many runs.
 
-use results::{RunState, RunTable, RunTableRow, SweepAxis};
+use results::{Origin, Reached, RunState, RunTable, RunTableRow, SweepAxis};
 use serde_json::{Value, json};
 
 use super::{csv, markdown, text_cells};
@@ -12,7 +12,7 @@ fn row(run: &str, estimator: &str, seed: u64, error: f64) -> RunTableRow {
         task: "estimate".into(),
         estimator: estimator.into(),
         settings: settings.as_object().unwrap().clone(),
-        origin: "simulated".into(),
+        origin: Some(Origin::Simulated),
         zeta: Some(0.01 * (1.0 + error / 100.0)),
         zeta_std_error: Some(1e-4),
         zeta_interval_95: Some([0.0098, 0.0102]),
@@ -21,7 +21,7 @@ fn row(run: &str, estimator: &str, seed: u64, error: f64) -> RunTableRow {
         error_percent: Some(error),
         worst_error_percent: Some(2.0 * error),
         tolerance_percent: Some(0.1),
-        reached: "converged".into(),
+        reached: Some(Reached::Converged),
         steps: Some(12),
         parameters: Some(30),
         seconds: Some(0.25),
@@ -81,7 +81,7 @@ fn every_run_has_its_row_and_a_bad_one_its_reason() {
 #[test]
 fn records_of_different_origins_are_loud() {
     let mut table = table();
-    table.rows[0].origin = "measured".into();
+    table.rows[0].origin = Some(Origin::Measured);
     assert!(page(&table).contains("Records of different origins"));
 }
 

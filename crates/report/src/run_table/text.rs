@@ -1,6 +1,6 @@
 //! The table of runs as CSV, as Markdown, and as cells for a terminal.
 
-use results::{RunTable, RunTableRow};
+use results::{Reached, RunTable, RunTableRow};
 
 use super::cells::{self, setting};
 use super::headline::{READING, headline};
@@ -49,12 +49,13 @@ fn record(table: &RunTable, row: &RunTableRow) -> Vec<String> {
         [row.decay_rate, row.oracle_zeta, row.error_percent, row.worst_error_percent, row.tolerance_percent]
             .map(float),
     );
-    cells.push(row.reached.clone());
+    cells.push(row.reached.map_or_else(String::new, |state| state.name().to_owned()));
     cells.push(row.steps.map_or_else(String::new, |steps| steps.to_string()));
     cells.push(row.parameters.map_or_else(String::new, |count| count.to_string()));
     cells.push(float(row.seconds));
     cells.push(row.pass.map_or_else(String::new, |pass| pass.to_string()));
-    cells.extend([row.origin.clone(), row.reason.clone()]);
+    cells
+        .extend([row.origin.map_or_else(String::new, |origin| origin.name().to_owned()), row.reason.clone()]);
     cells
 }
 
@@ -109,7 +110,8 @@ pub fn text_cells(table: &RunTable) -> (Vec<String>, Vec<Vec<String>>) {
                 line.push(row.steps.map_or_else(|| "-".to_owned(), |steps| steps.to_string()));
                 line.push(row.seconds.map_or_else(|| "-".to_owned(), |seconds| format!("{seconds:.3}")));
                 let verdict = if row.pass == Some(false) { ", FAILS" } else { "" };
-                line.push(format!("{}{verdict}", row.reached.replace('_', " ")));
+                let state = row.reached.map_or("-", Reached::in_words);
+                line.push(format!("{state}{verdict}"));
             }
             None => {
                 line.extend(std::iter::repeat_n(String::new(), 6));

@@ -90,7 +90,7 @@ fn fits(experiment: &Experiment) -> Result<Vec<Line>, TrainerError> {
     let mut lines = vec![
         line("fits", method),
         line("seeds", format!("{}, from {} on", experiment.fit.seeds, experiment.seed)),
-        line("record", record(&data.path, data.samples, &data.origin, &data.clock)),
+        line("record", record(&data.path, data.samples, data.origin, &data.clock)),
         line(
             "envelope",
             format!(
@@ -113,7 +113,7 @@ fn study_of(study: &PredictionStudy) -> Result<Vec<Line>, TrainerError> {
     for problem in &study.problems {
         let text = match studies::prepare(study, problem)? {
             Ok(ready) => match &ready.data {
-                Some(data) => record(&data.path, data.samples, &data.origin, &data.clock),
+                Some(data) => record(&data.path, data.samples, data.origin, &data.clock),
                 None => format!("simulated, {} draws", ready.envelopes.len()),
             },
             Err(missing) => format!("ABSENT: {}", missing.reason),
@@ -170,8 +170,8 @@ fn trials_of(plan: &TrialPlan) -> Vec<Line> {
     lines
 }
 
-fn record(path: &str, samples: usize, origin: &str, clock: &str) -> String {
-    format!("{path}: {samples} samples, {origin}, clock {clock}")
+fn record(path: &str, samples: usize, origin: record::Origin, clock: &str) -> String {
+    format!("{path}: {samples} samples, {}, clock {clock}", origin.name())
 }
 
 /// Counts the values in force by where they come from; keys without a value count nowhere.

@@ -2,9 +2,9 @@
 
 use super::method::{Method, Request};
 use envelope::Envelope;
-use estimator::Ablation;
+use estimator::{Ablation, Estimand, Reached};
 use oracle::linfa_decay_rate;
-use results::{AblationRow, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN};
+use results::{AblationRow, Family, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN};
 use std::time::Instant;
 
 /// The first seed's fit without each part that can be taken away; empty for a method that learns nothing.
@@ -30,7 +30,7 @@ pub(crate) fn ablations(
         };
         let error = found.as_ref().map(|rate| scoring::error_percent(*rate, oracle));
         AblationRow {
-            ablation: ablation.name().to_owned(),
+            ablation,
             error_percent: error.ok().filter(|error| error.is_finite()),
             failure: found.err(),
         }
@@ -58,7 +58,7 @@ pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) ->
                 // Intercept and slope.
                 parameters: 2,
                 seconds: start.elapsed().as_secs_f64(),
-                reached: "converged".to_owned(),
+                reached: Reached::Converged,
                 stopped_because: "solved in closed form, by QR".to_owned(),
                 pass: scoring::passes(error_percent, tolerance_percent),
                 ablations: Vec::new(),
@@ -69,8 +69,8 @@ pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) ->
         number: None,
         id: "linfa-linear".to_owned(),
         title: "linfa and linfa-linear".to_owned(),
-        family: "library".to_owned(),
-        estimand: "least_squares".to_owned(),
+        family: Family::Library,
+        estimand: Estimand::LeastSquares,
         outcome,
     }
 }

@@ -68,7 +68,7 @@ impl SeedFit {
             decay_rate: rate,
             zeta: envelope.damping_ratio(rate),
             error_percent: scoring::error_percent(rate, oracle),
-            reached: self.estimate.stop.reached.name().to_owned(),
+            reached: self.estimate.stop.reached,
             steps: self.estimate.steps,
             seconds: self.seconds,
         }

@@ -9,6 +9,7 @@ use estimator::{
 use experiment::Single;
 use oracle::classical::{self, CLASSICAL, ClassicalFit, ClassicalRoute};
 use registry::ESTIMATORS;
+use results::Family;
 use seed::Seed;
 use settings::{Document, Resolved, Section, SettingsError};
 use std::sync::Arc;
@@ -94,11 +95,11 @@ impl Method {
         }
     }
 
-    /// What tables call the method's kind.
-    pub(crate) fn family(&self) -> &'static str {
+    /// Where it comes from.
+    pub(crate) fn family(&self) -> Family {
         match self {
-            Self::Classical(_) => "classical",
-            Self::Learned(..) => "learned",
+            Self::Classical(_) => Family::Classical,
+            Self::Learned(..) => Family::Learned,
         }
     }
 

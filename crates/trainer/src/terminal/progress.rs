@@ -77,7 +77,7 @@ impl Progress {
         let line = match fit {
             Ok(row) => format!(
                 "{method}, seed {seed}: {} after {}, {:.2} s, error {} %",
-                row.reached.replace('_', " "),
+                row.reached.in_words(),
                 record::counted(row.steps as usize, "step"),
                 row.seconds,
                 two_digits(row.error_percent)

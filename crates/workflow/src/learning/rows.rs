@@ -6,6 +6,7 @@ use learn::LearnError;
 use learn::data::Trajectory;
 use learn::judge::{Score, Truth, runs, runs_on_noise, score_of_runs};
 use learn::learners::find;
+use record::Origin;
 use results::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnRow, LearnTest, LearnValidation,
 };
@@ -163,11 +164,11 @@ fn coefficients(
 
 /// A data set's line in results; `ready` is the set, or the reason why its records are not there.
 #[must_use]
-pub fn described(id: &str, title: &str, origin: &str, ready: Result<&Ready, &String>) -> LearnProblem {
+pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &String>) -> LearnProblem {
     let mut described = LearnProblem {
         id: id.to_owned(),
         title: title.to_owned(),
-        origin: origin.to_owned(),
+        origin,
         absent: ready.err().cloned(),
         unit: String::new(),
         data: LearnData::default(),

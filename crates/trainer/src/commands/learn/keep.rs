@@ -36,7 +36,7 @@ pub(super) fn result(
     rows: &[Row<'_>],
     seconds: f64,
 ) -> LearnResult {
-    let told = |own: &Prepared| described(&own.id, &own.title, &own.origin, own.ready.as_ref());
+    let told = |own: &Prepared| described(&own.id, &own.title, own.origin, own.ready.as_ref());
     let described: Vec<LearnProblem> = problems.iter().map(told).collect();
     let sum = |of: fn(&LearnData) -> usize| described.iter().map(|problem| of(&problem.data)).sum();
     let mut results = Vec::new();

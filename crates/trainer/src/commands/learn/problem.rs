@@ -7,7 +7,7 @@ use ::learn::LearnError;
 use ::learn::data::Making;
 use dynamics::NominalSimulator;
 use experiment::{DataSettings, LearnSource, LearningProblem};
-use record::{Clock, read_file};
+use record::{Clock, Origin, read_file};
 use runs::digest;
 use simulator::{Plan, generate};
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ use workflow::nominal;
 pub(crate) struct Prepared {
     pub(crate) id: String,
     pub(crate) title: String,
-    pub(crate) origin: String,
+    pub(crate) origin: Origin,
     /// The set, or why its records are not there.
     pub(crate) ready: Result<Ready, String>,
     /// The files that it depends on.
@@ -27,21 +27,21 @@ pub(crate) struct Prepared {
 
 /// Reads or simulates a data set. Files that are absent are no error; a set that cannot be used is.
 pub(crate) fn prepare(problem: &LearningProblem) -> Result<Prepared, TrainerError> {
-    let prepared = |origin: &str, files, ready| Prepared {
+    let prepared = |origin, files, ready| Prepared {
         id: problem.id.clone(),
         title: problem.title.clone(),
-        origin: origin.to_owned(),
+        origin,
         ready,
         files,
     };
     match &problem.source {
         LearnSource::Simulation(file) => {
             let (ready, files) = simulated(problem, file)?;
-            Ok(prepared("simulated", files, Ok(ready)))
+            Ok(prepared(Origin::Simulated, files, Ok(ready)))
         }
         LearnSource::Files { folder, records, reading } if Path::new(folder).is_dir() => {
             let (ready, origin, read) = files(problem, folder, records, reading)?;
-            Ok(prepared(&origin, read, Ok(ready)))
+            Ok(prepared(origin, read, Ok(ready)))
         }
         LearnSource::Files { folder, reading, .. } => {
             let source = match &reading.source {
@@ -54,8 +54,8 @@ pub(crate) fn prepare(problem: &LearningProblem) -> Result<Prepared, TrainerErro
                 "problem.{}: the folder {folder} is not there; its rows are left out.{source}",
                 problem.id
             );
-            let origin = reading.statements().origin.unwrap_or_default().name().to_owned();
-            Ok(prepared(&origin, Vec::new(), Err(reason)))
+            let origin = reading.statements().origin.unwrap_or_default();
+            Ok(prepared(origin, Vec::new(), Err(reason)))
         }
     }
 }
@@ -99,7 +99,7 @@ fn files(
     folder: &str,
     patterns: &[String],
     reading: &DataSettings,
-) -> Result<(Ready, String, Vec<DataFile>), TrainerError> {
+) -> Result<(Ready, Origin, Vec<DataFile>), TrainerError> {
     let (mut trajectories, mut read) = (Vec::new(), Vec::new());
     let mut unit: Option<(String, &'static str)> = None;
     let mut origin = None;
@@ -125,7 +125,7 @@ fn files(
         ..problem.making()
     };
     let data = ::learn::data_set(&trajectories, making).map_err(refused(problem))?;
-    let origin = origin.unwrap_or_default().name().to_owned();
+    let origin = origin.unwrap_or_default();
     read.extend(problem.nominal.as_deref().map(held).transpose()?);
     Ok((Ready { data, records: trajectories.len(), truth: None }, origin, read))
 }

@@ -23,7 +23,7 @@ pub(super) fn summary(result: &LearnResult, folder: &Path) -> String {
 }
 
 fn described(problem: &LearnProblem, result: &LearnResult) -> String {
-    let head = format!("{} ({})", problem.title, problem.origin.to_uppercase());
+    let head = format!("{} ({})", problem.title, problem.origin.name().to_uppercase());
     if let Some(reason) = &problem.absent {
         return format!("{head}\nABSENT: {reason}");
     }

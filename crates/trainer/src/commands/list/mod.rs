@@ -74,7 +74,7 @@ fn estimators(output: Output) -> Result<(), TrainerError> {
             vec![
                 method.id().to_owned(),
                 number(method.number()),
-                method.family().to_owned(),
+                method.family().name().to_owned(),
                 method.summary().to_owned(),
             ]
         })

@@ -3,6 +3,7 @@
 use super::outliers::outliers;
 use crate::commands::diagnose::batch::{ANSWER, FAILED};
 use crate::error::TrainerError;
+use record::Origin;
 use report::{RunTexts, render, verdict_sentence};
 use results::{
     CaseFile, DiagnosisResult, FLEET_SCHEMA, FailedCase, FleetCase, FleetClass, FleetGroup, FleetNumber,
@@ -107,13 +108,10 @@ fn labels(folder: &Path) -> BTreeMap<String, String> {
 }
 
 fn case(id: String, labels: BTreeMap<String, String>, answer: &DiagnosisResult) -> FleetCase {
-    let mut origins: Vec<&str> = answer.records.iter().map(|record| record.origin.as_str()).collect();
-    origins.dedup();
-    let origin = if let [one] = origins[..] { one } else { "unstated" };
     FleetCase {
         id,
         labels,
-        origin: origin.to_owned(),
+        origin: Origin::shared(answer.records.iter().map(|record| record.origin)),
         status: answer.verdict.status,
         classes: answer.classes.iter().map(|class| (class.id.clone(), class.probability)).collect(),
         summary: verdict_sentence(answer),

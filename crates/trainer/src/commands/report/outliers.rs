@@ -65,7 +65,7 @@ mod tests {
         FleetCase {
             id: id.to_owned(),
             labels: [("joint".to_owned(), joint.to_owned())].into(),
-            origin: "simulated".to_owned(),
+            origin: record::Origin::Simulated,
             status: VerdictStatus::Effect,
             classes: [].into(),
             summary: String::new(),

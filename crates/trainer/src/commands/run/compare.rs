@@ -123,8 +123,8 @@ fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
         number: method.number(),
         id: method.id().to_owned(),
         title: method.title().to_owned(),
-        family: method.family().to_owned(),
-        estimand: method.estimand().name().to_owned(),
+        family: method.family(),
+        estimand: method.estimand(),
         outcome,
     }
 }
@@ -161,7 +161,7 @@ fn outcome(
         steps: row.steps,
         parameters: first.estimate.parameters,
         seconds: scoring::median(rows.iter().map(|row| row.seconds)),
-        reached: row.reached.clone(),
+        reached: row.reached,
         stopped_because: first.estimate.stop.because.clone(),
         pass: method.passes(worst, run.experiment.fit.tolerance_percent),
         ablations,
@@ -172,14 +172,11 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
     let (experiment, input) = (run.experiment, &run.input);
     let libraries =
         vec![linfa(&input.extraction.envelope, input.oracle.decay_rate, experiment.fit.tolerance_percent)];
-    let estimate = |row: &MethodRow| match &row.outcome {
-        MethodOutcome::Estimate(estimate) => Some((estimate.worst_error_percent, estimate.pass)),
-        MethodOutcome::Failed { .. } => None,
-    };
     // The distance of what estimates something else is no error.
-    let held = results.iter().filter(|row| row.estimand != Estimand::Own.name());
-    let max_error_percent = scoring::worst(held.filter_map(estimate).map(|(worst, _)| worst));
-    let pass = results.iter().chain(&libraries).all(|row| estimate(row).is_some_and(|(_, passes)| passes));
+    let held = results.iter().filter(|row| row.estimand != Estimand::Own);
+    let max_error_percent =
+        scoring::worst(held.filter_map(|row| row.outcome.estimate()).map(|own| own.worst_error_percent));
+    let pass = results.iter().chain(&libraries).all(|row| row.outcome.passes());
     let derived = derived(run, comparison.inertia_kg_m2);
     let cautions = match comparison.claims {
         Claims::None => Vec::new(),

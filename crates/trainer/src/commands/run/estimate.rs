@@ -94,7 +94,7 @@ fn result(run: &Run<'_>, method: &Method, first: &SeedFit, fits: &[SeedFit]) -> 
                 .map(|known| envelope.damping_ratio_error(estimate.decay_rate, known.std_error)),
             zeta_interval_95: uncertainty
                 .map(|known| known.interval_95.map(|bound| envelope.damping_ratio(bound))),
-            reached: estimate.stop.reached.name().to_owned(),
+            reached: estimate.stop.reached,
             stopped_because: estimate.stop.because.clone(),
         },
         error_percent: run.row(first).error_percent,

@@ -5,7 +5,7 @@ use estimator::Ablation;
 use record::two_digits;
 use report::format;
 use results::{
-    ComparisonResult, DataSummary, EstimationResult, MethodOutcome, MethodRow, NOT_BEGUN, OracleSummary,
+    ComparisonResult, DataSummary, EstimationResult, Family, MethodOutcome, MethodRow, OracleSummary,
     PipelineOutcome, PipelineRow, TruthComparison,
 };
 use std::path::Path;
@@ -39,7 +39,7 @@ fn headline(result: &EstimationResult) -> String {
         "{} on {} ({} record): {verdict} least squares to {} %; {whose} {} % from that of the closed form",
         result.estimator_title,
         result.data.path,
-        result.data.origin,
+        result.data.origin.name(),
         result.tolerance_percent,
         two_digits(result.worst_error_percent),
     )
@@ -69,7 +69,7 @@ fn numbers(result: &EstimationResult) -> String {
             "stopped",
             format!(
                 "{} after {}: {}",
-                result.estimate.reached.replace('_', " "),
+                result.estimate.reached.in_words(),
                 record::counted(result.steps as usize, "step"),
                 result.estimate.stopped_because
             ),
@@ -103,9 +103,9 @@ pub(crate) fn comparison(result: &ComparisonResult, folder: &Path) -> String {
 }
 
 fn comparison_headline(result: &ComparisonResult) -> String {
-    let passed = result.results.iter().filter(|row| passes(row)).count();
-    let count = result.results.len();
-    let waiting = waiting(result).len();
+    let passed = result.held_to_least_squares().filter(|row| row.outcome.passes()).count();
+    let count = result.held_to_least_squares().count();
+    let waiting = result.held_to_least_squares().filter(|row| !is_begun(row)).count();
     let verdict = match (result.pass, waiting, passed + waiting < count) {
         (true, ..) => String::new(),
         (false, 0, _) => ", THE OTHERS DO NOT".to_owned(),
@@ -118,11 +118,12 @@ fn comparison_headline(result: &ComparisonResult) -> String {
     };
     format!(
         "{passed} of {count} methods on {} ({} record) solve least squares to {} %{verdict}; at most {} % from the closed \
-         form, {seeds}, {:.1} s",
+         form{}, {seeds}, {:.1} s",
         result.data.path,
-        result.data.origin,
+        result.data.origin.name(),
         result.tolerance_percent,
         two_digits(result.max_error_percent),
+        report::beside_least_squares(result),
         result.seconds,
     )
 }
@@ -133,11 +134,7 @@ fn waiting(result: &ComparisonResult) -> Vec<&MethodRow> {
 }
 
 fn is_begun(row: &MethodRow) -> bool {
-    !matches!(&row.outcome, MethodOutcome::Failed { reason } if reason == NOT_BEGUN)
-}
-
-fn passes(row: &MethodRow) -> bool {
-    matches!(&row.outcome, MethodOutcome::Estimate(estimate) if estimate.pass)
+    !row.outcome.is_not_begun()
 }
 
 fn oscillation(result: &ComparisonResult) -> String {
@@ -196,7 +193,7 @@ fn methods(result: &ComparisonResult) -> String {
                     found.steps.to_string(),
                     found.parameters.to_string(),
                     format!("{:.3}", found.seconds),
-                    format!("{}{}", found.reached.replace('_', " "), if found.pass { "" } else { ", FAILS" }),
+                    format!("{}{}", found.reached.in_words(), if found.pass { "" } else { ", FAILS" }),
                 ]),
                 MethodOutcome::Failed { reason } => {
                     cells.extend(std::iter::repeat_n(String::new(), 9));
@@ -217,14 +214,11 @@ fn methods(result: &ComparisonResult) -> String {
 
 /// Whether each learned method's value may differ from least squares, and what its learned part contributed.
 fn contributions(result: &ComparisonResult) -> String {
-    let learned = result.results.iter().filter(|row| is_begun(row) && row.family == "learned");
+    let learned = result.results.iter().filter(|row| is_begun(row) && row.family == Family::Learned);
     let rows = learned.map(|row| {
-        let ablations = match &row.outcome {
-            MethodOutcome::Estimate(found) => found.ablations.as_slice(),
-            MethodOutcome::Failed { .. } => &[],
-        };
-        let error = |ablation: Ablation| report::ablation_cell(ablations, ablation.name());
-        let mut cells = vec![row.id.clone(), report::may_differ(&row.estimand).to_owned()];
+        let ablations = row.outcome.estimate().map_or(&[][..], |found| &found.ablations);
+        let error = |ablation: Ablation| report::ablation_cell(ablations, ablation);
+        let mut cells = vec![row.id.clone(), row.estimand.may_differ().to_owned()];
         cells.extend(Ablation::ALL.map(error));
         cells
     });

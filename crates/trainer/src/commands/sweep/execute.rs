@@ -18,7 +18,7 @@ use estimator::Cancel;
 use experiment::CheckpointSettings;
 use experiment::sweep::Swept;
 use record::two_digits;
-use results::{RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
+use results::{Reached, RunTableRow, SweepEnd, SweepLine, SweepManifest, SweepState};
 use runs::{Disk, RunFolder, read_run};
 use serde_json::json;
 use settings::Document;
@@ -326,7 +326,7 @@ fn said(rows: &[RunTableRow]) -> String {
             let gap = error_percent.map(|error| format!(", gap {} %", two_digits(error)));
             let [steps, seconds, gap] = [steps, seconds, gap].map(Option::unwrap_or_default);
             let fails = if bad > 0 { ", FAILS its tolerance" } else { "" };
-            format!("{}{steps}{seconds}, ζ {zeta:.8}{gap}{fails}", reached.replace('_', " "))
+            format!("{}{steps}{seconds}, ζ {zeta:.8}{gap}{fails}", reached.map_or("", Reached::in_words))
         }
         [RunTableRow { task, reason, .. }] if task == "learn" => reason.clone(),
         rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
@@ -365,7 +365,7 @@ mod tests {
     #[test]
     fn what_is_not_known_of_a_run_is_not_said_to_be_zero() {
         let bare = RunTableRow::without_numbers("0001", RunState::Done, "");
-        let known = RunTableRow { zeta: Some(0.01), reached: "budget_spent".to_owned(), ..bare };
+        let known = RunTableRow { zeta: Some(0.01), reached: Some(results::Reached::BudgetSpent), ..bare };
         assert_eq!(said(std::slice::from_ref(&known)), "budget spent, ζ 0.01000000");
         let all = RunTableRow {
             steps: Some(7),

@@ -1,5 +1,6 @@
 //! Classes of effects that several rigs of one build share: their probability over all rigs, and where coefficients agree.
 
+use record::Origin;
 use report::{format, nameless_share};
 use results::{
     DiagnosisResult, EffectRow, FarthestPair, ParameterRow, RigClassRow, RigRow, RigValueRow, SharedClassRow,
@@ -37,13 +38,10 @@ pub(super) struct Answered {
 
 impl Answered {
     pub(super) fn row(&self) -> RigRow {
-        let mut origins = self.result.records.iter().map(|record| record.origin.as_str());
-        let first = origins.next().unwrap_or("unstated");
-        let origin = if origins.all(|other| other == first) { first } else { "unstated" };
         RigRow {
             name: self.name.clone(),
             folder: self.folder.clone(),
-            origin: origin.to_owned(),
+            origin: Origin::shared(self.result.records.iter().map(|record| record.origin)),
             status: self.result.verdict.status,
             summary: self.result.verdict.summary.clone(),
             nameless_share: nameless_share(&self.result),

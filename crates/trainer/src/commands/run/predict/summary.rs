@@ -3,8 +3,8 @@
 use crate::terminal::table::table;
 use report::format;
 use results::{
-    Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PredictionOutcome, PredictionResult, PredictionRow,
-    ProblemOutcome, ProblemRow, ProblemStudy,
+    Coverage, HeldOutScore, MethodScores, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome,
+    ProblemRow, ProblemStudy,
 };
 use std::path::Path;
 
@@ -31,7 +31,7 @@ pub(super) fn summary(result: &PredictionResult, folder: &Path) -> String {
 }
 
 fn problem(row: &ProblemRow) -> String {
-    let head = format!("{} ({})", row.title, row.origin.to_uppercase());
+    let head = format!("{} ({})", row.title, row.origin.name().to_uppercase());
     match &row.outcome {
         ProblemOutcome::Absent { reason } => format!("{head}\nABSENT: {reason}"),
         ProblemOutcome::Studied(study) => {
@@ -59,8 +59,7 @@ fn problem(row: &ProblemRow) -> String {
 
 /// Methods with an outcome, and those whose turn had not come when the run was interrupted.
 fn begun(study: &ProblemStudy) -> (Vec<&PredictionRow>, Vec<&PredictionRow>) {
-    let waits = |row: &&PredictionRow| matches!(&row.outcome, PredictionOutcome::Failed { reason } if reason == NOT_BEGUN);
-    study.methods.iter().partition(|row| !waits(row))
+    study.methods.iter().partition(|row| !row.outcome.is_not_begun())
 }
 
 /// Methods that draw the best exponential's own line share one row.

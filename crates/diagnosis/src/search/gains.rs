@@ -1,0 +1,86 @@
+//! What candidates promise to first order, and what of that is worth a fit.
+
+use crate::data::segments::Data;
+use crate::fit::fitted::Fit;
+use crate::model::candidate::Candidate;
+use crate::model::dictionary::{Dictionary, Gain};
+use crate::noise::spectrum::DECAYS;
+use crate::search::proposals::{Proposal, additions, proposal};
+
+/// Gains of single entries, the best shape of each candidate, best first.
+pub(crate) fn singles(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<(Candidate, Gain)> = Vec::new();
+    for (index, entry) in dictionary.entries.iter().enumerate() {
+        let Some(gain) = dictionary.gain(&[index]) else { continue };
+        match best.iter_mut().find(|(candidate, _)| *candidate == entry.candidate) {
+            Some((_, known)) if gain.squares > known.squares => *known = gain,
+            Some(_) => {}
+            None => best.push((entry.candidate, gain)),
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Joint gains of two candidates, the best shapes of each pair, best first.
+pub(crate) fn pairs(dictionary: &Dictionary) -> Vec<Gain> {
+    let mut best: Vec<((Candidate, Candidate), Gain)> = Vec::new();
+    for (first, one) in dictionary.entries.iter().enumerate() {
+        for (second, other) in dictionary.entries.iter().enumerate().skip(first + 1) {
+            if one.candidate == other.candidate {
+                continue;
+            }
+            let Some(gain) = dictionary.gain(&[first, second]) else { continue };
+            let pair = (one.candidate, other.candidate);
+            match best.iter_mut().find(|(known, _)| *known == pair) {
+                Some((_, known)) if gain.squares > known.squares => *known = gain,
+                Some(_) => {}
+                None => best.push((pair, gain)),
+            }
+        }
+    }
+    let mut gains: Vec<Gain> = best.into_iter().map(|(_, gain)| gain).collect();
+    gains.sort_by(|a, b| b.squares.total_cmp(&a.squares));
+    gains
+}
+
+/// Autocorrelation time up to which a residual counts as white: what is left then hides nothing.
+pub(crate) const WHITE: f64 = 1.5;
+
+/// Part of the threshold that the linearized gain has to promise at a white residual.
+const PROMISE: f64 = 0.5;
+
+/// Every candidate alone, at the best of its shapes.
+pub(crate) fn alone(data: &Data, calibrated: &Fit, dictionary: &Dictionary) -> Vec<Proposal> {
+    let linear = singles(dictionary);
+    let linear = linear.iter().map(|gain| additions(&data.facts, dictionary, gain));
+    let further = dictionary.further.iter().map(|(candidate, start, _)| vec![(*candidate, start.clone())]);
+    linear.chain(further).map(|added| proposal(data, calibrated, &[], &added)).collect()
+}
+
+/// Whether a linearized gain is worth a fit. Where the residual still has structure anything is: a second cause may
+/// show only once the first is in. The best of many frequencies promises something where there is nothing:
+/// the logarithm of how many `looked` at there were, for a sine and a cosine in white noise.
+pub(crate) fn promising(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+    time > WHITE || stands_out(base, time, gain, threshold, looked)
+}
+
+/// Whether a linearized gain would count by itself, however much structure is left beside it.
+pub(crate) fn stands_out(base: &Fit, time: f64, gain: f64, threshold: f64, looked: f64) -> bool {
+    base.nats_behind(base.squares - gain, time) > PROMISE * threshold + looked.ln()
+}
+
+/// The same of candidates that no columns stand for: those bring start states of their own into every
+/// segment, and a line in the spectrum of many short ones has to be worth these.
+pub(crate) fn stands_alone(
+    base: &Fit,
+    time: f64,
+    (candidate, gain): (Candidate, f64),
+    threshold: f64,
+    looked: f64,
+) -> bool {
+    let starts = (candidate.free_hidden() * base.point.starts.len()) as f64;
+    let price = starts * (base.samples() as f64 / time).max(2.0).ln();
+    stands_out(base, time, gain, threshold.max(price), looked * DECAYS.len() as f64)
+}
