@@ -104,7 +104,7 @@ fn read(
     Ok(Ready {
         id: problem.id.clone(),
         title: problem.title.clone(),
-        origin: summary.origin.clone(),
+        origin: summary.origin,
         unit: summary.unit.clone(),
         data: Some(summary),
         truth: None,
