@@ -273,7 +273,7 @@ fn a_result_that_was_cut_off_anywhere_is_interrupted() {
             RunState::Interrupted,
         ),
         (
-            comparison(vec![method("ols", fitted("stalled")), failed("interrupted before")]),
+            comparison(vec![method("ols", fitted("stalled")), failed(results::NOT_BEGUN)]),
             RunState::Interrupted,
         ),
     ] {
