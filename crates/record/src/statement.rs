@@ -41,6 +41,7 @@ impl Origin {
     #[must_use]
     pub fn shared(origins: impl IntoIterator<Item = Self>) -> Self {
         let mut origins = origins.into_iter();
+        // Of no record nothing is stated.
         let first = origins.next().unwrap_or_default();
         if origins.all(|other| other == first) { first } else { Self::Unstated }
     }

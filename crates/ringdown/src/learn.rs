@@ -174,5 +174,6 @@ fn data_set(
 /// Origin of the records, as far as one states it.
 fn origin(records: &[Record]) -> Origin {
     let stated = |record: &Record| record.loaded.origin.or(record.loaded.source.statements.origin);
+    // What nobody stated is unstated.
     records.iter().find_map(stated).unwrap_or_default()
 }

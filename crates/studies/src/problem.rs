@@ -69,6 +69,7 @@ pub fn prepare(study: &PredictionStudy, problem: &Problem) -> Result<Result<Read
         ProblemSource::Record { data, .. } => Ok(Err(Missing {
             id: problem.id.clone(),
             title: problem.title.clone(),
+            // What nobody stated is unstated.
             origin: data.statements().origin.unwrap_or_default(),
             reason: missing(&problem.id, data),
         })),
