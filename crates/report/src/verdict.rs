@@ -312,4 +312,10 @@ mod tests {
             assert_eq!(in_a_sentence(title), expected);
         }
     }
+    #[test]
+    fn every_origin_has_its_own_look() {
+        assert_eq!(origin(results::Origin::Measured).class, "measured");
+        assert_eq!(origin(results::Origin::Simulated).class, "simulated");
+        assert_eq!(origin(results::Origin::Unstated).class, "unstated");
+    }
 }

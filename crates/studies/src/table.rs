@@ -23,7 +23,7 @@ pub struct StudiedMethod {
     pub id: &'static str,
     /// Title in tables.
     pub title: &'static str,
-    /// `"classical"` or `"learned"`.
+    /// Where it comes from.
     pub family: Family,
 }
 

@@ -16,7 +16,7 @@ use crate::search::archive::{Archive, is_another};
 use crate::search::asked::Asked;
 use crate::search::gains::{pairs, promising, singles, stands_alone, stands_out};
 use crate::search::proposals::{
-    Proposal, additions, begins_closer, fit_all, generalized, left_over, proposal, reshaped, simplified,
+    Proposal, additions, begins_closer, fit_new, generalized, left_over, proposal, reshaped, simplified,
     take_in,
 };
 use crate::search::weak_form::from_weak_form;
@@ -106,10 +106,7 @@ fn settle(data: &Data, pool: &mut Archive, tried: &mut BTreeSet<Vec<usize>>, pro
         squares_at(best - FAR_BEHIND, data.samples(), proposal.point.globals.len(), time)
     };
     while !waiting.is_empty() {
-        waiting.retain(|own| pool.is_new(&own.hypothesis, &own.point, Stopping::SEARCH.steps));
-        let fits = fit_all(data, &waiting, |own| {
-            Stopping::SEARCH.below(of_use(own).min(pool.known_squares(&own.hypothesis)))
-        });
+        let fits = fit_new(data, pool, waiting, |own| Stopping::SEARCH.below(of_use(own)));
         waiting = fits
             .iter()
             .filter_map(|fit| left_over(data, fit))

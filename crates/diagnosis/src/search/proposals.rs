@@ -186,13 +186,24 @@ pub(crate) fn fit_all(
     fits.into_iter().flatten().collect()
 }
 
-/// Fits proposals where no fit of the archive has begun yet, and takes them in. A set that is known is of use only where it
-/// ends closer.
-pub(crate) fn take_in(data: &Data, archive: &mut Archive, mut proposals: Vec<Proposal>, effort: Stopping) {
-    proposals.retain(|own| archive.is_new(&own.hypothesis, &own.point, effort.steps));
+/// Fits proposals where no fit of the archive has begun yet. A set that is known is of use only where it ends closer.
+pub(crate) fn fit_new(
+    data: &Data,
+    archive: &mut Archive,
+    mut proposals: Vec<Proposal>,
+    effort: impl Fn(&Proposal) -> Stopping + Sync,
+) -> Vec<Fit> {
+    proposals.retain(|own| archive.is_new(&own.hypothesis, &own.point, effort(own).steps));
     let known: &Archive = archive;
-    let fits = fit_all(data, &proposals, |own| effort.below(known.known_squares(&own.hypothesis)));
-    for fit in fits {
+    fit_all(data, &proposals, |own| {
+        let own_effort = effort(own);
+        own_effort.below(own_effort.below.min(known.known_squares(&own.hypothesis)))
+    })
+}
+
+/// The same, and takes the fits in.
+pub(crate) fn take_in(data: &Data, archive: &mut Archive, proposals: Vec<Proposal>, effort: Stopping) {
+    for fit in fit_new(data, archive, proposals, |_| effort) {
         archive.admit(data, fit);
     }
 }
