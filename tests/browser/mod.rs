@@ -243,7 +243,7 @@ fn hostile_names_are_text() {
         config.to_str().unwrap().to_owned()
     };
     let run = made(&scratch, &format!("{evil}-run"), &[&config("pinn.toml"), "fit.max_steps=5"]);
-    let comparison = made(&scratch, &format!("{evil}-all"), &[&config("compare.toml")]);
+    let comparison = made(&scratch, &format!("{evil}-all"), &[&config("compare.toml"), "fit.max_steps=5"]);
     let both = [run.to_str().unwrap(), comparison.to_str().unwrap()];
     let table = made(&scratch, &format!("{evil}-table"), &[&["compare"], &both[..]].concat());
     let sweep = made(&scratch, &format!("{evil}-sweep"), &["sweep", &config("ols.toml"), "seed=0,1"]);

@@ -14,7 +14,7 @@ fn a_record_with_sine_drag_is_diagnosed_as_it() {
     let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
     let own = vec![Active::new("sine_drag", &[1.2]).unwrap()];
     let system = System::new(nominal, own).unwrap();
-    let times: Vec<f64> = (0..5200).map(|i| f64::from(i) / 260.0).collect();
+    let times: Vec<f64> = (0..2600).map(|i| f64::from(i) / 130.0).collect();
     let motion = simulate(&system, Start::release(0.8), None, &times, &Tolerance::default()).unwrap();
     let chain = Chain::new(Observed::Position, 2e-4, Vec::new()).unwrap();
     let draws = |id: &str| Seed::new(5).child(id).generator();

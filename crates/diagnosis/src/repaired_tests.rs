@@ -17,9 +17,9 @@ fn nominal() -> Nominal {
     Nominal::new(1.0, 2.0 * 0.006 * omega, omega * omega, 0.0).unwrap()
 }
 
-/// A system's record, 260 samples a second; a driven one starts at rest.
+/// A system's record, 130 samples a second; a driven one starts at rest.
 fn record(system: &System, release: f64, seconds: f64, is_driven: bool, seed: u64) -> Observations {
-    let times: Vec<f64> = (0..(seconds * 260.0) as usize).map(|i| i as f64 / 260.0).collect();
+    let times: Vec<f64> = (0..(seconds * 130.0) as usize).map(|i| i as f64 / 130.0).collect();
     // A chirp from below the resonance to above it.
     let drive: Vec<f64> = times.iter().map(|t| 25.0 * ((8.0 + 0.5 * t) * t).sin()).collect();
     let input = is_driven.then(|| Input::new(times.clone(), drive.clone(), Hold::Zero).unwrap());

@@ -55,12 +55,12 @@ pub struct ComparisonResult {
 impl ComparisonResult {
     /// The methods whose value is held against least squares.
     pub fn held_to_least_squares(&self) -> impl Iterator<Item = &MethodRow> {
-        self.results.iter().filter(|row| row.estimand != Estimand::Own)
+        self.results.iter().filter(|row| row.is_held_to_least_squares())
     }
 
     /// The methods that estimate something else, for which a distance from least squares is no error.
     pub fn of_their_own(&self) -> impl Iterator<Item = &MethodRow> {
-        self.results.iter().filter(|row| row.estimand == Estimand::Own)
+        self.results.iter().filter(|row| !row.is_held_to_least_squares())
     }
 }
 
@@ -108,6 +108,14 @@ pub struct MethodRow {
     pub estimand: Estimand,
     /// Estimate, or the reason why there is none.
     pub outcome: MethodOutcome,
+}
+
+impl MethodRow {
+    /// Whether its value is held against least squares; where it estimates something else, a distance from it is no error.
+    #[must_use]
+    pub fn is_held_to_least_squares(&self) -> bool {
+        self.estimand != Estimand::Own
+    }
 }
 
 /// A method's first seed fitted without a part of it.

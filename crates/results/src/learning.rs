@@ -1,5 +1,6 @@
 //! What `task = "learn"` leaves: learners and baselines on records they never saw.
 
+use crate::method::Reached;
 use record::Origin;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -143,18 +144,11 @@ impl LearnKind {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum LearnEnd {
-    /// The method's own condition for a solution holds.
-    Converged,
-    /// The budget ended first.
-    BudgetSpent,
-    /// The loss grew without bound; the best state before is kept.
-    Diverged,
-    /// No step improves the fit, and the method's own condition does not hold either.
-    Stalled,
-    /// Stopped on request.
-    Interrupted,
     /// Nothing was learned.
     Failed,
+    /// The state that the training reached.
+    #[serde(untagged)]
+    Trained(Reached),
 }
 
 impl LearnEnd {
@@ -162,12 +156,8 @@ impl LearnEnd {
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
-            Self::Converged => "converged",
-            Self::BudgetSpent => "budget_spent",
-            Self::Diverged => "diverged",
-            Self::Stalled => "stalled",
-            Self::Interrupted => "interrupted",
             Self::Failed => "failed",
+            Self::Trained(reached) => reached.name(),
         }
     }
 }
@@ -261,4 +251,19 @@ pub struct LearnTraceRow {
     pub train: f64,
     /// Free-run error on the validation part.
     pub validation: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{LearnEnd, Reached};
+
+    #[test]
+    fn the_end_of_a_training_is_one_word() {
+        for end in Reached::ALL.map(LearnEnd::Trained).into_iter().chain([LearnEnd::Failed]) {
+            let written = serde_json::to_string(&end).unwrap();
+            assert_eq!(written, format!("\"{}\"", end.name()));
+            assert_eq!(serde_json::from_str::<LearnEnd>(&written).unwrap(), end);
+        }
+        assert!(serde_json::from_str::<LearnEnd>("\"lost\"").is_err());
+    }
 }

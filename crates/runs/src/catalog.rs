@@ -295,7 +295,10 @@ fn learning(result: &LearnResult) -> Content {
         task: result.task.clone(),
         estimator: only,
         summary,
-        is_interrupted: result.results.iter().any(|row| row.reached == LearnEnd::Interrupted),
+        is_interrupted: result
+            .results
+            .iter()
+            .any(|row| row.reached == LearnEnd::Trained(Reached::Interrupted)),
         rows: vec![row],
     }
 }

@@ -212,7 +212,7 @@ mod tests {
         let nominal = Nominal::new(1.0, 0.2, 480.0, 0.0).unwrap();
         let active = effects.iter().map(|(id, values)| Active::new(id, values).unwrap()).collect();
         let system = System::new(nominal, active).unwrap();
-        let times: Vec<f64> = (0..3900).map(|i| f64::from(i) / 260.0).collect();
+        let times: Vec<f64> = (0..1950).map(|i| f64::from(i) / 130.0).collect();
         let motion = simulate(&system, Start::release(0.7), None, &times, &Tolerance::default()).unwrap();
         let mut generator = Seed::new(5).child("noise").generator();
         let noise = StandardNormal.sample_iter(&mut generator);

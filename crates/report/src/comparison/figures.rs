@@ -2,7 +2,6 @@
 
 use results::{EnvelopeRow, MethodRow};
 
-use super::parts::estimate;
 use crate::figures::{Figure, csv, figure, number, oracle, time_axis};
 use crate::format;
 use crate::parse::Comparison;
@@ -77,7 +76,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
             format::percent(LEAST_PERCENT)
         ));
     }
-    let silent = result.results.iter().filter(|row| estimate(row).is_none()).count();
+    let silent = result.results.iter().filter(|row| row.outcome.estimate().is_none()).count();
     if silent > 0 {
         notes.push(format!("Rows without a mark gave no estimate: {silent}."));
     }
@@ -88,7 +87,7 @@ fn errors(comparison: &Comparison) -> Option<Figure> {
         ["number", "method", "error_percent", "median_error_percent", "worst_error_percent", "seeds"];
     let (csv, rows) = csv(&header, &result.results, |row: &MethodRow| {
         let mut fields = vec![row.number.map_or_else(String::new, |n| n.to_string()), row.id.clone()];
-        match estimate(row) {
+        match row.outcome.estimate() {
             Some(found) => {
                 let errors = [found.error_percent, found.median_error_percent, found.worst_error_percent];
                 fields.extend(errors.map(number));
@@ -113,14 +112,16 @@ fn dot_row(row: &MethodRow) -> DotRow {
             Some(number) => format!("{number} {}", row.title),
             None => row.title.clone(),
         },
-        value: estimate(row).map(|found| drawn(found.error_percent)),
-        extreme: estimate(row).map(|found| drawn(found.worst_error_percent)),
+        value: row.outcome.estimate().map(|found| drawn(found.error_percent)),
+        extreme: row.outcome.estimate().map(|found| drawn(found.worst_error_percent)),
         interval: None,
     }
 }
 
 fn errors_of(rows: &[MethodRow]) -> impl Iterator<Item = f64> + '_ {
-    rows.iter().filter_map(estimate).flat_map(|found| [found.error_percent, found.worst_error_percent])
+    rows.iter()
+        .filter_map(|row| row.outcome.estimate())
+        .flat_map(|found| [found.error_percent, found.worst_error_percent])
 }
 
 fn peaks(points: impl Iterator<Item = (f64, f64)>) -> Series {

@@ -2,7 +2,7 @@
 
 use results::{ComparisonResult, MethodEstimate, MethodRow};
 
-use super::parts::{WordTable, estimate, estimates};
+use super::parts::{WordTable, estimates};
 use super::verdict::listed;
 use crate::format::{count, duration, fixed, percent, significant};
 use crate::tables::whole;
@@ -160,7 +160,7 @@ fn numbered(result: &ComparisonResult, number: u8) -> Option<(&MethodRow, &Metho
 /// What there is to say of a method of the paper, or that there is nothing.
 fn of(result: &ComparisonResult, number: u8, name: &str, say: impl Fn(&MethodEstimate) -> String) -> String {
     match result.results.iter().find(|row| row.number == Some(number)) {
-        Some(row) => match estimate(row) {
+        Some(row) => match row.outcome.estimate() {
             Some(found) => format!("{name}: {}", say(found)),
             None => format!("{name}: no estimate"),
         },

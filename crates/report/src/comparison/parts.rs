@@ -17,9 +17,5 @@ pub(super) struct WordTable {
 
 /// The methods that gave an estimate, with it.
 pub(super) fn estimates(result: &ComparisonResult) -> impl Iterator<Item = (&MethodRow, &MethodEstimate)> {
-    result.results.iter().filter_map(|row| estimate(row).map(|estimate| (row, estimate)))
-}
-
-pub(super) fn estimate(row: &MethodRow) -> Option<&MethodEstimate> {
-    row.outcome.estimate()
+    result.results.iter().filter_map(|row| row.outcome.estimate().map(|estimate| (row, estimate)))
 }

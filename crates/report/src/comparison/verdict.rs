@@ -2,7 +2,7 @@
 
 use results::{ComparisonResult, MethodRow, Reached};
 
-use super::parts::{estimate, estimates};
+use super::parts::estimates;
 use crate::format;
 use crate::verdict::{Tone, Verdict, in_a_sentence};
 
@@ -108,7 +108,7 @@ fn shortfalls(result: &ComparisonResult) -> String {
     let silent: Vec<String> = result
         .results
         .iter()
-        .filter(|row| estimate(row).is_none())
+        .filter(|row| row.outcome.estimate().is_none())
         .map(|row| in_a_sentence(&row.title))
         .collect();
     [("outside", outside), ("no estimate", silent)]
@@ -130,7 +130,9 @@ fn unfinished(result: &ComparisonResult) -> Option<String> {
 /// The method with the largest error over its seeds; of equals the first.
 fn worst(result: &ComparisonResult) -> Option<(&MethodRow, f64)> {
     let mut found: Option<(&MethodRow, f64)> = None;
-    for (row, estimate) in result.held_to_least_squares().filter_map(|row| Some((row, estimate(row)?))) {
+    for (row, estimate) in
+        result.held_to_least_squares().filter_map(|row| Some((row, row.outcome.estimate()?)))
+    {
         let error = estimate.worst_error_percent;
         if error.is_finite() && found.is_none_or(|(_, largest)| error > largest) {
             found = Some((row, error));
@@ -204,7 +206,7 @@ mod tests {
         result.results.clear();
         assert_eq!(of(&result).0, Tone::Bad);
         let mut failing = sample::result();
-        failing.results.retain(|row| estimate(row).is_none());
+        failing.results.retain(|row| row.outcome.estimate().is_none());
         let (_, label, text) = of(&failing);
         assert_eq!(label, "None within tolerance");
         assert!(text.starts_with("The one method does not agree"), "{text}");

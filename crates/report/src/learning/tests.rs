@@ -1,7 +1,7 @@
 use crate::{RunTexts, render};
 use results::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnResult, LearnRow, LearnTest, Origin,
-    RESULT_SCHEMA,
+    RESULT_SCHEMA, Reached,
 };
 use std::collections::BTreeMap;
 
@@ -34,7 +34,7 @@ fn row(id: &str, kind: LearnKind, error: Option<f64>) -> LearnRow {
         torque_error: Some(0.012),
         parameters: 4,
         seconds: 0.2,
-        reached: LearnEnd::Converged,
+        reached: LearnEnd::Trained(Reached::Converged),
         failure: error.is_none().then(|| "needs <a> nominal simulator".to_owned()),
         model: None,
     }

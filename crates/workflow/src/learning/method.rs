@@ -1,14 +1,13 @@
 //! Methods of a learning study: the registries' learners and baselines, each tried on a data set and judged.
 
 use super::Ready;
-use estimator::Reached;
 use experiment::LearnSettings;
 use learn::baselines::{BASELINES, exact};
 use learn::data::DataSet;
 use learn::judge::{Run, Score, Truth, runs, score, validation_error};
 use learn::learners::LEARNERS;
 use learn::{Context, Fitted, LearnError, Learner, Model};
-use results::{LearnEnd, LearnKind};
+use results::{LearnKind, Reached};
 use settings::{Resolved, SettingsError};
 
 type Make<'a> = Box<dyn Fn(&Ready, &Context<'_>) -> Result<Fitted, LearnError> + Send + Sync + 'a>;
@@ -29,7 +28,7 @@ pub struct Judged {
     /// The model.
     pub model: Box<dyn Model>,
     /// State that the training reached.
-    pub reached: LearnEnd,
+    pub reached: Reached,
     /// Scores on the test part.
     pub score: Score,
     /// Error of free runs over the validation part, in the position's unit; infinite where one fails.
@@ -79,26 +78,16 @@ pub fn method_of<'a>(id: &'a str, title: &'a str, learner: &'a dyn Learner) -> M
 /// [`LearnError`] where the method gives no model.
 pub fn attempt(ready: &Ready, method: &Method<'_>, context: &Context<'_>) -> Result<Judged, LearnError> {
     let fitted = context.check().and_then(|()| (method.make)(ready, context))?;
-    Ok(judged(fitted.model, end_of(fitted.reached), &ready.data))
+    Ok(judged(fitted.model, fitted.reached, &ready.data))
 }
 
 /// A model with its scores on the test part.
 #[must_use]
-pub fn judged(model: Box<dyn Model>, reached: LearnEnd, data: &DataSet) -> Judged {
+pub fn judged(model: Box<dyn Model>, reached: Reached, data: &DataSet) -> Judged {
     let runs = runs(model.as_ref(), data);
     let score = score(model.as_ref(), &runs, data);
     let validation = validation_error(model.as_ref(), data);
     Judged { model, reached, score, validation, runs }
-}
-
-fn end_of(reached: Reached) -> LearnEnd {
-    match reached {
-        Reached::Converged => LearnEnd::Converged,
-        Reached::BudgetSpent => LearnEnd::BudgetSpent,
-        Reached::Diverged => LearnEnd::Diverged,
-        Reached::Interrupted => LearnEnd::Interrupted,
-        Reached::Stalled => LearnEnd::Stalled,
-    }
 }
 
 /// The true torque of a data set's records at visited states, where it is a function of the state.

@@ -9,6 +9,7 @@ use learn::learners::find;
 use record::Origin;
 use results::{
     LearnCoefficient, LearnData, LearnEnd, LearnKind, LearnProblem, LearnRow, LearnTest, LearnValidation,
+    Reached,
 };
 use seed::Seed;
 use std::collections::BTreeMap;
@@ -42,7 +43,7 @@ pub fn row(
     };
     match &tried.fitted {
         Err(LearnError::Interrupted) => {
-            row.reached = LearnEnd::Interrupted;
+            row.reached = LearnEnd::Trained(Reached::Interrupted);
             let seen = tried.steps.iter().filter_map(|step| step.validation);
             row.validation = validation(seen.fold(f64::INFINITY, f64::min), ready);
         }
@@ -56,7 +57,7 @@ pub fn row(
             row.torque_error =
                 truth.and_then(|truth| truth.torque_error(made)).filter(|error| error.is_finite());
             row.parameters = made.parameters();
-            row.reached = judged.reached;
+            row.reached = LearnEnd::Trained(judged.reached);
             row.model = model.filter(|_| made.stored().is_some());
         }
     }
@@ -91,7 +92,7 @@ pub fn ablation_rows(
         torque_error: None,
         parameters: model.parameters(),
         seconds: 0.0,
-        reached: if score.is_ok() { judged.reached } else { LearnEnd::Failed },
+        reached: if score.is_ok() { LearnEnd::Trained(judged.reached) } else { LearnEnd::Failed },
         failure: score.err().map(|error| error.to_string()),
         model: None,
     };

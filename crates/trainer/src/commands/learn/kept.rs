@@ -5,7 +5,7 @@ use crate::folders::resume::{Ledger, Resumed};
 use ::learn::learners::find;
 use ::learn::{Context, LearnError, Step, Stored};
 use estimator::{Cancel, Checkpoints};
-use results::LearnEnd;
+use results::Reached;
 use seed::Seed;
 use serde::{Deserialize, Serialize};
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -17,7 +17,7 @@ use workflow::learning::{Judged, Method, Ready, Tried, attempt, judged};
 struct Finished {
     /// Bytes of the model's file.
     model: Vec<u8>,
-    reached: LearnEnd,
+    reached: Reached,
     seconds: f64,
     steps: Vec<Step>,
 }

@@ -14,7 +14,6 @@ use crate::folders::resume::end;
 use crate::outcome::Outcome;
 use crate::terminal::interrupt::Saving;
 use crate::terminal::progress::Progress;
-use estimator::Estimand;
 use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
@@ -173,7 +172,7 @@ fn result(run: &Run<'_>, comparison: &Comparison, results: Vec<MethodRow>, secon
     let libraries =
         vec![linfa(&input.extraction.envelope, input.oracle.decay_rate, experiment.fit.tolerance_percent)];
     // The distance of what estimates something else is no error.
-    let held = results.iter().filter(|row| row.estimand != Estimand::Own);
+    let held = results.iter().filter(|row| row.is_held_to_least_squares());
     let max_error_percent =
         scoring::worst(held.filter_map(|row| row.outcome.estimate()).map(|own| own.worst_error_percent));
     let pass = results.iter().chain(&libraries).all(|row| row.outcome.passes());
