@@ -15,7 +15,7 @@ use ringdown_lab::{Arrays, DiagnosisOptions, Error, Nominal, Origin, Record, dia
 // ANCHOR: record
 /// The new law: torque per inertia of a damping that grows away from the middle.
 fn sine_drag(position: f64, velocity: f64) -> f64 {
-    -1.2 * velocity * position.sin().powi(2)
+    -0.3 * velocity * position.sin().powi(2)
 }
 
 /// A record of an arm with it, integrated by the classical Runge–Kutta method; every sample lies on the encoder's steps.
@@ -24,11 +24,11 @@ fn record(arm: &Nominal) -> Result<Record, Error> {
     let acceleration = |position: f64, velocity: f64| {
         -own.stiffness * position - own.damping * velocity + sine_drag(position, velocity)
     };
-    let (rate, substeps, encoder) = (260.0, 8, 3e-4_f64);
+    let (rate, substeps, encoder) = (130.0, 16, 3e-4_f64);
     let step = 1.0 / (rate * f64::from(substeps));
     let (mut position, mut velocity) = (0.8_f64, 0.0_f64);
     let (mut times, mut values) = (Vec::new(), Vec::new());
-    for sample in 0..5200 {
+    for sample in 0..1950 {
         times.push(f64::from(sample) / rate);
         values.push((position / encoder).round() * encoder);
         for _ in 0..substeps {

@@ -23,7 +23,7 @@ const TINY: &[&str] = &[
     "trials.engine_cases=0",
     "trials.composite=0",
     "trials.rigs_cases=0",
-    "record.seconds=8",
+    "record.seconds=5",
     "record.rate_hz=130",
 ];
 

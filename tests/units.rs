@@ -27,7 +27,7 @@ fn a_driven_record_names_the_factor_that_its_input_is_off_by() {
     let nominal = "inertia = 0.3333333\ndamping = 0.2666667\nstiffness = 21.333333\nrest_angle = 0.0\n\
                    input_gain = 1.0\n";
     let nominal = write(scratch.path(), "nominal.toml", nominal);
-    let text = driven(20, false);
+    let text = driven(16, false);
     for (at, (factor, words)) in [
         (1.0 / 9.806_65, "9.81 times smaller than the simulator states: is a force or a torque in kgf"),
         (180.0 / std::f64::consts::PI, "57.3 times larger than the simulator states: is an angle in degrees"),

@@ -11,7 +11,7 @@ name = "waves"
 coordinate = "{coordinate}"
 [record]
 rate_hz = 130.0
-seconds = 12.0
+seconds = 8.0
 [start]
 position = 0.7
 [sensor]

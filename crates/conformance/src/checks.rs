@@ -351,23 +351,24 @@ fn pure(subject: &Subject<'_>) -> Result<(), String> {
     Ok(())
 }
 
-/// Sixteen times the peaks over the same span: a quarter of the error, within what twelve draws tell.
+/// Eight times the peaks over the same span: the error by √8 smaller, within what twenty draws tell.
 fn falls(subject: &Subject<'_>) -> Result<(), String> {
+    const DRAWS: u64 = 20;
     let rate = 0.2;
     let error = |peaks: usize| -> Result<f64, String> {
         let mut squares = 0.0;
-        for draw in 0..12 {
+        for draw in 0..DRAWS {
             let seed = Seed::new(draw).child("falls");
             let dense = given(scattered(peaks, rate * 20.0 / peaks as f64, 0.1, &seed))?;
             let estimate =
                 subject.read(&dense, subject.seed_of_draw(draw), None).map_err(|error| error.to_string())?;
             squares += (estimate.decay_rate * peaks as f64 / 20.0 - rate).powi(2);
         }
-        Ok((squares / 12.0).sqrt())
+        Ok((squares / DRAWS as f64).sqrt())
     };
-    let ratio = error(20)? / error(320)?;
-    // log(ratio)/log(16) is 1/2; its standard error over 12 + 12 draws is about 0.1.
-    let exponent = ratio.ln() / 16_f64.ln();
+    let ratio = error(20)? / error(160)?;
+    // log(ratio)/log(8) is 1/2; its standard error over 20 + 20 draws is about 0.1.
+    let exponent = ratio.ln() / 8_f64.ln();
     if (0.2..0.8).contains(&exponent) {
         Ok(())
     } else {

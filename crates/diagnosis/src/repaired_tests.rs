@@ -73,7 +73,7 @@ fn what_a_simulator_has_is_recalibrated_and_never_missing() {
     let acting = [("gravity", &[400.0, 0.1][..]), ("coulomb_friction", &[0.5])];
     let of = |count: usize| {
         let active = acting[..count].iter().map(|(id, values)| Active::new(id, values).unwrap());
-        record(&System::new(bare, active.collect()).unwrap(), 0.9, 15.0, false, 5)
+        record(&System::new(bare, active.collect()).unwrap(), 0.9, 9.0, false, 5)
     };
     let right = NominalSimulator::new(bare, known("gravity", &[400.0, 0.1], true)).unwrap();
     assert_eq!(answer(&of(1), &right).verdict.status, Status::None);
