@@ -111,12 +111,14 @@ impl<'a> Inclusion<'a> {
             .filter(|class| *class != EvidenceClass::Unnamed)
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
+        let open = self.open();
         let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
         for row in &mut rows {
             let shown = Shown {
                 evidence: &row.evidence,
                 ratio: row.error_without / row.error_with,
                 leads: row.evidence.replacement > 0.0 && row.evidence.replacement >= most,
+                open,
             };
             row.probability = probability(&shown, self.sets.left_over);
         }
@@ -133,6 +135,13 @@ impl<'a> Inclusion<'a> {
             }
         }
         rows
+    }
+
+    /// Held-out error of the best set over that of the recalibrated simulator; no number where one of them is missing.
+    fn open(&self) -> f64 {
+        let bare = self.sets.weighed.iter().position(|w| w.fit.hypothesis.candidates.is_empty());
+        let bare = bare.and_then(|place| self.sets.left.get(place));
+        self.sets.best().zip(bare).map_or(f64::NAN, |((_, error), bare)| error / bare.error)
     }
 
     /// Probability that one of two classes acts that take each other's place; none where they do not.
@@ -152,7 +161,12 @@ impl<'a> Inclusion<'a> {
         let error = |at: usize| self.sets.left.get(at).map_or(0.0, |left| left.error);
         let replacement = evidence(best) - evidence(neither);
         let evidence = ClassEvidence { replacement, half_swings: None };
-        let shown = Shown { evidence: &evidence, ratio: error(neither) / error(best), leads: false };
+        let shown = Shown {
+            evidence: &evidence,
+            ratio: error(neither) / error(best),
+            leads: false,
+            open: self.open(),
+        };
         Some(probability(&shown, self.sets.left_over))
     }
 
