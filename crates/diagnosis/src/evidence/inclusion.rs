@@ -111,14 +111,14 @@ impl<'a> Inclusion<'a> {
             .filter(|class| *class != EvidenceClass::Unnamed)
             .filter_map(|class| Some((class, self.class(class, witness, seed)?)))
             .unzip();
-        let open = self.open();
+        let remaining = self.remaining();
         let most = rows.iter().map(|row| row.evidence.replacement).fold(0.0, f64::max);
         for row in &mut rows {
             let shown = Shown {
                 evidence: &row.evidence,
                 ratio: row.error_without / row.error_with,
                 leads: row.evidence.replacement > 0.0 && row.evidence.replacement >= most,
-                open,
+                remaining,
             };
             row.probability = probability(&shown, self.sets.left_over);
         }
@@ -138,7 +138,7 @@ impl<'a> Inclusion<'a> {
     }
 
     /// Held-out error of the best set over that of the recalibrated simulator; no number where one of them is missing.
-    fn open(&self) -> f64 {
+    fn remaining(&self) -> f64 {
         let bare = self.sets.weighed.iter().position(|w| w.fit.hypothesis.candidates.is_empty());
         let bare = bare.and_then(|place| self.sets.left.get(place));
         self.sets.best().zip(bare).map_or(f64::NAN, |((_, error), bare)| error / bare.error)
@@ -165,7 +165,7 @@ impl<'a> Inclusion<'a> {
             evidence: &evidence,
             ratio: error(neither) / error(best),
             leads: false,
-            open: self.open(),
+            remaining: self.remaining(),
         };
         Some(probability(&shown, self.sets.left_over))
     }

@@ -38,14 +38,20 @@ struct Learned {
     half_swings: f64,
     error: f64,
     leads: f64,
-    open: f64,
+    remaining: f64,
 }
 
 /// Where something is left beside the best set, and where nothing is.
-const LEARNED: Learned =
-    Learned { constant: -2.07, replacement: 0.58, half_swings: 0.35, error: 0.38, leads: 0.86, open: -0.91 };
+const LEARNED: Learned = Learned {
+    constant: -2.07,
+    replacement: 0.58,
+    half_swings: 0.35,
+    error: 0.38,
+    leads: 0.86,
+    remaining: -0.91,
+};
 const CLEAN: Learned =
-    Learned { constant: -3.19, replacement: 1.24, half_swings: 0.0, error: 0.0, leads: 0.0, open: 0.0 };
+    Learned { constant: -3.19, replacement: 1.24, half_swings: 0.0, error: 0.0, leads: 0.0, remaining: 0.0 };
 
 /// Part of the error from which on an explanation leaves much.
 const MUCH: f64 = 1.0 / 6.0;
@@ -58,7 +64,7 @@ pub(crate) struct Shown<'e> {
     /// Whether there is evidence for it, and for no other class more.
     pub(crate) leads: bool,
     /// Held-out error of the best set over that of the recalibrated simulator.
-    pub(crate) open: f64,
+    pub(crate) remaining: f64,
 }
 
 /// ln of a ratio; 0 where it is no number.
@@ -76,16 +82,16 @@ fn logistic(log_odds: f64) -> f64 {
 }
 
 impl Learned {
-    fn probability(&self, &Shown { evidence, ratio, leads, open }: &Shown<'_>) -> f64 {
+    fn probability(&self, &Shown { evidence, ratio, leads, remaining }: &Shown<'_>) -> f64 {
         let is_witnessed = evidence.half_swings.is_some_and(|nats| nats > 0.0);
-        let open = if is_witnessed { 0.0 } else { log_ratio(open / MUCH).max(0.0) };
+        let remaining = if is_witnessed { 0.0 } else { log_ratio(remaining / MUCH).max(0.0) };
         logistic(
             self.constant
                 + self.replacement * compressed(evidence.replacement)
                 // Half swings that show nothing speak neither for nor against.
                 + self.half_swings * evidence.half_swings.map_or(0.0, compressed)
                 + self.error * log_ratio(ratio)
-                + self.open * open
+                + self.remaining * remaining
                 + if leads { self.leads } else { 0.0 },
         )
     }
@@ -105,7 +111,7 @@ mod tests {
 
     fn of_class(replacement: f64, half_swings: Option<f64>, ratio: f64, left_over: f64) -> f64 {
         let evidence = ClassEvidence { replacement, half_swings };
-        probability(&Shown { evidence: &evidence, ratio, leads: false, open: 0.1 }, left_over)
+        probability(&Shown { evidence: &evidence, ratio, leads: false, remaining: 0.1 }, left_over)
     }
 
     const DOUBTED: f64 = 1.0;
@@ -121,16 +127,17 @@ mod tests {
     #[test]
     fn a_class_that_leads_is_the_surer() {
         let evidence = ClassEvidence { replacement: 30.0, half_swings: None };
-        let of = |leads| probability(&Shown { evidence: &evidence, ratio: 2.0, leads, open: 0.1 }, DOUBTED);
+        let of =
+            |leads| probability(&Shown { evidence: &evidence, ratio: 2.0, leads, remaining: 0.1 }, DOUBTED);
         assert!(of(true) > of(false) + 0.1);
     }
 
     /// Where most of the error is left a class needs a witness, or much evidence.
     #[test]
     fn an_explanation_that_leaves_much_needs_a_witness() {
-        let of = |replacement, half_swings, open| {
+        let of = |replacement, half_swings, remaining| {
             let evidence = ClassEvidence { replacement, half_swings };
-            probability(&Shown { evidence: &evidence, ratio: 1.5, leads: true, open }, DOUBTED)
+            probability(&Shown { evidence: &evidence, ratio: 1.5, leads: true, remaining }, DOUBTED)
         };
         assert!(of(30.0, None, 0.1) > 0.6 && of(30.0, None, 0.5) < 0.5);
         assert_eq!(of(30.0, Some(5.0), 0.1), of(30.0, Some(5.0), 0.5));

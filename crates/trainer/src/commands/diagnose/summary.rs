@@ -126,7 +126,10 @@ fn apart(result: &DiagnosisResult) -> String {
     }
     let distance = result.next_experiment.distance.map_or_else(String::new, |distance| {
         let enough = if distance < DISTINCT_DISTANCE { ", too little by itself" } else { "" };
-        format!(" (predicted distance {}{enough})", significant(distance, 2))
+        format!(
+            " (predicted to set them {} noise standard deviations apart{enough})",
+            significant(distance, 2)
+        )
     });
     lines.push(format!("next experiment: {}{distance}", result.next_experiment.text));
     lines.join("\n")
