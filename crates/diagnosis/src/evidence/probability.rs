@@ -11,8 +11,7 @@
 //!   hardly surer than two hundred where the model itself is in doubt. Evidence against a class says nothing more;
 //! - the logarithm of the held-out error without the class over that with it;
 //! - whether the class leads: none costs as much to go without. What stands in for something is small beside what is there, and
-//!   of 127 leading classes of the training rigs the nine that were not there were all of rigs with nothing but an unlisted law.
-//!
+//!   of 127 leading classes of the training rigs the nine that were not there were all of rigs with nothing but an unlisted law;
 //! - the part of the recalibrated simulator's error that the best set leaves, from a sixth on and in its logarithm, where half
 //!   swings do not show the class. An explanation that leaves much may be a piece of a law that no list has, and then a second
 //!   witness has to speak for it, or many nats: of 18 such leading classes of training rigs with less than 70 nats two were there,
@@ -27,7 +26,8 @@
 //! quarter: few real ones do. The class of an unlisted law is neither there nor not, and is left out. The rigs were made by an integrator
 //! and a physics engine that share no code with the fits, and a bank with another seed scores the numbers
 //! (`reports/trials/README.md`). What the part that is left costs was fitted by itself, the other numbers held, to the 1,033
-//! classes of rigs of the banks `short` (seeds 71 to 77) and `train` (`--kind rough`, seed 41) where something is left.
+//! classes of rigs of the banks `short` (seeds 71 to 77) and `train` (`--kind rough`, seed 41) where something is left, with the part
+//! that answers state: of the repaired simulator, which is nearly that of the best set.
 
 use crate::answer::ClassEvidence;
 
@@ -53,7 +53,7 @@ const LEARNED: Learned = Learned {
 const CLEAN: Learned =
     Learned { constant: -3.19, replacement: 1.24, half_swings: 0.0, error: 0.0, leads: 0.0, remaining: 0.0 };
 
-/// Part of the error from which on an explanation leaves much.
+/// Part of the recalibrated simulator's error from which on an explanation leaves much.
 const MUCH: f64 = 1.0 / 6.0;
 
 /// What a record shows of a class.
