@@ -1,6 +1,7 @@
 //! The recipes of CONTRIBUTING.md for a new estimator and a new effect, followed to the letter in a copy of the workspace: files
 //! and lines are read from its steps.
 
+use crate::documents::files;
 use crate::support::{root, trainer};
 use std::fs;
 use std::path::Path;
@@ -79,6 +80,7 @@ fn workspace() -> TempDir {
     // Libraries of another version lie beside the workspace's own in the target folder and never in their place: doc tests,
     // which cargo runs last, would look for these.
     edit(&home.join("Cargo.toml"), "version = \"0.1.0\"", "version = \"0.1.0-recipe\"");
+    compile_fast(home);
     // The trainer's tests lie outside the copied folder; examples and gallery outside of the crate that
     // declares them; the crate for Python outside of the crates.
     for folder in ["examples", "book/gallery", "python"] {
@@ -87,6 +89,21 @@ fn workspace() -> TempDir {
     copy(&root().join("crates"), &home.join("crates"));
     copy(&root().join("tests"), &home.join("tests"));
     scratch
+}
+
+/// Has a copy's own crates compiled fast rather than run fast, since what they do there takes seconds; libraries stay as they are.
+fn compile_fast(home: &Path) {
+    let path = home.join("Cargo.toml");
+    let mut manifest =
+        fs::read_to_string(&path).unwrap().replace("opt-level = 3\ncodegen-units = 1", "opt-level = 1");
+    for crate_manifest in files("crates", "toml").iter().filter(|path| path.ends_with("Cargo.toml")) {
+        let text = fs::read_to_string(crate_manifest).unwrap();
+        let name = text.lines().find_map(|line| line.strip_prefix("name = \"")?.strip_suffix('"')).unwrap();
+        if !manifest.contains(&format!("[profile.dev.package.{name}]")) {
+            manifest.push_str(&format!("\n[profile.dev.package.{name}]\nopt-level = 0\n"));
+        }
+    }
+    fs::write(path, manifest).unwrap();
 }
 
 /// Runs one test target in a copy, in the workspace's own target folder and for the whole workspace: cargo joins the

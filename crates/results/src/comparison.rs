@@ -1,8 +1,7 @@
 //! A comparison of many methods on one envelope.
 
-use super::estimation::{
-    DataSummary, EnvelopeSummary, NOT_BEGUN, OracleSummary, PipelineRow, TruthComparison,
-};
+use super::estimation::{DataSummary, EnvelopeSummary, OracleSummary, PipelineRow, TruthComparison};
+use super::failure::Failure;
 use super::interval::null_is_not_a_number;
 use super::method::{Ablation, Estimand, Family, Reached};
 use serde::{Deserialize, Serialize};
@@ -127,7 +126,7 @@ pub struct AblationRow {
     pub error_percent: Option<f64>,
     /// Why it gave none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub failure: Option<String>,
+    pub failure: Option<Failure>,
 }
 
 /// Outcome of one method.
@@ -139,7 +138,7 @@ pub enum MethodOutcome {
     /// No estimate.
     Failed {
         /// Why.
-        reason: String,
+        reason: Failure,
     },
 }
 
@@ -147,7 +146,7 @@ impl MethodOutcome {
     /// Whether its turn had not come when the run was interrupted.
     #[must_use]
     pub fn is_not_begun(&self) -> bool {
-        matches!(self, Self::Failed { reason } if reason == NOT_BEGUN)
+        matches!(self, Self::Failed { reason: Failure::NotBegun })
     }
 
     /// Whether the run was interrupted before this method had finished.

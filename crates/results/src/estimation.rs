@@ -8,9 +8,6 @@ use serde::{Deserialize, Serialize};
 /// The `schema` field of an estimation's `result.json`.
 pub const RESULT_SCHEMA: &str = "ringdown.result/1";
 
-/// Reason of a method that has no outcome because the run was interrupted before its turn came.
-pub const NOT_BEGUN: &str = "interrupted before it began";
-
 /// Result of one estimation: the content of `result.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EstimationResult {

@@ -11,6 +11,7 @@ mod calibration;
 mod comparison;
 mod diagnosis;
 mod estimation;
+mod failure;
 mod fleet;
 mod interval;
 mod launch;
@@ -38,9 +39,10 @@ pub use diagnosis::{
 pub use record::Origin;
 
 pub use estimation::{
-    DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, NOT_BEGUN, OracleSummary,
+    DataSummary, EnvelopeRow, EnvelopeSummary, EstimateSummary, EstimationResult, OracleSummary,
     PipelineOutcome, PipelineRow, RESULT_SCHEMA, SeedRow, TraceRow, TruthComparison,
 };
+pub use failure::Failure;
 pub use fleet::{FLEET_SCHEMA, FleetCase, FleetClass, FleetGroup, FleetNumber, FleetOutlier, FleetResult};
 pub use interval::WithInterval;
 pub use launch::{LAUNCH_SCHEMA, LaunchResult, LaunchedArray};
@@ -58,7 +60,9 @@ pub use rigs::{
     FarthestPair, RIGS_SCHEMA, RigClassRow, RigRow, RigValueRow, RigsResult, SharedClassRow,
     SharedCoefficientRow,
 };
-pub use search::{SearchBest, SearchOutcome, SweepHalving, SweepRung, SweepRungValue, SweepSearch};
+pub use search::{
+    SearchBest, SearchOutcome, SweepHalving, SweepRung, SweepRungValue, SweepSampler, SweepSearch,
+};
 pub use simulation::{EffectCount, Manifest, ManifestLine, RECORDS_SCHEMA, SimulationResult};
 pub use sweep::{
     RunState, RunTable, RunTableRow, SWEEP_SCHEMA, SweepAxis, SweepEnd, SweepLine, SweepManifest,

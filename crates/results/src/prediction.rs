@@ -1,6 +1,7 @@
 //! Many methods scored on peaks that were held out, over several problems.
 
-use super::estimation::{DataSummary, NOT_BEGUN};
+use super::estimation::DataSummary;
+use super::failure::Failure;
 use super::interval::null_is_not_a_number;
 use super::method::Family;
 use record::Origin;
@@ -138,7 +139,7 @@ pub enum PredictionOutcome {
     /// No fit came out.
     Failed {
         /// Why the first one did not.
-        reason: String,
+        reason: Failure,
     },
 }
 
@@ -146,7 +147,7 @@ impl PredictionOutcome {
     /// Whether its turn had not come when the run was interrupted.
     #[must_use]
     pub fn is_not_begun(&self) -> bool {
-        matches!(self, Self::Failed { reason } if reason == NOT_BEGUN)
+        matches!(self, Self::Failed { reason: Failure::NotBegun })
     }
 }
 
@@ -158,7 +159,7 @@ pub struct MethodScores {
     /// Fits that failed; each counts as an infinite error.
     pub failed_fits: usize,
     /// Why the first of them failed.
-    pub first_failure: Option<String>,
+    pub first_failure: Option<Failure>,
     /// Fits, and how many of them met the method's own condition.
     pub fits: usize,
     /// Fits that converged.

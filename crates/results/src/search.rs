@@ -2,14 +2,44 @@
 
 use serde::{Deserialize, Serialize};
 
+/// How a sweep chooses its points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SweepSampler {
+    /// All combinations of the axes.
+    Grid,
+    /// Independent draws.
+    Random,
+    /// Draws near the best results so far, by tree-structured Parzen estimators.
+    Tpe,
+}
+
+impl SweepSampler {
+    /// Its name, as in files.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Random => "random",
+            Self::Tpe => "tpe",
+        }
+    }
+
+    /// Whether it proposes points from the results of those before them.
+    #[must_use]
+    pub fn looks_at_results(self) -> bool {
+        self == Self::Tpe
+    }
+}
+
 /// Search of a sweep: a part of its manifest.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SweepSearch {
-    /// Choice of points: `"grid"`, `"random"` or `"tpe"`.
-    pub sampler: String,
+    /// Choice of points.
+    pub sampler: SweepSampler,
     /// Points in all.
     pub trials: usize,
-    /// Points that are proposed at once, all from the results of those before them; only `"tpe"` looks at results.
+    /// Points that are proposed at once, all from the results of those before them where the sampler looks at results.
     pub batch: usize,
     /// Seed of the draws.
     pub seed: u64,
@@ -54,7 +84,7 @@ pub struct SweepRungValue {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SearchOutcome {
     /// Choice of points, as [`SweepSearch::sampler`].
-    pub sampler: String,
+    pub sampler: SweepSampler,
     /// Measure that trials are judged by, as [`SweepSearch::measure`].
     pub measure: String,
     /// Direction of the search, as [`SweepSearch::maximize`].

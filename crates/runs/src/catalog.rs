@@ -324,7 +324,7 @@ fn method(result: &ComparisonResult, row: &MethodRow) -> RunTableRow {
         ..RunTableRow::without_numbers("", RunState::Done, "")
     };
     match &row.outcome {
-        MethodOutcome::Failed { reason } => RunTableRow { reason: reason.clone(), ..shared },
+        MethodOutcome::Failed { reason } => RunTableRow { reason: reason.to_string(), ..shared },
         MethodOutcome::Estimate(found) => RunTableRow {
             zeta: Some(found.zeta),
             zeta_std_error: found.zeta_std_error,

@@ -18,4 +18,4 @@ pub use problem::{Missing, Ready, Truth, prepare};
 pub use split::{Split, SplitKind};
 pub use table::{ProblemTrials, StudiedMethod, best_exponentials, csv_rows, result};
 pub use tally::Placed;
-pub use trial::{Failure, Trial, seen};
+pub use trial::{Trial, seen};

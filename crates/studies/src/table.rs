@@ -7,8 +7,8 @@ use crate::trial::best_exponential;
 use crate::verdict::verdict;
 use experiment::PredictionStudy;
 use results::{
-    ExponentialScores, Family, NOT_BEGUN, PredictionCsvRow, PredictionOutcome, PredictionResult,
-    PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
+    ExponentialScores, Failure, Family, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow,
+    ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
 };
 
 /// Name of the best exponential in `predictions.csv`.
@@ -40,7 +40,7 @@ impl ProblemTrials {
     /// Whether some trial was not begun.
     #[must_use]
     pub fn is_interrupted(&self) -> bool {
-        let not_begun = |placed: &Placed| placed.trial.as_ref().is_err_and(|reason| reason == NOT_BEGUN);
+        let not_begun = |placed: &Placed| matches!(placed.trial, Err(Failure::NotBegun));
         self.methods.iter().flatten().any(not_begun)
     }
 }

@@ -2,8 +2,8 @@
 
 use crate::problem::Ready;
 use crate::split::SplitKind;
-use crate::trial::{Failure, Trial, held_out};
-use results::{Coverage, HeldOutScore, MethodScores, NOT_BEGUN, PairedComparison, PredictionOutcome};
+use crate::trial::{Trial, held_out};
+use results::{Coverage, Failure, HeldOutScore, MethodScores, PairedComparison, PredictionOutcome};
 use scoring::HeldOutPeak;
 use std::collections::BTreeMap;
 
@@ -44,13 +44,13 @@ pub(crate) fn outcome(
 ) -> PredictionOutcome {
     let fitted = || trials.iter().filter_map(|placed| placed.trial.as_ref().ok());
     // Scores of some of its fits only would stand beside those of all.
-    if trials.iter().any(|placed| placed.trial.as_ref().is_err_and(|reason| reason == NOT_BEGUN)) {
-        return PredictionOutcome::Failed { reason: NOT_BEGUN.to_owned() };
+    if trials.iter().any(|placed| matches!(placed.trial, Err(Failure::NotBegun))) {
+        return PredictionOutcome::Failed { reason: Failure::NotBegun };
     }
     let first_failure = trials.iter().find_map(|placed| placed.trial.as_ref().err().cloned());
     if fitted().next().is_none() {
         return PredictionOutcome::Failed {
-            reason: first_failure.unwrap_or_else(|| "nothing was fitted".to_owned()),
+            reason: first_failure.unwrap_or_else(|| "nothing was fitted".into()),
         };
     }
     let of = |kind| score(problem, trials, kind, common, Some(exponential));

@@ -4,6 +4,7 @@ use crate::problem::{Ready, line};
 use crate::split::Split;
 use envelope::{Envelope, EnvelopeError};
 use estimator::Prediction;
+use results::Failure;
 use scoring::HeldOutPeak;
 use serde::{Deserialize, Serialize};
 
@@ -21,9 +22,6 @@ pub struct Trial {
     /// Duration of the fit, in s.
     pub seconds: f64,
 }
-
-/// Why a trial has no outcome: the method's own sentence.
-pub type Failure = String;
 
 /// The envelope of the peaks that the fit sees. The first peak is among them, so that times stay what they
 /// are.
@@ -45,8 +43,8 @@ pub(crate) fn best_exponential(
     envelope: &Envelope,
     split: &Split,
 ) -> Result<Trial, Failure> {
-    let seen = seen(envelope, split).map_err(|error| error.to_string())?;
-    let fit = line(&problem.id, &seen).map_err(|error| error.to_string())?;
+    let seen = seen(envelope, split).map_err(|error| Failure::of(&error))?;
+    let fit = line(&problem.id, &seen).map_err(|error| Failure::of(&error))?;
     let count = seen.len() as f64;
     let mean = seen.times_s().iter().sum::<f64>() / count;
     let spread = seen.times_s().iter().map(|time| (time - mean).powi(2)).sum::<f64>().sqrt();

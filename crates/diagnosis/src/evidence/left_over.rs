@@ -261,7 +261,7 @@ pub(crate) fn unexplained(data: &Data, fit: &Fit) -> Result<Unexplained, Dynamic
     let free = basis(data, data.facts.rest(&fit.point.globals, &fit.hypothesis));
     let period = TAU / slowest(data);
     let filter = |values: &mut [f64]| without_drifts(data, period, values);
-    let mut residual: Vec<f64> = fit.residuals.iter().flat_map(|residual| residual.iter().copied()).collect();
+    let mut residual: Vec<f64> = fit.stacked().collect();
     filter(&mut residual);
     let residual = DVector::from_vec(residual);
     let mut found = spectrum;

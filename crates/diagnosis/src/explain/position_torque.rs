@@ -127,8 +127,7 @@ fn strongest(data: &Data, named: &Fit) -> Result<Option<Wave>, DynamicsError> {
     }
     let projection = Projection::at(data, named)?;
     let paths = Path::of(data, named)?;
-    let residual = named.residuals.iter().flat_map(|residual| residual.iter().copied());
-    let mut residual = DMatrix::from_iterator(projection.rows(), 1, residual);
+    let mut residual = DMatrix::from_iterator(projection.rows(), 1, named.stacked());
     projection.apply(&mut residual);
     let waves = wavenumbers
         .into_iter()

@@ -42,6 +42,11 @@ impl Fit {
         self.residuals.iter().map(DVector::len).sum()
     }
 
+    /// Residuals of all segments, one after the other.
+    pub(crate) fn stacked(&self) -> impl Iterator<Item = f64> + '_ {
+        self.residuals.iter().flat_map(|segment| segment.iter().copied())
+    }
+
     /// Number of parameters that are fitted to all segments.
     pub(crate) fn globals(&self) -> usize {
         self.point.globals.len()

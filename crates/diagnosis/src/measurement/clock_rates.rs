@@ -232,8 +232,7 @@ fn left(data: &Data, fit: &Fit) -> Result<Option<(Vec<f64>, f64)>, DynamicsError
     let projection = Projection::at(data, fit)?;
     let mut columns = matrix(projection.rows(), &columns);
     projection.apply(&mut columns);
-    let stacked = fit.residuals.iter().flat_map(|residual| residual.iter().copied());
-    let residual = DVector::from_iterator(columns.nrows(), stacked);
+    let residual = DVector::from_iterator(columns.nrows(), fit.stacked());
     let right =
         nalgebra::DMatrix::from_column_slice(columns.ncols(), 1, columns.tr_mul(&residual).as_slice());
     let Some(solution) = solve(&columns.tr_mul(&columns), &right) else { return Ok(None) };

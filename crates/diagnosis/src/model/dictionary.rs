@@ -124,7 +124,7 @@ impl Dictionary {
         candidates: &[Candidate],
     ) -> Self {
         let residuals: Vec<&[f64]> = fit.residuals.iter().map(|e| e.as_slice()).collect();
-        let stacked: Vec<f64> = fit.residuals.iter().flat_map(|e| e.iter().copied()).collect();
+        let stacked: Vec<f64> = fit.stacked().collect();
         let mut residual = DMatrix::from_vec(stacked.len(), 1, stacked);
         projection.apply(&mut residual);
         let shown = Residual { data, residuals: &residuals, paths, projection, projected: &residual };

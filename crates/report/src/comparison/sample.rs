@@ -221,7 +221,7 @@ fn write_samples() {
         found.pass = false;
         found.reached = Reached::Diverged;
     }
-    sample.result.results[5].outcome = MethodOutcome::Failed { reason: "z".repeat(300) };
+    sample.result.results[5].outcome = MethodOutcome::Failed { reason: "z".repeat(300).into() };
     sample.result.cautions[0].statement = "w".repeat(300);
     let html = sample.render().unwrap().replace("<details", "<details open");
     std::fs::write(folder.join("comparison-stress.html"), html).unwrap();

@@ -215,7 +215,7 @@ mod tests {
     #[test]
     fn an_unfinished_run_is_no_result() {
         let mut result = sample::result();
-        result.results[20].outcome = MethodOutcome::Failed { reason: "interrupted before it began".into() };
+        result.results[20].outcome = MethodOutcome::Failed { reason: results::Failure::NotBegun };
         let (tone, label, text) = of(&result);
         assert_eq!((tone, label), (Tone::Caution, "Interrupted"));
         assert!(text.ends_with("an unfinished run is no result."), "{text}");

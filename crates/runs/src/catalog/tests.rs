@@ -273,7 +273,10 @@ fn a_result_that_was_cut_off_anywhere_is_interrupted() {
             RunState::Interrupted,
         ),
         (
-            comparison(vec![method("ols", fitted("stalled")), failed(results::NOT_BEGUN)]),
+            comparison(vec![
+                method("ols", fitted("stalled")),
+                failed(&results::Failure::NotBegun.to_string()),
+            ]),
             RunState::Interrupted,
         ),
     ] {

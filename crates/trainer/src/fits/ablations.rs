@@ -4,7 +4,7 @@ use super::method::{Method, Request};
 use envelope::Envelope;
 use estimator::{Ablation, Estimand, Reached};
 use oracle::linfa_decay_rate;
-use results::{AblationRow, Family, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN};
+use results::{AblationRow, Failure, Family, MethodEstimate, MethodOutcome, MethodRow};
 use std::time::Instant;
 
 /// The first seed's fit without each part that can be taken away; empty for a method that learns nothing.
@@ -22,11 +22,11 @@ pub(crate) fn ablations(
     let trained = method.pretrained_quietly(seed, request);
     let row = |ablation: Ablation| {
         let found = match &trained {
-            _ if request.cancel.is_requested() => Err(NOT_BEGUN.to_owned()),
+            _ if request.cancel.is_requested() => Err(Failure::NotBegun),
             Ok(trained) => {
-                trained.fit_without(ablation, envelope, seed, request).map_err(|error| error.to_string())
+                trained.fit_without(ablation, envelope, seed, request).map_err(|error| Failure::of(&error))
             }
-            Err(error) => Err(error.to_string()),
+            Err(error) => Err(Failure::of(error)),
         };
         let error = found.as_ref().map(|rate| scoring::error_percent(*rate, oracle));
         AblationRow {
@@ -42,7 +42,7 @@ pub(crate) fn ablations(
 pub(crate) fn linfa(envelope: &Envelope, oracle: f64, tolerance_percent: f64) -> MethodRow {
     let start = Instant::now();
     let outcome = match linfa_decay_rate(envelope) {
-        Err(error) => MethodOutcome::Failed { reason: error.to_string() },
+        Err(error) => MethodOutcome::Failed { reason: Failure::of(&error) },
         Ok((decay_rate, _)) => {
             let error_percent = scoring::error_percent(decay_rate, oracle);
             MethodOutcome::Estimate(MethodEstimate {

@@ -36,7 +36,7 @@ pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> Result<Ru
     let cost = |value: f64| if search.maximize { -value } else { value };
     let best = measured.iter().min_by(|one, other| cost(one.1).total_cmp(&cost(other.1)));
     table.search = Some(SearchOutcome {
-        sampler: search.sampler.clone(),
+        sampler: search.sampler,
         measure: search.measure.clone(),
         maximize: search.maximize,
         trials: search.trials,

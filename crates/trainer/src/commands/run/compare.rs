@@ -18,15 +18,15 @@ use experiment::{Claims, Comparison};
 use rayon::prelude::*;
 use report::comparison_markdown;
 use results::{
-    AblationRow, ComparisonResult, Derived, MethodEstimate, MethodOutcome, MethodRow, NOT_BEGUN,
-    RESULT_SCHEMA, SeedRow,
+    AblationRow, ComparisonResult, Derived, Failure, MethodEstimate, MethodOutcome, MethodRow, RESULT_SCHEMA,
+    SeedRow,
 };
 use runs::to_csv;
 use serde_json::json;
 use std::time::Instant;
 
 /// A method's place, and its fit or why there is none.
-type Fitted = (usize, Result<SeedFit, String>);
+type Fitted = (usize, Result<SeedFit, Failure>);
 
 /// Fits every method on every seed, keeps going where one fails, and puts the table together.
 pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome, TrainerError> {
@@ -47,8 +47,8 @@ pub(crate) fn compare(run: &Run<'_>, comparison: &Comparison) -> Result<Outcome,
 }
 
 /// Whether a fit was stopped before its end, or was not begun.
-fn is_interrupted(fit: &Result<SeedFit, String>) -> bool {
-    fit.as_ref().map_or_else(|reason| reason == NOT_BEGUN, SeedFit::is_interrupted)
+fn is_interrupted(fit: &Result<SeedFit, Failure>) -> bool {
+    fit.as_ref().map_or_else(|failure| *failure == Failure::NotBegun, SeedFit::is_interrupted)
 }
 
 /// The methods named, or all that the paper has; in the paper's order.
@@ -62,7 +62,7 @@ fn choose(comparison: &Comparison) -> Result<Vec<Method>, TrainerError> {
 }
 
 /// The fits of every method, in the methods' order and the seeds' order.
-fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, String>>>, TrainerError> {
+fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, Failure>>>, TrainerError> {
     let seeds = seeds(run.experiment.seed, run.experiment.fit.seeds)?;
     let jobs: Vec<(usize, u64)> = methods
         .iter()
@@ -82,12 +82,12 @@ fn fit_all(run: &Run<'_>, methods: &[Method]) -> Result<Vec<Vec<Result<SeedFit, 
     };
     let fit_one = |method: &Method, seed: u64| {
         if run.cancel.is_requested() {
-            return Ok(Err(NOT_BEGUN.to_owned()));
+            return Ok(Err(Failure::NotBegun));
         }
         let fit = match setting.fit(method, seed) {
             // A disk that fails is no fault of the method's.
             Err(error @ (TrainerError::Run(_) | TrainerError::Resume(_))) => return Err(error),
-            other => other.map_err(|error| error.to_string()),
+            other => other.map_err(|error| Failure::of(&error)),
         };
         progress.fit_done(method.id(), seed, fit.as_ref().map(|fit| run.row(fit)).as_ref());
         Ok(fit)
@@ -133,7 +133,7 @@ fn row(method: &Method, outcome: MethodOutcome) -> MethodRow {
 fn outcome(
     run: &Run<'_>,
     method: &Method,
-    fits: Vec<Result<SeedFit, String>>,
+    fits: Vec<Result<SeedFit, Failure>>,
     ablations: Vec<AblationRow>,
 ) -> MethodOutcome {
     let fits: Vec<SeedFit> = match fits.into_iter().collect() {
@@ -142,7 +142,7 @@ fn outcome(
     };
     let rows: Vec<SeedRow> = fits.iter().map(|fit| run.row(fit)).collect();
     let (Some(first), Some(row)) = (fits.first(), rows.first()) else {
-        return MethodOutcome::Failed { reason: "no seed was fitted".to_owned() };
+        return MethodOutcome::Failed { reason: "no seed was fitted".into() };
     };
     let errors = || rows.iter().map(|row| row.error_percent);
     let worst = scoring::worst(errors());

@@ -244,7 +244,7 @@ fn difference(folder: &SweepFolder, manifest: &SweepManifest, planned: &Planned)
     }
     let (then, now) = (manifest.runs.len(), planned.runs.len());
     // The first of them are the same: an axis has become longer or shorter at its end.
-    let is_proposed_later = manifest.search.as_ref().is_some_and(|search| search.sampler == "tpe");
+    let is_proposed_later = manifest.search.as_ref().is_some_and(|search| search.sampler.looks_at_results());
     (then != now && !(is_proposed_later && now < then)).then(|| format!("{then} runs then, {now} now"))
 }
 
@@ -257,6 +257,7 @@ fn other_search(then: Option<&SweepSearch>, now: Option<&SweepSearch>) -> Option
             format!(", halving {} keep one in {}", halving.first_steps, halving.keep_one_in)
         });
         let SweepSearch { sampler, trials, batch, seed, measure, .. } = search;
+        let sampler = sampler.name();
         format!("{sampler}, {trials} trials in batches of {batch} from seed {seed}, {aim} {measure}{halving}")
     };
     let (then, now) = (words(then), words(now));

@@ -126,7 +126,7 @@ mod tests {
 
     fn of(measure: &str, result: &Value) -> Result<Option<f64>, String> {
         let search = SweepSearch {
-            sampler: "random".to_owned(),
+            sampler: results::SweepSampler::Random,
             trials: 1,
             batch: 1,
             seed: 0,

@@ -134,7 +134,7 @@ fn launched(arguments: &SweepArguments, sweep: &FrozenSweep) -> Result<Outcome, 
 
 /// Whether a search has to wait for results before it knows what to run.
 fn looks_at_results(search: &SweepSearch) -> bool {
-    search.sampler == "tpe" || search.halving.is_some()
+    search.sampler.looks_at_results() || search.halving.is_some()
 }
 
 /// Whether a run is done and every row of it within its tolerance.

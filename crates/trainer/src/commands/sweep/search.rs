@@ -202,7 +202,7 @@ mod tests {
         let values = (1..).zip(values).map(|(number, value)| SweepRungValue { number, value });
         let values: Vec<SweepRungValue> = values.collect();
         let search = |maximize| SweepSearch {
-            sampler: "random".to_owned(),
+            sampler: results::SweepSampler::Random,
             trials: 5,
             batch: 1,
             seed: 0,

@@ -8,7 +8,7 @@ use experiment::sweep::{
     Axis, Dimension, PlannedRun, STARTING_POINTS, Sampler, SweepError, TriedPoint, combinations, plan,
     propose,
 };
-use results::{SweepAxis, SweepHalving, SweepManifest, SweepSearch};
+use results::{SweepAxis, SweepHalving, SweepManifest, SweepSampler, SweepSearch};
 use seed::Seed;
 use settings::Document;
 use std::path::Path;
@@ -114,9 +114,9 @@ impl Study {
         let named = asked.minimize.as_ref().or(asked.maximize.as_ref());
         let measure = named.cloned().unwrap_or_else(|| default_measure(task).to_owned());
         let (sampler, trials) = match &self.varied {
-            Varied::Axes(_) => ("grid", runs.len()),
-            Varied::Space { sampler: Sampler::Random, .. } => ("random", asked.trials()),
-            Varied::Space { sampler: Sampler::Tpe, .. } => ("tpe", asked.trials()),
+            Varied::Axes(_) => (SweepSampler::Grid, runs.len()),
+            Varied::Space { sampler: Sampler::Random, .. } => (SweepSampler::Random, asked.trials()),
+            Varied::Space { sampler: Sampler::Tpe, .. } => (SweepSampler::Tpe, asked.trials()),
         };
         let halving = asked.halving.map(|first_steps| SweepHalving {
             first_steps,
@@ -124,7 +124,7 @@ impl Study {
             rungs: Vec::new(),
         });
         if halving.is_some() {
-            if sampler == "tpe" {
+            if sampler.looks_at_results() {
                 return Err(SweepCommandError::HalvedTpe.into());
             }
             if task == "compare" {
@@ -136,7 +136,6 @@ impl Study {
         }
         let seed = seed_of(&self.document);
         let (batch, maximize) = (usize::from(asked.batch), asked.maximize.is_some());
-        let sampler = sampler.to_owned();
         Ok(Some(SweepSearch { sampler, trials, batch, seed, measure, maximize, halving }))
     }
 }

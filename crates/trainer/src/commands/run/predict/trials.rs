@@ -5,9 +5,9 @@ use crate::fits::method::{Method, Request};
 use crate::folders::resume::Ledger;
 use envelope::Envelope;
 use estimator::{Cancel, Reached, Silent};
-use results::NOT_BEGUN;
+use results::Failure;
 use std::time::Instant;
-use studies::{Failure, Split, Trial, seen};
+use studies::{Split, Trial, seen};
 
 /// What every trial of a study shares.
 pub(crate) struct Trials<'a> {
@@ -30,12 +30,12 @@ impl Trials<'_> {
             return Ok(Ok(trial));
         }
         if self.cancel.is_requested() {
-            return Ok(Err(NOT_BEGUN.to_owned()));
+            return Ok(Err(Failure::NotBegun));
         }
         let trial = self.make(method, envelope, split, seed);
         match &trial {
             // It may have been stopped halfway.
-            Ok(_) if self.cancel.is_requested() => return Ok(Err(NOT_BEGUN.to_owned())),
+            Ok(_) if self.cancel.is_requested() => return Ok(Err(Failure::NotBegun)),
             Ok(made) => self.ledger.keep(name, made, made.seconds)?,
             Err(_) => {}
         }
@@ -43,11 +43,12 @@ impl Trials<'_> {
     }
 
     fn make(&self, method: &Method, envelope: &Envelope, split: &Split, seed: u64) -> Result<Trial, Failure> {
-        let seen = seen(envelope, split).map_err(|error| error.to_string())?;
+        let seen = seen(envelope, split).map_err(|error| Failure::of(&error))?;
         let request =
             Request { query_times: envelope.times_s(), max_steps: self.max_steps, cancel: self.cancel };
         let start = Instant::now();
-        let estimate = method.fit(&seen, seed, &request, &Silent, None).map_err(|error| error.to_string())?;
+        let estimate =
+            method.fit(&seen, seed, &request, &Silent, None).map_err(|error| Failure::of(&error))?;
         let seconds = start.elapsed().as_secs_f64();
         let is_complete = estimate.predictions.len() == envelope.len();
         Ok(Trial {
