@@ -211,6 +211,25 @@ fn files_that_do_not_go_together_are_refused() {
     }
 }
 
+#[test]
+fn missing_cells_of_a_record_are_told() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, missing) in [("a", 0..0), ("b", 100..103), ("c", 0..0), ("d", 0..0)] {
+        let value = |at: usize| if missing.contains(&at) { f64::NAN } else { (0.12 * at as f64).cos() };
+        let rows: String =
+            (0..1000).map(|at| format!("{:.2},{:.6}\n", 0.02 * at as f64, value(at))).collect();
+        std::fs::write(folder.path().join(format!("{name}.csv")), format!("time_s,angle_rad\n{rows}"))
+            .unwrap();
+    }
+    let config = folder.path().join("learn.toml");
+    let text = "task = \"learn\"\n[learn]\nlearners = [\"sindy\"]\nbaselines = []\n[problem.p]\nfolder = \".\"\nrecords = [\"?.csv\"]\n";
+    std::fs::write(&config, text).unwrap();
+    let (code, result, run) = result(&[config.to_str().unwrap(), "sindy.members=2", "learn.ablations=false"]);
+    let told = "b: 3 missing cells left as gaps";
+    assert_eq!((code, &result["problems"][0]["missing"]), (0, &serde_json::json!([told])));
+    assert!(std::fs::read_to_string(run.path().join("report.html")).unwrap().contains(told));
+}
+
 /// A spring that the disc's nominal simulator has, dry friction that it lacks (KNOWN.md), in a law stated by the user.
 #[test]
 fn dry_friction_of_a_measured_disc_is_learned_from_one_release_and_helps_on_another() {

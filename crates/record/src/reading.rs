@@ -118,14 +118,18 @@ impl Reading {
         });
         parts.push(column("value", &self.value));
         parts.push(self.input.as_ref().map_or_else(|| "no input".to_owned(), |input| column("input", input)));
-        if self.missing_cells > 0 {
-            let done = match self.missing {
-                Missing::Drop => "dropped",
-                _ => "left as gaps",
-            };
-            parts.push(format!("{} {done}", counted(self.missing_cells, "missing cell")));
-        }
+        parts.extend(self.missing_in_words());
         parts.push(format!("rate {rate_hz:.1} Hz"));
         Self { sentence: format!("read as: {}", parts.join("; ")), ..self }
+    }
+
+    /// How many cells were missing, and what was done about them; `None` where none was.
+    #[must_use]
+    pub fn missing_in_words(&self) -> Option<String> {
+        let done = match self.missing {
+            Missing::Drop => "dropped",
+            _ => "left as gaps",
+        };
+        (self.missing_cells > 0).then(|| format!("{} {done}", counted(self.missing_cells, "missing cell")))
     }
 }

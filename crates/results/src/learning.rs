@@ -68,6 +68,9 @@ pub struct LearnProblem {
     /// What the input does between its samples, `"zero"` (kept) or `"linear"`; `None` without an input.
     #[serde(default)]
     pub input_hold: Option<String>,
+    /// Records with missing cells, and what was done about these.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub missing: Vec<String>,
 }
 
 /// A method on a data set.

@@ -156,10 +156,12 @@ fn data_set(
     problem: &LearningProblem,
 ) -> Result<Ready, Error> {
     let mut first = None;
-    let mut trajectories: Vec<Trajectory> = Vec::new();
+    let (mut trajectories, mut missing): (Vec<Trajectory>, Vec<String>) = (Vec::new(), Vec::new());
     for record in records {
         let name = Path::new(record.name()).file_stem().unwrap_or_default().to_string_lossy();
         check_record(&name, &record.loaded.record, &mut first)?;
+        let told = record.loaded.source.reading.missing_in_words();
+        missing.extend(told.map(|words| format!("{name}: {words}")));
         let clock = record.clock()?;
         trajectories.push(trajectory(problem, &name, &record.loaded.record, &clock.times_s)?);
     }
@@ -168,7 +170,12 @@ fn data_set(
         nominal: nominal.map(|nominal| nominal.stated.simulator.clone()),
         ..problem.making()
     };
-    Ok(Ready { data: learn::data_set(&trajectories, making)?, records: trajectories.len(), truth: None })
+    Ok(Ready {
+        data: learn::data_set(&trajectories, making)?,
+        records: trajectories.len(),
+        missing: Vec::new(),
+        truth: None,
+    })
 }
 
 /// Origin of the records, as far as one states it.

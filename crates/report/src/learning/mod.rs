@@ -120,6 +120,7 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
     ];
     let hold = problem.input_hold.as_deref();
     facts.extend(hold.map(|hold| fact("Input between its samples", in_words(hold).to_owned())));
+    facts.extend(problem.missing.iter().map(|missing| fact("Record with missing cells", missing.clone())));
     facts
 }
 

@@ -55,6 +55,7 @@ fn page(learner: f64) -> String {
         noise: 1e-3,
         test_s: 9.0,
         input_hold: None,
+        missing: vec!["a: 3 missing cells left as gaps".to_owned()],
     };
     let result = LearnResult {
         schema: RESULT_SCHEMA.to_owned(),

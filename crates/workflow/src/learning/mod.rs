@@ -19,6 +19,8 @@ pub struct Ready {
     pub data: DataSet,
     /// Number of records.
     pub records: usize,
+    /// Records with missing cells, and what was done about these.
+    pub missing: Vec<String>,
     /// System that generated simulated records; only the judge looks at it.
     pub truth: Option<System>,
 }

@@ -180,10 +180,12 @@ pub fn described(id: &str, title: &str, origin: Origin, ready: Result<&Ready, &S
         noise: 0.0,
         test_s: 0.0,
         input_hold: None,
+        missing: Vec::new(),
     };
     if let Ok(ready) = ready {
         let data = &ready.data;
         described.unit.clone_from(&data.unit);
+        described.missing.clone_from(&ready.missing);
         described.data = LearnData {
             records: ready.records,
             train: data.train.len(),

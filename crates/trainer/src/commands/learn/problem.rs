@@ -91,7 +91,7 @@ fn simulated(problem: &LearningProblem, file: &str) -> Result<(Ready, Vec<DataFi
     let truth = drawn.truths.into_iter().next().map(|truth| truth.system);
     let files =
         [Some(file), problem.nominal.as_deref()].into_iter().flatten().map(held).collect::<Result<_, _>>()?;
-    Ok((Ready { data, records: trajectories.len(), truth }, files))
+    Ok((Ready { data, records: trajectories.len(), missing: Vec::new(), truth }, files))
 }
 
 fn files(
@@ -100,7 +100,7 @@ fn files(
     patterns: &[String],
     reading: &DataSettings,
 ) -> Result<(Ready, Origin, Vec<DataFile>), TrainerError> {
-    let (mut trajectories, mut read) = (Vec::new(), Vec::new());
+    let (mut trajectories, mut read, mut missing) = (Vec::new(), Vec::new(), Vec::new());
     let mut unit: Option<(String, &'static str)> = None;
     let mut origin = None;
     for path in patterns
@@ -112,6 +112,7 @@ fn files(
         let (record, source) = read_file(&path, &reading.read_options())?;
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         check_record(&name, &record, &mut unit).map_err(refused(problem))?;
+        missing.extend(source.reading.missing_in_words().map(|words| format!("{name}: {words}")));
         let clock = Clock::new(&record, reading.clock).map_err(|fault| fault.in_file(&source.path))?;
         let made = trajectory(problem, &name, &record, &clock.times_s);
         trajectories.push(made.map_err(refused(problem))?);
@@ -127,7 +128,7 @@ fn files(
     let data = ::learn::data_set(&trajectories, making).map_err(refused(problem))?;
     let origin = origin.unwrap_or_default();
     read.extend(problem.nominal.as_deref().map(held).transpose()?);
-    Ok((Ready { data, records: trajectories.len(), truth: None }, origin, read))
+    Ok((Ready { data, records: trajectories.len(), missing, truth: None }, origin, read))
 }
 
 /// The files that a data set depends on, without its records being read; none where they are absent.

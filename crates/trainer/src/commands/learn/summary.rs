@@ -47,7 +47,9 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
             .map_or_else(String::new, |hold| format!("; input between its samples: {hold}")),
     );
     let own: Vec<&LearnRow> = result.results.iter().filter(|row| row.problem == problem.id).collect();
-    let mut lines = vec![facts, table(&HEADER, own.iter().map(|row| cells(row)).collect())];
+    let mut lines = vec![facts];
+    lines.extend(problem.missing.iter().cloned());
+    lines.push(table(&HEADER, own.iter().map(|row| cells(row)).collect()));
     for row in &own {
         if let Some(failure) = &row.failure {
             lines.push(format!("{}: {failure}", row.id));
