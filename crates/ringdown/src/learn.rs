@@ -173,7 +173,7 @@ fn data_set(
     Ok(Ready {
         data: learn::data_set(&trajectories, making)?,
         records: trajectories.len(),
-        missing: Vec::new(),
+        missing,
         truth: None,
     })
 }
