@@ -180,3 +180,22 @@ fn a_learner_of_ones_own_is_scored_beside_the_baselines() {
     assert!(error("nominal") < 0.005 && error("still") > 0.05, "{} {}", error("nominal"), error("still"));
     assert_eq!(told.problems[0].origin.name(), "simulated");
 }
+
+#[test]
+fn a_study_tells_which_records_have_missing_cells() {
+    let read = |name: &str, missing: std::ops::Range<usize>| {
+        let value = |at: usize| if missing.contains(&at) { f64::NAN } else { (0.12 * at as f64).cos() };
+        let rows: String =
+            (0..1000).map(|at| format!("{:.2},{:.6}\n", 0.02 * at as f64, value(at))).collect();
+        let text = format!("time_s,angle_rad\n{rows}");
+        Record::parse(&format!("{name}.csv"), text.as_bytes(), &Reading::default()).unwrap()
+    };
+    let records = [read("a", 0..0), read("b", 100..103), read("c", 0..0)];
+    let options = LearnOptions {
+        learners: Some(Vec::new()),
+        baselines: Some(vec!["persistence".to_owned()]),
+        ..LearnOptions::default()
+    };
+    let told = learn(&records, None, &options, &[], &Cancel::new(), &|_, _| ()).unwrap();
+    assert_eq!(told.problems[0].missing, ["b: 3 missing cells left as gaps"]);
+}
