@@ -278,7 +278,7 @@ def pytorch_lstm(data):
             return size * model(past, torch.tensor(record.u / drive)[None])[0].numpy()
 
     begun, best, epochs = time.process_time(), (float("inf"), None), 0
-    while time.process_time() - begun < data.seconds and epochs < 20:
+    while time.process_time() - begun < data.seconds:
         epochs += 1
         for batch in torch.randperm(len(windows)).split(32):
             optimizer.zero_grad()
@@ -350,19 +350,30 @@ def deepxde_pinn(data):
             f"{ {n: round(w, 4) for n, w in zip(names, found)} }, from one record, {model.train_state.epoch} steps of Adam")
 
 
-def pysr_torque(data):
-    from pysr import PySRRegressor
+def operon_acceleration(data):
+    from pyoperon.sklearn import SymbolicRegressor
 
     states = [smoothed(record, data) for record in data.train]
-    rows = np.vstack([np.column_stack([s[0], s[1], r.u])[10:-10:12] for s, r in zip(states, data.train)])
-    right = np.concatenate([s[2][10:-10:12] for s in states])
-    model = PySRRegressor(niterations=40, binary_operators=["+", "-", "*"], unary_operators=["sin", "abs", "sign"],
-                          timeout_in_seconds=data.seconds, procs=1, random_state=0, deterministic=True,
-                          parallelism="serial", progress=False, verbosity=0)
-    model.fit(rows if data.driven else rows[:, :2], right)
-    def acceleration(x, v, u):
-        return float(model.predict(np.array([[x, v, u] if data.driven else [x, v]]))[0])
-    return lambda record: march(acceleration, record, data), str(model.sympy())
+    rows = np.vstack([np.column_stack([s[0], s[1], r.u])[10:-10:4] for s, r in zip(states, data.train)])
+    right = np.concatenate([s[2][10:-10:4] for s in states])
+    inputs = 3 if data.driven else 2
+    best = None
+    for length in [10, 20, 40]:
+        # sign v is v/|v| here: Operon has no sign.
+        model = SymbolicRegressor(allowed_symbols="add,sub,mul,div,sin,abs,constant,variable", max_length=length,
+                                  optimizer_iterations=5, max_time=int(data.seconds / 3), max_evaluations=10**9,
+                                  generations=10**6, n_threads=1, random_state=0)
+        model.fit(rows[:, :inputs], right)
+
+        def acceleration(x, v, u, model=model):
+            return float(model.predict(np.array([[x, v, u][:inputs]]))[0])
+
+        def predict(record, acceleration=acceleration):
+            return march(acceleration, record, data)
+        found = error(predict, data, data.validation)
+        if best is None or found < best[0]:
+            best = (found, predict, model.get_model_string(model.model_, 4))
+    return best[1], best[2]
 
 
 PEERS = [
@@ -371,7 +382,7 @@ PEERS = [
     ("diffrax, neural ODE by multiple shooting", "neural-ode", diffrax_neural_ode),
     ("PyTorch, LSTM fed with its own prediction", "lstm", pytorch_lstm),
     ("DeepXDE, inverse PINN on one record", "pinn", deepxde_pinn),
-    ("PySR, acceleration from smoothed derivatives", "symbolic", pysr_torque),
+    ("Operon, acceleration from smoothed derivatives", "symbolic", operon_acceleration),
 ]
 
 
