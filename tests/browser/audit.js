@@ -32,16 +32,21 @@
     return known.get(color);
   };
   const over = ([r, g, b, a], back) => [r, g, b].map((channel, at) => a * channel + (1 - a) * back[at]);
-  const background = (element) => {
-    const layers = [];
-    for (let at = element; at; at = at.parentElement) {
-      const layer = rgba(getComputedStyle(at).backgroundColor);
-      layers.push(layer);
-      if (layer[3] === 1) break;
-    }
-    const canvas = matchMedia("(prefers-color-scheme: dark)").matches ? "#121212" : "#ffffff";
-    return layers.reverse().reduce((back, layer) => over(layer, back), rgba(canvas).slice(0, 3));
+  // What an element has of its own and of all that it lies in, worked out once for each.
+  const handedDown = (outermost, own) => {
+    const known = new Map();
+    const of = (element) => {
+      if (!element) return outermost;
+      if (!known.has(element)) known.set(element, own(element, () => of(element.parentElement)));
+      return known.get(element);
+    };
+    return of;
   };
+  const canvas = matchMedia("(prefers-color-scheme: dark)").matches ? "#121212" : "#ffffff";
+  const background = handedDown(rgba(canvas).slice(0, 3), (element, outer) => {
+    const layer = rgba(getComputedStyle(element).backgroundColor);
+    return layer[3] === 1 ? layer.slice(0, 3) : over(layer, outer());
+  });
   const luminance = (color) => {
     const linear = color.map((value) => value / 255).map((v) => (v <= 0.04045 ? v / 12.92 : ((v + 0.055) / 1.055) ** 2.4));
     return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2];
@@ -52,19 +57,10 @@
     const [one, other] = [luminance(over([r, g, b, a * opacity], back)), luminance(back)];
     return (Math.max(one, other) + 0.05) / (Math.min(one, other) + 0.05);
   };
-  const opacity = (element) => {
-    let all = 1;
-    for (let at = element; at; at = at.parentElement) all *= Number(getComputedStyle(at).opacity);
-    return all;
-  };
+  const opacity = handedDown(1, (element, outer) => Number(getComputedStyle(element).opacity) * outer());
 
   // Out of sight on purpose, for readers of the screen.
-  const isUnseen = (element) => {
-    for (let at = element; at; at = at.parentElement) {
-      if (getComputedStyle(at).clipPath !== "none") return true;
-    }
-    return false;
-  };
+  const isUnseen = handedDown(false, (element, outer) => getComputedStyle(element).clipPath !== "none" || outer());
   const isVisible = (element) => {
     const box = element.getBoundingClientRect();
     return element.checkVisibility({ visibilityProperty: true }) && box.width + box.height > 0 && !isUnseen(element);

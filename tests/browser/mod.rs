@@ -25,9 +25,15 @@ fn made(scratch: &TempDir, name: &str, arguments: &[&str]) -> PathBuf {
 
 /// Looks at a page in every view.
 fn look_at(browser: &mut Chromium, page: &Path) {
+    look_twice_at(browser, page, |_| ());
+}
+
+/// Looks at a page in every view, and then once more at something of it.
+fn look_twice_at(browser: &mut Chromium, page: &Path, look: impl Fn(&mut Chromium)) {
     let mut faults = Vec::new();
     for view in VIEWS {
         faults.extend(browser.faults(page, view).into_iter().map(|fault| format!("{view:?} {fault}")));
+        look(browser);
     }
     assert!(faults.is_empty(), "{}:\n{}", page.display(), faults.join("\n"));
 }
@@ -43,7 +49,9 @@ fn save(browser: &mut Chromium, page: &Path, least: usize) {
     let figures: Vec<(String, String)> = serde_json::from_value(figures).unwrap();
     assert!(figures.len() >= least, "{}: {} plots", page.display(), figures.len());
     browser.download_to(scratch.path());
+    let mut pictures = Vec::new();
     for (id, shown) in &figures {
+        // A page may save ten files before a person has to allow more.
         browser.open(page, VIEWS[0]);
         let [svg, png, csv] = ["svg", "png", "csv"].map(|kind| {
             browser.evaluate(&format!(
@@ -59,9 +67,12 @@ fn save(browser: &mut Chromium, page: &Path, least: usize) {
         assert!(width > 1 && rows.records().all(|row| row.unwrap().len() == width), "{id}");
         let png = std::fs::read(png).unwrap();
         assert!(png.starts_with(b"\x89PNG") && png.len() > 3_000, "{id}.png: {} bytes", png.len());
-        for view in VIEWS.iter().filter(|view| view.width > 960) {
-            let faults = browser.faults(&svg, *view);
-            assert!(faults.is_empty(), "{}, {id}.svg: {view:?} {faults:?}", page.display());
+        pictures.push(svg);
+    }
+    for view in VIEWS.into_iter().filter(|view| view.width > 960) {
+        for svg in &pictures {
+            let faults = browser.faults(svg, view);
+            assert!(faults.is_empty(), "{} of {}: {view:?} {faults:?}", svg.display(), page.display());
         }
     }
 }
@@ -69,15 +80,13 @@ fn save(browser: &mut Chromium, page: &Path, least: usize) {
 /// The page without its scripts: nothing wrong with it, every plot drawn, and no button that does nothing.
 fn without_scripts(browser: &mut Chromium, page: &Path) {
     browser.run_scripts(false);
-    look_at(browser, page);
-    for view in VIEWS {
-        browser.open(page, view);
+    look_twice_at(browser, page, |browser| {
         let counted = "[document.querySelectorAll('figure').length, document.querySelectorAll('button, .stage').length,
             [...document.querySelectorAll('svg.plot')].filter((plot) => plot.getBoundingClientRect().width > 200).length]";
         let [figures, live, drawn] = serde_json::from_value(browser.evaluate(counted)).unwrap();
         let counts: [u64; 3] = [figures, live, drawn];
         assert_eq!(counts, [figures, 0, figures], "{}", page.display());
-    }
+    });
     browser.run_scripts(true);
 }
 
