@@ -114,13 +114,23 @@ pub struct SweepEnd {
     pub message: Option<String>,
 }
 
+/// What put the runs of a table together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RunTableTask {
+    /// A sweep made them.
+    Sweep,
+    /// They were named by hand.
+    Runs,
+}
+
 /// A table of runs: `result.json` of a sweep (`task = "sweep"`) and what `trainer compare` says (`task = "runs"`).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct RunTable {
     /// Always [`RESULT_SCHEMA`].
     pub schema: String,
-    /// `"sweep"` or `"runs"`.
-    pub task: String,
+    /// What put its runs together.
+    pub task: RunTableTask,
     /// Name of the sweep; empty for runs that were put together by hand.
     pub name: String,
     /// Keys that a sweep varies.
@@ -262,7 +272,7 @@ impl RunTable {
     /// A table of rows, counted. `rows` of one run stand together.
     #[must_use]
     pub fn new(
-        task: &str,
+        task: RunTableTask,
         name: &str,
         axes: Vec<SweepAxis>,
         columns: Vec<String>,
@@ -280,7 +290,7 @@ impl RunTable {
         let pass = rows.iter().all(|row| !row.state.is_bad() && row.pass != Some(false));
         Self {
             schema: RESULT_SCHEMA.to_owned(),
-            task: task.to_owned(),
+            task,
             name: name.to_owned(),
             axes,
             columns,
@@ -296,7 +306,7 @@ impl RunTable {
 
 #[cfg(test)]
 mod tests {
-    use super::{RunState, RunTable, RunTableRow, SweepState};
+    use super::{RunState, RunTable, RunTableRow, RunTableTask, SweepState};
     use serde_json::to_value;
 
     const STATES: [RunState; 7] = [
@@ -332,10 +342,10 @@ mod tests {
         let each = STATES.map(|state| row(state.name(), state));
         let rows =
             [&each[..], &[row("two methods", RunState::Done), row("two methods", RunState::Done)]].concat();
-        let table = RunTable::new("runs", "", vec![], vec![], rows);
+        let table = RunTable::new(RunTableTask::Runs, "", vec![], vec![], rows);
         assert_eq!((table.done, table.failed, table.open), (2, 2, 3));
         assert!(!table.pass);
-        let pass = |row: RunTableRow| RunTable::new("runs", "", vec![], vec![], vec![row]).pass;
+        let pass = |row: RunTableRow| RunTable::new(RunTableTask::Runs, "", vec![], vec![], vec![row]).pass;
         let done = row("a", RunState::Done);
         assert!(pass(done.clone()) && pass(RunTableRow { pass: Some(true), ..done.clone() }));
         assert!(!pass(RunTableRow { pass: Some(false), ..done }) && !pass(row("a", RunState::Corrupt)));

@@ -14,7 +14,7 @@ pub use propose::{STARTING_POINTS, Sampler, TriedPoint, propose};
 pub use shard::Shard;
 pub use space::{Dimension, Domain};
 
-use crate::experiment::{Experiment, resolve};
+use crate::experiment::{Experiment, Task, resolve};
 use crate::learning::{LearnStudy, LearningProblem, is_learning, resolve_learning};
 use settings::{Document, Resolved, SettingsError};
 use sha2::{Digest, Sha256};
@@ -72,12 +72,35 @@ impl Swept {
         }
     }
 
+    /// What it is asked for.
+    #[must_use]
+    pub fn task(&self) -> SweptTask {
+        match self {
+            Self::Learning(_) => SweptTask::Learn,
+            Self::Experiment(experiment) => match experiment.task {
+                Task::Estimate(_) => SweptTask::Estimate,
+                Task::Compare(_) => SweptTask::Compare,
+            },
+        }
+    }
+
     /// SHA-256 of every value in force, `sha256:` and 64 hexadecimal digits.
     #[must_use]
     pub fn digest(&self) -> String {
         let hash = Sha256::digest(self.resolved().values_text().as_bytes());
         hash.iter().fold("sha256:".to_owned(), |text, byte| text + &format!("{byte:02x}"))
     }
+}
+
+/// What a run is asked for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SweptTask {
+    /// One method on one record.
+    Estimate,
+    /// Many methods on one record.
+    Compare,
+    /// Models learned from data sets.
+    Learn,
 }
 
 /// What a run reads.
@@ -100,6 +123,8 @@ pub struct PlannedRun {
     pub overrides: Vec<String>,
     /// The resolved configuration, as a run's `config.toml` has it.
     pub config: String,
+    /// What it is asked for.
+    pub task: SweptTask,
     /// What it reads.
     pub data: RunData,
 }
@@ -127,11 +152,12 @@ pub fn plan(
             return Err(SweepError::Repeated { first, overrides, second: number });
         }
         let config = swept.resolved().to_toml();
+        let task = swept.task();
         let data = match swept {
             Swept::Experiment(experiment) => RunData::Record(experiment.data.path),
             Swept::Learning(study) => RunData::Problems(study.problems),
         };
-        runs.push(PlannedRun { number, digest, overrides, config, data });
+        runs.push(PlannedRun { number, digest, overrides, config, task, data });
     }
     Ok(runs)
 }

@@ -1,6 +1,6 @@
 //! What stands in which column.
 
-use results::{RunState, RunTable, RunTableRow};
+use results::{RunState, RunTable, RunTableRow, RunTableTask};
 use serde_json::Value;
 
 use crate::format::{count, duration, interval, significant};
@@ -87,7 +87,8 @@ pub(super) fn row(table: &RunTable, row: &RunTableRow) -> RowView {
 pub(super) fn short_name(table: &RunTable, run: &str) -> String {
     let last = run.trim_end_matches('/').rsplit('/').next().unwrap_or(run);
     let number = last.split('-').next().unwrap_or(last);
-    let is_number = table.task == "sweep" && !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
+    let is_number =
+        table.task == RunTableTask::Sweep && !number.is_empty() && number.chars().all(|c| c.is_ascii_digit());
     if is_number { number } else { last }.to_owned()
 }
 

@@ -187,7 +187,7 @@ fn figure(
 #[cfg(test)]
 mod tests {
     use super::{label, median, short_label};
-    use results::{RunState, RunTable, RunTableRow};
+    use results::{RunState, RunTable, RunTableRow, RunTableTask};
 
     #[test]
     fn of_a_long_value_its_end_is_shown() {
@@ -196,7 +196,7 @@ mod tests {
         row.settings.insert("data.path".into(), "a/long/way/to/record-07.csv".into());
         row.settings.insert("seed".into(), 3.into());
         let columns = vec!["data.path".into(), "seed".into()];
-        let table = RunTable::new("runs", "", vec![], columns, vec![row.clone()]);
+        let table = RunTable::new(RunTableTask::Runs, "", vec![], columns, vec![row.clone()]);
         assert_eq!(short_label(&table, &row, &|_| true), "pinn, path = …to/record-07.csv, seed = 3");
         assert_eq!(label(&table, &row, &|key| key != "seed"), "pinn, path = a/long/way/to/record-07.csv");
     }

@@ -8,7 +8,7 @@ mod tests;
 mod text;
 
 use askama::Template;
-use results::{RunState, RunTable, SweepAxis};
+use results::{RunState, RunTable, RunTableTask, SweepAxis};
 
 use crate::figures::Figure;
 use crate::frame::{Frame, finish};
@@ -55,7 +55,10 @@ pub(crate) fn render(texts: &RunTexts<'_>, table: &RunTable) -> Result<String, R
             ],
             ..Frame::bare(
                 texts,
-                if table.task == "sweep" { "a sweep" } else { "runs side by side" },
+                match table.task {
+                    RunTableTask::Sweep => "a sweep",
+                    RunTableTask::Runs => "runs side by side",
+                },
                 headline(table),
                 origin(table),
             )

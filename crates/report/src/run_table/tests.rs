@@ -1,6 +1,6 @@
 //! Of the page and the texts on many runs.
 
-use results::{Origin, Reached, RunState, RunTable, RunTableRow, SweepAxis};
+use results::{Origin, Reached, RunState, RunTable, RunTableRow, RunTableTask, SweepAxis};
 use serde_json::{Value, json};
 
 use super::{csv, markdown, text_cells};
@@ -40,7 +40,7 @@ fn table() -> RunTable {
         row("runs/0004-lstm-seed-1", "lstm", 1, 0.5),
         broken,
     ];
-    RunTable::new("sweep", "a sweep", axes, vec!["seed".into()], rows)
+    RunTable::new(RunTableTask::Sweep, "a sweep", axes, vec!["seed".into()], rows)
 }
 
 fn page(table: &RunTable) -> String {
@@ -53,8 +53,13 @@ fn page(table: &RunTable) -> String {
 fn the_table_counts_what_became_of_its_runs() {
     let table = table();
     assert_eq!((table.done, table.failed, table.open, table.pass), (4, 1, 0, false));
-    let good =
-        RunTable::new("runs", "", vec![], vec![], vec![row("a", "pinn", 0, 1e-7), row("a", "ols", 0, 0.0)]);
+    let good = RunTable::new(
+        RunTableTask::Runs,
+        "",
+        vec![],
+        vec![],
+        vec![row("a", "pinn", 0, 1e-7), row("a", "ols", 0, 0.0)],
+    );
     // Two methods of one run are one run.
     assert_eq!((good.done, good.failed, good.pass), (1, 0, true));
 }

@@ -2,7 +2,7 @@
 
 use crate::error::TableError;
 use experiment::sweep::differing_keys;
-use results::{RunTable, RunTableRow, SweepAxis};
+use results::{RunTable, RunTableRow, RunTableTask, SweepAxis};
 use serde_json::Value;
 use settings::Document;
 use std::cmp::Ordering;
@@ -19,7 +19,7 @@ pub(crate) struct Entry {
 const COLUMNS: [&str; 8] = ["run", "method", "zeta", "error", "worst", "steps", "seconds", "state"];
 
 /// Puts runs into one table. Its columns are what a sweep varies, and every other key in which the runs differ.
-pub(crate) fn build(task: &str, name: &str, axes: Vec<SweepAxis>, entries: Vec<Entry>) -> RunTable {
+pub(crate) fn build(task: RunTableTask, name: &str, axes: Vec<SweepAxis>, entries: Vec<Entry>) -> RunTable {
     let configs: Vec<&Document> = entries.iter().filter_map(|entry| entry.config.as_ref()).collect();
     let varied = axes.iter().filter(|axis| axis.values.len() > 1).map(|axis| axis.key.clone());
     // The estimator is a column of its own.
@@ -93,7 +93,7 @@ fn compare(one: &Value, other: &Value) -> Ordering {
 #[cfg(test)]
 mod tests {
     use super::{Entry, build, sort};
-    use results::{RunState, RunTable, RunTableRow};
+    use results::{RunState, RunTable, RunTableRow, RunTableTask};
     use settings::Document;
 
     fn entry(run: &str, config: &str, error: Option<f64>) -> Entry {
@@ -109,7 +109,7 @@ mod tests {
             Entry { rows: vec![RunTableRow::without_numbers("c", RunState::Corrupt, "x")], config: None },
             entry("d", "seed = 11\n[estimator]\nname = 'ols'\n", Some(f64::NAN)),
         ];
-        build("runs", "", vec![], entries)
+        build(RunTableTask::Runs, "", vec![], entries)
     }
 
     fn order(key: &str, reverse: bool) -> String {

@@ -4,7 +4,8 @@ use crate::commands::sweep::measure::{value_of, warning};
 use crate::error::{SweepCommandError, TrainerError};
 use crate::run_table::build::{Entry, build};
 use results::{
-    RunState, RunTable, RunTableRow, SearchBest, SearchOutcome, SweepLine, SweepManifest, SweepState,
+    RunState, RunTable, RunTableRow, RunTableTask, SearchBest, SearchOutcome, SweepLine, SweepManifest,
+    SweepState,
 };
 use runs::{SweepFolder, read_run};
 use settings::Document;
@@ -16,7 +17,7 @@ use settings::Document;
 pub(crate) fn table(folder: &SweepFolder, manifest: &SweepManifest) -> Result<RunTable, SweepCommandError> {
     let entry = |line| entry(folder, manifest, line, &|run| run.to_owned());
     let entries = manifest.runs.iter().map(entry).collect();
-    let mut table = build("sweep", &manifest.name, manifest.axes.clone(), entries);
+    let mut table = build(RunTableTask::Sweep, &manifest.name, manifest.axes.clone(), entries);
     let Some(search) = &manifest.search else { return Ok(table) };
     let mut measured: Vec<(&SweepLine, f64)> = Vec::new();
     for line in &manifest.runs {

@@ -13,7 +13,7 @@ use crate::run_table::{
 use crate::terminal::console;
 use arguments::{CompareArguments, Format};
 use report::{RunTexts, render_run_table, run_table_csv, run_table_markdown};
-use results::RunTable;
+use results::{RunTable, RunTableTask};
 use runs::{RunFolder, SweepFolder, has_run_files, list_runs, read_run};
 use std::path::{Path, PathBuf};
 
@@ -28,7 +28,7 @@ pub(crate) fn command(arguments: &CompareArguments) -> Result<Outcome, TrainerEr
             found.extend(at(&path)?);
         }
     }
-    let mut table = build("runs", "", Vec::new(), found);
+    let mut table = build(RunTableTask::Runs, "", Vec::new(), found);
     if let Some(key) = &arguments.sort {
         sort(&mut table, key, arguments.reverse)?;
     }

@@ -328,7 +328,7 @@ fn said(rows: &[RunTableRow]) -> String {
             let fails = if bad > 0 { ", FAILS its tolerance" } else { "" };
             format!("{}{steps}{seconds}, ζ {zeta:.8}{gap}{fails}", reached.map_or("", Reached::in_words))
         }
-        [RunTableRow { task, reason, .. }] if task == "learn" => reason.clone(),
+        [RunTableRow { reason, .. }] if !reason.is_empty() => reason.clone(),
         rows => format!("{} methods, {bad} of them outside the tolerance", rows.len()),
     }
 }

@@ -1,18 +1,18 @@
 //! What trials are judged by: a number of a run's `result.json`, by its dotted path.
 
 use crate::error::SweepCommandError;
-use experiment::sweep::RunData;
+use experiment::sweep::SweptTask;
 use results::{SweepLine, SweepSearch, SweepState};
 use runs::SweepFolder;
 use serde_json::Value;
 use settings::nearest;
 
 /// The measure where none is named: never one of the test part.
-pub(super) fn default_measure(task: &str) -> &'static str {
+pub(super) fn default_measure(task: SweptTask) -> &'static str {
     match task {
-        "learn" => "validation.over_noise",
-        "compare" => "max_error_percent",
-        _ => "error_percent",
+        SweptTask::Learn => "validation.over_noise",
+        SweptTask::Compare => "max_error_percent",
+        SweptTask::Estimate => "error_percent",
     }
 }
 
@@ -25,19 +25,6 @@ pub(crate) fn warning(measure: &str) -> Option<String> {
              seen: judge the best on others, or search by validation.over_noise."
         )
     })
-}
-
-/// The task of a configuration, as far as measures differ.
-pub(super) fn task_of(data: &RunData, config: &str) -> &'static str {
-    match data {
-        RunData::Problems(_) => "learn",
-        RunData::Record(_)
-            if config.lines().any(|line| line.trim_start().starts_with("task = \"compare\"")) =>
-        {
-            "compare"
-        }
-        RunData::Record(_) => "estimate",
-    }
 }
 
 /// The measure of a result: `None` where the result has no number there, as that of a training that failed.

@@ -1,12 +1,12 @@
 //! What a sweep varies and on which configuration: from a command line, or from a manifest.
 
 use super::arguments::SweepArguments;
-use super::measure::{default_measure, task_of};
+use super::measure::default_measure;
 use crate::configured::{read_with_text, registries};
 use crate::error::{SweepCommandError, TrainerError};
 use experiment::sweep::{
-    Axis, Dimension, PlannedRun, STARTING_POINTS, Sampler, SweepError, TriedPoint, combinations, plan,
-    propose,
+    Axis, Dimension, PlannedRun, STARTING_POINTS, Sampler, SweepError, SweptTask, TriedPoint, combinations,
+    plan, propose,
 };
 use results::{SweepAxis, SweepHalving, SweepManifest, SweepSampler, SweepSearch};
 use seed::Seed;
@@ -110,9 +110,8 @@ impl Study {
     ) -> Result<Option<SweepSearch>, TrainerError> {
         let asked = &arguments.search;
         let Some(first) = runs.first().filter(|_| asked.is_one()) else { return Ok(None) };
-        let task = task_of(&first.data, &first.config);
         let named = asked.minimize.as_ref().or(asked.maximize.as_ref());
-        let measure = named.cloned().unwrap_or_else(|| default_measure(task).to_owned());
+        let measure = named.cloned().unwrap_or_else(|| default_measure(first.task).to_owned());
         let (sampler, trials) = match &self.varied {
             Varied::Axes(_) => (SweepSampler::Grid, runs.len()),
             Varied::Space { sampler: Sampler::Random, .. } => (SweepSampler::Random, asked.trials()),
@@ -127,10 +126,10 @@ impl Study {
             if sampler.looks_at_results() {
                 return Err(SweepCommandError::HalvedTpe.into());
             }
-            if task == "compare" {
+            if first.task == SweptTask::Compare {
                 return Err(SweepCommandError::HalvedCompare.into());
             }
-            if task == "learn" && measure.split('.').any(|part| part == "test") {
+            if first.task == SweptTask::Learn && measure.split('.').any(|part| part == "test") {
                 return Err(SweepCommandError::HalvedTest { measure }.into());
             }
         }
