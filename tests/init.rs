@@ -70,6 +70,52 @@ fn a_driven_log_gets_a_gain_and_no_envelope() {
     assert_eq!(diagnosed.status.code(), Some(0), "{}", String::from_utf8_lossy(&diagnosed.stderr));
 }
 
+/// What only stands beside a free decay, or is constant, is no input; a person can say so of any column.
+#[test]
+fn a_column_that_the_motion_does_not_follow_is_no_input() {
+    let scratch = tempfile::tempdir().unwrap();
+    for (title, of) in [
+        ("battery_voltage", (|row| 12.0 + 0.01 * (f64::from(row) * 0.7).sin()) as fn(u32) -> f64),
+        ("command", |_| 1.0),
+    ] {
+        let line = |row: u32| {
+            let time = f64::from(row) * 0.01;
+            let angle = 0.5 * (-0.1 * time).exp() * (TAU * time).cos() + 1e-4 * (f64::from(row) * 37.7).sin();
+            format!("{time:.2},{angle:.6},{:.6}\n", of(row))
+        };
+        let text = format!("time_s,angle_rad,{title}\n{}", (0..2000).map(line).collect::<String>());
+        write(scratch.path(), "log.csv", &text);
+        for (folder, asked) in [("plain", ""), ("none", " --input none")] {
+            let call = format!("trainer init log.csv --out {title}-{folder}{asked} --json");
+            let found = said(&shell(&call, scratch.path()));
+            assert_eq!(found["oscillator"]["input_gain_per_inertia"], Value::Null, "{call}");
+            let frequency = number(&found, "/oscillator/natural_frequency_hz/value");
+            assert!((frequency - 1.0).abs() < 1e-3, "{call}: {frequency}");
+        }
+    }
+}
+
+/// A swing that grows has a negative damping and gets a note; a simulator of it has none.
+#[test]
+fn a_swing_that_grows_is_said_to() {
+    let scratch = tempfile::tempdir().unwrap();
+    let line = |row: u32| {
+        let time = f64::from(row) * 0.01;
+        format!("{time:.2},{:.6}\n", 0.05 * (0.1 * time).exp() * (TAU * time).cos())
+    };
+    write(
+        scratch.path(),
+        "log.csv",
+        &format!("time_s,angle_rad\n{}", (0..2000).map(line).collect::<String>()),
+    );
+    let found = said(&shell("trainer init log.csv --out rig --json", scratch.path()));
+    let ratio = number(&found, "/oscillator/damping_ratio/value");
+    assert!((ratio + 0.1 / TAU).abs() < 1e-3, "{ratio}");
+    assert!(found["record"]["findings"].to_string().contains("the swing grows"), "{found}");
+    let nominal = std::fs::read_to_string(scratch.path().join("rig/nominal.toml")).unwrap();
+    assert!(nominal.lines().any(|line| line.starts_with("damping_ratio = 0.0 ")), "{nominal}");
+}
+
 fn walk(folder: &Path) -> Vec<String> {
     let mut found = Vec::new();
     for entry in std::fs::read_dir(folder).unwrap() {

@@ -16,10 +16,11 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Option<LinearOscilla
     let line = oracle::decay_rate(envelope).ok()?;
     let half_period = half_period(envelope, 0.5 * extraction.period_s)?;
     let damped = PI / half_period.value;
-    let decay = line.decay_rate.max(0.0);
+    let decay = line.decay_rate;
     let stiffness = Estimated {
         value: damped * damped + decay * decay,
-        std_error: 2.0 * damped * damped * half_period.std_error / half_period.value,
+        std_error: (2.0 * damped * damped * half_period.std_error / half_period.value)
+            .hypot(2.0 * decay * line.std_error),
     };
     let rest = (order(record.quantity()) == 0).then(|| Estimated {
         value: extraction.offset,

@@ -14,7 +14,7 @@ pub struct Estimated {
 pub struct LinearOscillator {
     /// Stiffness over inertia, ω₀², in 1/s²; 0 where the record shows no restoring torque.
     pub stiffness: Estimated,
-    /// Damping over inertia, 2ζω₀, in 1/s; 0 or above.
+    /// Damping over inertia, 2ζω₀, in 1/s; negative where the swing grows.
     pub damping: Estimated,
     /// Rest position, in the record's unit; `None` where the sensor observes no position or nothing restores it.
     pub rest: Option<Estimated>,

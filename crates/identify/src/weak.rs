@@ -46,7 +46,7 @@ pub(crate) fn oscillator(record: &Record, clock: &Clock) -> Result<LinearOscilla
     let rest = (restored && samples.order == 0).then(|| shift.times(1.0 / stiffness.value));
     Ok(LinearOscillator {
         stiffness,
-        damping: Estimated { value: damping.value.max(0.0), ..damping },
+        damping,
         rest,
         input_gain: samples.input.is_some().then_some(gain),
         basis: Basis::Windows(rows.len()),

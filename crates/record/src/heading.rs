@@ -34,7 +34,7 @@ const DOUBTFUL: &[(&str, &[&str])] = &[
 ];
 
 impl Heading {
-    /// Takes a title apart: `angle [deg]`, `time (ms)`, `angle / deg`, `velocity_rad_s`; `below` is the cell of a line of
+    /// Takes a title apart: `angle [deg]`, `time (ms)`, `angle / deg`, `t/ms`, `velocity_rad_s`, `deg`; `below` is the cell of a line of
     /// units, which counts where the title states none.
     pub(crate) fn parse(title: &str, below: Option<&str>) -> Self {
         let title = title.trim();
@@ -91,17 +91,26 @@ fn bracketed(title: &str) -> Option<(&str, Option<Measure>)> {
     })
 }
 
-/// `name_unit`, with the longest ending that is a unit; a name that is a unit of time is a time.
+/// `name_unit` or `name/unit`, with the longest ending that is a unit; a name that is a unit of time is a time, and one
+/// that is another unit of two letters or more holds what is measured in it.
 fn suffixed(title: &str) -> (&str, Option<Measure>) {
     if let Some(unit) = TimeUnit::parse(title).filter(|unit| *unit != TimeUnit::Iso) {
         return (title, Some(Measure::Time(unit)));
     }
-    let breaks = title.match_indices(['_', ' ', '.', '-']).map(|(at, sign)| (at, at + sign.len()));
+    let doubtful =
+        |ending: &str| DOUBTFUL.iter().find(|(unit, _)| ending.eq_ignore_ascii_case(unit)).map(|row| row.1);
+    let whole = Unit::parse(title).filter(|_| title.chars().nth(1).is_some() && doubtful(title).is_none());
+    if let Some(unit) = whole {
+        return (title, Some(Measure::Value(unit)));
+    }
+    let breaks = title.match_indices(['_', ' ', '.', '-', '/']).map(|(at, sign)| (at, at + sign.len()));
     for (end, start) in breaks {
         let (Some(name), Some(ending)) = (title.get(..end), title.get(start..)) else { continue };
-        let Some(measure) = measure_of(ending).filter(|_| !name.is_empty()) else { continue };
-        let doubtful = DOUBTFUL.iter().find(|(unit, _)| ending.eq_ignore_ascii_case(unit));
-        if doubtful.is_none_or(|(_, names)| words(name).iter().any(|word| names.contains(&word.as_str()))) {
+        // `N/m` is a stiffness and no force in meters.
+        let is_ratio = title.get(end..start) == Some("/") && measure_of(name).is_some();
+        let Some(measure) = measure_of(ending).filter(|_| !name.is_empty() && !is_ratio) else { continue };
+        let doubtful = doubtful(ending);
+        if doubtful.is_none_or(|names| words(name).iter().any(|word| names.contains(&word.as_str()))) {
             return (name, Some(measure));
         }
     }
@@ -158,6 +167,14 @@ mod tests {
             ("force_n", "force", value(Unit::Newton)),
             ("vir_V", "vir", value(Unit::Volt)),
             ("current_a", "current", value(Unit::Ampere)),
+            ("t/ms", "t", time(TimeUnit::Millisecond)),
+            ("Winkel/deg", "winkel", value(Unit::Degree)),
+            ("x/mm", "x", value(Unit::Millimeter)),
+            ("omega/rad/s", "omega", value(Unit::RadianPerSecond)),
+            ("deg", "deg", value(Unit::Degree)),
+            ("deg/s", "deg s", value(Unit::DegreePerSecond)),
+            ("N/m", "n m", None),
+            ("x/a", "x a", None),
             ("swing_a", "swing a", None),
             ("signal_in", "signal in", None),
             ("field.position0", "field position", None),

@@ -84,6 +84,8 @@ const POSITIONS: &[&str] = &[
     "state",
 ];
 const VELOCITIES: &[&str] = &["velocity", "vel", "gyro", "omega", "speed", "qd", "dq", "thetadot"];
+/// Asked for as the input, where no column is called so: there is none.
+const NO_INPUT: &str = "none";
 const ACCELERATIONS: &[&str] = &["acceleration", "accel", "acc", "accelerometer"];
 const TORQUES: &[&str] = &["torque", "tau", "force", "moment", "effort", "kraft", "drehmoment"];
 const INPUTS: &[&str] =
@@ -291,7 +293,11 @@ impl Roles<'_> {
     /// command or a voltage only where an input is asked for.
     pub(crate) fn input(&self, taken: &[usize]) -> Result<(Option<Pick>, Option<String>), Fault> {
         if let Some(name) = &self.asked().input {
-            let at = self.named(name, "data.input")?;
+            let named = self.named(name, "data.input");
+            if name == NO_INPUT && named.is_err() {
+                return Ok((None, None));
+            }
+            let at = named?;
             if taken.contains(&at) {
                 return Err(Fault::InputIsTaken { line: self.line, column: name.clone() });
             }

@@ -73,6 +73,15 @@ pub struct LearnProblem {
     pub missing: Vec<String>,
 }
 
+impl LearnProblem {
+    /// What the input does between its samples, in words; `None` without an input.
+    #[must_use]
+    pub fn input_between_samples(&self) -> Option<&'static str> {
+        let hold = self.input_hold.as_deref()?;
+        Some(if hold == "linear" { "straight to the next" } else { "kept" })
+    }
+}
+
 /// A method on a data set.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct LearnRow {

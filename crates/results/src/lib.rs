@@ -53,7 +53,7 @@ pub use learning::{
 pub use method::{Ablation, Estimand, Family, Reached};
 pub use prediction::{
     Coverage, ExponentialScores, HeldOutScore, LawSummary, MethodScores, PairedComparison, PredictionCsvRow,
-    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy,
+    PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow, ProblemStudy, SplitKind,
     SplitSummary,
 };
 pub use rigs::{

@@ -239,6 +239,16 @@ pub struct PairedComparison {
     pub adjusted_p_value: f64,
 }
 
+/// Why peaks are held out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SplitKind {
+    /// Blocks between others.
+    Interpolation,
+    /// The end.
+    Extrapolation,
+}
+
 /// One row of `predictions.csv`: a peak, what a method says of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct PredictionCsvRow {
@@ -246,8 +256,8 @@ pub struct PredictionCsvRow {
     pub problem: String,
     /// Where its numbers came from.
     pub origin: Origin,
-    /// `"interpolation"` or `"extrapolation"`.
-    pub split: String,
+    /// Why peaks were held out.
+    pub split: SplitKind,
     /// Identifier of the method, or `best-exponential`.
     pub method: String,
     /// Time after the first peak, in seconds.

@@ -15,7 +15,7 @@ mod verdict;
 
 pub use error::StudyError;
 pub use problem::{Missing, Ready, Truth, prepare};
-pub use split::{Split, SplitKind};
+pub use split::Split;
 pub use table::{ProblemTrials, StudiedMethod, best_exponentials, csv_rows, result};
 pub use tally::Placed;
 pub use trial::{Trial, seen};

@@ -2,14 +2,14 @@
 
 use crate::error::StudyError;
 
-use crate::split::{Split, SplitKind, splits};
+use crate::split::{Split, splits};
 use envelope::Envelope;
 use experiment::{
     DataSettings, Law, Pipeline, PredictionStudy, Problem, ProblemSource, ScatterKind, SimulatedProblem,
 };
 use oracle::DecayFit;
 use record::{Clock, ClockChoice, Origin, read_file};
-use results::{DataSummary, LawSummary};
+use results::{DataSummary, LawSummary, SplitKind};
 use seed::Seed;
 use simulator::{DecayLaw, EnvelopeSimulation, Scatter};
 use std::path::Path;

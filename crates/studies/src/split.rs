@@ -2,26 +2,7 @@
 
 use crate::error::StudyError;
 use experiment::PredictionSettings;
-
-/// Why peaks are held out.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SplitKind {
-    /// Blocks between others.
-    Interpolation,
-    /// The end.
-    Extrapolation,
-}
-
-impl SplitKind {
-    /// Name in tables and files.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Interpolation => "interpolation",
-            Self::Extrapolation => "extrapolation",
-        }
-    }
-}
+use results::SplitKind;
 
 /// One way to hold out peaks: of every peak the number of the block that it is held out with, or `None`
 /// where the fit sees it. The first peak always is seen.
@@ -91,8 +72,9 @@ impl Split {
 
 #[cfg(test)]
 mod tests {
-    use super::{Split, SplitKind, splits};
+    use super::{Split, splits};
     use experiment::{PredictionSettings, resolve_prediction};
+    use results::SplitKind;
     use settings::Document;
 
     fn settings(overrides: &str) -> PredictionSettings {

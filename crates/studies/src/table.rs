@@ -1,14 +1,13 @@
 //! From the trials of all methods on all problems to the tables of a study.
 
 use crate::problem::{Missing, Ready};
-use crate::split::SplitKind;
 use crate::tally::{Placed, adjust, outcome, score};
 use crate::trial::best_exponential;
 use crate::verdict::verdict;
 use experiment::PredictionStudy;
 use results::{
     ExponentialScores, Failure, Family, PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow,
-    ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitSummary,
+    ProblemOutcome, ProblemRow, ProblemStudy, RESULT_SCHEMA, SplitKind, SplitSummary,
 };
 
 /// Name of the best exponential in `predictions.csv`.
@@ -205,7 +204,7 @@ fn add_rows(rows: &mut Vec<PredictionCsvRow>, problem: &Ready, method: &str, tri
             rows.push(PredictionCsvRow {
                 problem: problem.id.clone(),
                 origin: problem.origin,
-                split: split.kind.name().to_owned(),
+                split: split.kind,
                 method: method.to_owned(),
                 time_s,
                 log_amplitude,

@@ -1,9 +1,10 @@
 //! From trials to scores.
 
 use crate::problem::Ready;
-use crate::split::SplitKind;
 use crate::trial::{Trial, held_out};
-use results::{Coverage, Failure, HeldOutScore, MethodScores, PairedComparison, PredictionOutcome};
+use results::{
+    Coverage, Failure, HeldOutScore, MethodScores, PairedComparison, PredictionOutcome, SplitKind,
+};
 use scoring::HeldOutPeak;
 use std::collections::BTreeMap;
 

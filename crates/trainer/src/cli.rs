@@ -29,7 +29,7 @@ use std::path::PathBuf;
 Examples:
   trainer init log.csv                            looks at your log and says how to go on
   trainer configs/pinn.toml                       the shipped, simulated record
-  trainer configs/paper.toml                      all of the paper's methods
+  trainer configs/compare.toml                    many methods side by side
   trainer configs/pinn.toml seed=3 fit.seeds=10   ten seeds from 3 on, the worst reported
   trainer configs/pinn.toml data.path=log.csv data.value=theta data.unit=deg
   trainer configs/lstm-amortized.toml fit.seeds=100 --out RUN --resume
@@ -43,7 +43,7 @@ Examples:
   trainer trials configs/trials-quick.toml        the diagnosis on effects withheld from it, scored
   trainer sweep configs/pinn.toml estimator=pinn,lstm seed=0..9   every combination, resumable
   trainer compare 'reports/runs/pinn-*'           runs side by side
-  trainer check configs/paper.toml seed=3         would it run? nothing is run or written
+  trainer check configs/compare.toml seed=3       would it run? nothing is run or written
   trainer explain fit.tolerance_percent configs/pinn.toml
   trainer schema > ringdown.schema.json           for editors: #:schema ringdown.schema.json
   trainer list estimators

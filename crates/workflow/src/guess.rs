@@ -27,13 +27,13 @@ pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordi
     match (oscillator.natural_frequency_hz(), oscillator.damping_ratio()) {
         (Some(frequency), Some(ratio)) => {
             line("natural_frequency", digits(frequency), format!("Hz, ± {}", error(frequency)));
-            line("damping_ratio", digits(ratio), format!("± {}", error(ratio)));
+            line("damping_ratio", digits(passive(ratio)), format!("± {}", error(ratio)));
         }
         _ => {
             line("inertia", "1.0".to_owned(), "everything is per unit of inertia".to_owned());
             line(
                 "damping",
-                digits(oscillator.damping),
+                digits(passive(oscillator.damping)),
                 format!("1/s, over the inertia, ± {}", error(oscillator.damping)),
             );
             line("stiffness", "0.0".to_owned(), format!("the record shows no restoring {torque}"));
@@ -55,6 +55,11 @@ pub fn nominal_toml(log: &str, oscillator: &LinearOscillator, coordinate: Coordi
         );
     }
     text
+}
+
+/// A damping that a simulator can have: that of a swing that grows is none.
+fn passive(damping: Estimated) -> Estimated {
+    Estimated { value: damping.value.max(0.0), ..damping }
 }
 
 /// A configuration that estimates the damping of the record, with the keys that say how to read it.

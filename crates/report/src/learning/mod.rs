@@ -118,15 +118,10 @@ fn facts(problem: &LearnProblem) -> Vec<Fact> {
         fact("Predicted after it", quantity(&significant(problem.test_s, 4), "s")),
         fact("Sensor noise", quantity(&significant(problem.noise, 3), &problem.unit)),
     ];
-    let hold = problem.input_hold.as_deref();
-    facts.extend(hold.map(|hold| fact("Input between its samples", in_words(hold).to_owned())));
+    let input = problem.input_between_samples();
+    facts.extend(input.map(|does| fact("Input between its samples", does.to_owned())));
     facts.extend(problem.missing.iter().map(|missing| fact("Record with missing cells", missing.clone())));
     facts
-}
-
-/// What an input does between its samples.
-fn in_words(hold: &str) -> &'static str {
-    if hold == "linear" { "straight to the next" } else { "kept" }
 }
 
 fn score_row(row: &LearnRow) -> ScoreRow {

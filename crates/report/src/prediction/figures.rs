@@ -1,6 +1,6 @@
 //! The plots of a problem.
 
-use results::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy};
+use results::{PredictionCsvRow, PredictionRow, ProblemRow, ProblemStudy, SplitKind};
 
 use super::scores::error;
 use super::study::scored;
@@ -51,7 +51,9 @@ fn peaks<'a>(
 ) -> Option<Peaks<'a>> {
     let of = |method: &str| -> Vec<&'a PredictionCsvRow> {
         rows.iter()
-            .filter(|row| row.problem == problem.id && row.split == "extrapolation" && row.method == method)
+            .filter(|row| {
+                row.problem == problem.id && row.split == SplitKind::Extrapolation && row.method == method
+            })
             .collect()
     };
     let own = of(EXPONENTIAL);

@@ -3,7 +3,7 @@
 use results::{
     Coverage, ExponentialScores, Family, HeldOutScore, LawSummary, MethodScores, Origin, PairedComparison,
     PredictionCsvRow, PredictionOutcome, PredictionResult, PredictionRow, ProblemOutcome, ProblemRow,
-    ProblemStudy, RESULT_SCHEMA, SplitSummary,
+    ProblemStudy, RESULT_SCHEMA, SplitKind, SplitSummary,
 };
 
 use crate::sample::{Sample, table};
@@ -131,7 +131,7 @@ fn rows() -> Vec<PredictionCsvRow> {
                 PredictionCsvRow {
                     problem: problem.into(),
                     origin,
-                    split: "extrapolation".into(),
+                    split: SplitKind::Extrapolation,
                     method: method.into(),
                     time_s: time,
                     log_amplitude: log + 0.03 * (7.0 * time).sin(),

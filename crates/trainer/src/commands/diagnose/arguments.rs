@@ -109,7 +109,7 @@ pub(crate) struct Reading {
     /// The observed column
     #[arg(long, value_name = "COLUMN", alias = "angle")]
     pub(crate) value: Option<String>,
-    /// The column of the measured input
+    /// The column of the measured input; none where nothing drives the system
     #[arg(long, value_name = "COLUMN")]
     pub(crate) input: Option<String>,
     /// Unit of the observed column [default: from its name, else that of the simulator's coordinate]

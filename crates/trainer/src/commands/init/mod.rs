@@ -92,7 +92,7 @@ fn find(arguments: &InitArguments) -> Result<Found, TrainerError> {
         RunError::Occupied { path } => TrainerError::InitOccupied { folder: path.display().to_string() },
         other => other.into(),
     })?;
-    let mut looked = paths.into_iter().map(|path| looked(path, reading)).collect::<Result<Vec<_>, _>>()?;
+    let mut looked = paths.into_iter().map(|path| looked(&path, reading)).collect::<Result<Vec<_>, _>>()?;
     let each = if looked.len() > 1 { looked.iter().map(Looked::each).collect() } else { Vec::new() };
     let bias = looked.iter().any(|looked| bias(&looked.look.record).is_some());
     let by_error = |one: &Looked, other: &Looked| {
@@ -140,17 +140,35 @@ fn folder_of(log: &Path) -> PathBuf {
 }
 
 /// Looks at one log.
-fn looked(path: PathBuf, reading: &Reading) -> Result<Looked, TrainerError> {
-    // An input that stands in the file drives the system, whatever its name.
-    let options = ReadOptions { driven: true, ..reading.plain().options };
-    let mut look = look(&path, &options).map_err(WorkflowError::Record)?;
+fn looked(path: &Path, reading: &Reading) -> Result<Looked, TrainerError> {
+    // A command or a voltage that stands in the file may drive the system; it does where the motion follows it.
+    let found = looked_as(path, reading, true);
+    let follows = match &found {
+        Ok(found) => found.oscillator.input_gain.is_none_or(is_significant),
+        // A constant input tells nothing from a rest position.
+        Err(TrainerError::Workflow(WorkflowError::Identify { .. })) => false,
+        Err(_) => true,
+    };
+    if follows || reading.input.is_some() { found } else { looked_as(path, reading, false) }
+}
+
+fn is_significant(estimated: Estimated) -> bool {
+    estimated.value.abs() > SIGNIFICANT * estimated.std_error
+}
+
+/// Standard errors that a number stands above zero where it is not taken for zero.
+const SIGNIFICANT: f64 = 3.0;
+
+fn looked_as(path: &Path, reading: &Reading, driven: bool) -> Result<Looked, TrainerError> {
+    let options = ReadOptions { driven, ..reading.plain().options };
+    let mut look = look(path, &options).map_err(WorkflowError::Record)?;
     let file = path.display().to_string();
     if reading.remove_mean {
         look.record = centered(&look.record).map_err(|fault| WorkflowError::Record(fault.in_file(&file)))?;
     }
     let oscillator =
         identify(&look.record, &look.clock).map_err(|source| WorkflowError::Identify { file, source })?;
-    Ok(Looked { path, look, oscillator })
+    Ok(Looked { path: path.to_owned(), look, oscillator })
 }
 
 impl Looked {
@@ -284,7 +302,19 @@ impl Found {
 
     fn findings(&self) -> Vec<String> {
         let read = self.surest.look.source.findings.iter().map(|finding| in_options(finding));
-        read.chain(bias(&self.surest.look.record)).chain(apart(&self.each)).chain(self.few_cycles()).collect()
+        read.chain(bias(&self.surest.look.record))
+            .chain(apart(&self.each))
+            .chain(self.few_cycles())
+            .chain(self.growth())
+            .collect()
+    }
+
+    /// A warning where the swing grows, which no damping of a passive system does.
+    fn growth(&self) -> Option<String> {
+        let damping = self.surest.oscillator.damping;
+        (damping.value < 0.0 && is_significant(damping)).then(|| {
+            "the swing grows: something feeds it, which no passive simulator does; its damping is written as 0".to_owned()
+        })
     }
 
     /// A warning where the record is too short for its decay to show.

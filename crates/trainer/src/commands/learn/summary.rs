@@ -42,9 +42,8 @@ fn described(problem: &LearnProblem, result: &LearnResult) -> String {
         problem.warm_up_s,
         problem.test_s,
         problem
-            .input_hold
-            .as_deref()
-            .map_or_else(String::new, |hold| format!("; input between its samples: {hold}")),
+            .input_between_samples()
+            .map_or_else(String::new, |does| format!("; input between its samples: {does}")),
     );
     let own: Vec<&LearnRow> = result.results.iter().filter(|row| row.problem == problem.id).collect();
     let mut lines = vec![facts];
