@@ -67,7 +67,7 @@ pub(crate) fn render(texts: &RunTexts<'_>, diagnosis: &Diagnosis) -> Result<Stri
             ],
             ..Frame::bare(
                 texts,
-                "where a simulator and records part, and what closes the gap",
+                "where a simulator and records differ, and what closes the gap",
                 headline(result),
                 origin(result),
             )
