@@ -95,6 +95,21 @@ fn a_column_that_the_motion_does_not_follow_is_no_input() {
     }
 }
 
+/// Noise has a strongest line as a swing has, but none whose frequency is known.
+#[test]
+fn noise_is_said_to_hold_no_swing() {
+    let scratch = tempfile::tempdir().unwrap();
+    let line = |row: u32| {
+        let noise = (f64::from(row + 1) * 12.9898).sin() * 43_758.545_3;
+        format!("{:.2},{:.6}\n", f64::from(row) * 0.01, 0.02 * (noise - noise.floor() - 0.5))
+    };
+    let text = format!("time_s,angle_rad\n{}", (0..1000).map(line).collect::<String>());
+    write(scratch.path(), "log.csv", &text);
+    let found = said(&shell("trainer init log.csv --json", scratch.path()));
+    let findings = found["record"]["findings"].to_string();
+    assert!(findings.contains("may hold noise and no swing"), "{found}");
+}
+
 /// A swing that grows has a negative damping and gets a note; a simulator of it has none.
 #[test]
 fn a_swing_that_grows_is_said_to() {

@@ -161,7 +161,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
         None => None,
     };
     let time = roles.time()?;
-    let value = roles.value(time)?;
+    let (value, also) = roles.value(time)?;
     let taken: Vec<usize> = [Some(value), time].into_iter().flatten().map(|pick| pick.at).collect();
     let (input, note) = roles.input(&taken)?;
     if let Some(fault) = filter.is_none().then(|| table.series(false)).flatten() {
@@ -187,7 +187,7 @@ pub(crate) fn parse(text: &str, options: &ReadOptions) -> Result<Parsed, Fault> 
     let unit =
         asked.unit.or(heading.unit()).unwrap_or_else(|| assumed_unit(heading, quantity, options.coordinate));
     let (stamps, time_reading, mut findings) = stamps(&table, &chosen, options, &samples);
-    findings.extend(note);
+    findings.extend(also.into_iter().chain(note));
     let stated = [asked.unit, heading.unit()].map(|unit| unit.map(Unit::symbol));
     findings.extend(contradiction(heading, stated, "data.unit"));
     findings.extend(unknown_unit(heading, assumed, unit.symbol(), "data.unit"));

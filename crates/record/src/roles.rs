@@ -147,6 +147,9 @@ pub(crate) fn assumed_unit(heading: &Heading, quantity: Quantity, coordinate: Op
     }
 }
 
+/// How well a column suits as the observed one, see [`Roles::score`].
+type Score = (bool, usize, usize, bool);
+
 /// Columns of a table and what is asked of them.
 pub(crate) struct Roles<'a> {
     pub(crate) line: u64,
@@ -210,10 +213,10 @@ impl Roles<'_> {
         }
     }
 
-    /// The observed column.
-    pub(crate) fn value(&self, time: Option<Pick>) -> Result<Pick, Fault> {
+    /// The observed column, and a sentence where another one is as likely but for the order of names.
+    pub(crate) fn value(&self, time: Option<Pick>) -> Result<(Pick, Option<String>), Fault> {
         if let Some(name) = &self.asked().value {
-            return Ok(Pick { at: self.named(name, "data.value")?, because: NAMED });
+            return Ok((Pick { at: self.named(name, "data.value")?, because: NAMED }, None));
         }
         let left: Vec<(usize, &Column)> = self
             .columns
@@ -226,7 +229,7 @@ impl Roles<'_> {
                     && !column.heading.title.is_empty()
             })
             .collect();
-        let mut found: Vec<((bool, usize, usize, bool), usize)> =
+        let mut found: Vec<(Score, usize)> =
             left.iter().filter_map(|(at, column)| Some((self.score(&column.heading)?, *at))).collect();
         found.sort_unstable();
         match found.as_slice() {
@@ -239,18 +242,32 @@ impl Roles<'_> {
                     key: "data.value",
                 })
             }
-            [(_, at), ..] => Ok(Pick { at: *at, because: BY_NAME }),
+            [(_, at), ..] => Ok((Pick { at: *at, because: BY_NAME }, self.as_likely(&found))),
             // Words under such a name are a fault of their line, which is told where they are read.
-            [] if let Some(at) = self.text_with_such_a_name() => Ok(Pick { at, because: BY_NAME }),
+            [] if let Some(at) = self.text_with_such_a_name() => Ok((Pick { at, because: BY_NAME }, None)),
             [] => {
                 let other: Vec<usize> =
                     left.iter().filter(|(_, column)| !drives(&column.heading)).map(|(at, _)| *at).collect();
                 match other.as_slice() {
-                    [at] => Ok(Pick { at: *at, because: ONLY }),
+                    [at] => Ok((Pick { at: *at, because: ONLY }, None)),
                     _ => Err(self.missing("angle`, `displacement` or `position".to_owned(), "data.value")),
                 }
             }
         }
+    }
+
+    /// A sentence where more columns hold the quantity of the first of `found`, as roll and pitch both are positions.
+    fn as_likely(&self, found: &[(Score, usize)]) -> Option<String> {
+        let ((other, order, ..), taken) = found.first()?;
+        let same = |column: &Column| {
+            self.score(&column.heading)
+                .is_some_and(|(its, its_order, ..)| (its, its_order) == (*other, *order))
+        };
+        let taken = &self.columns.get(*taken)?.heading;
+        // The same words with another unit are the same quantity once more.
+        let more = self.titles(|column| column.heading.words != taken.words && same(column));
+        (!more.is_empty())
+            .then(|| format!("`{}` was taken and not {more}; name another with `data.value`", taken.title))
     }
 
     fn text_with_such_a_name(&self) -> Option<usize> {
@@ -261,7 +278,7 @@ impl Roles<'_> {
 
     /// How well a column suits as the observed one, the best least: first of the nominal's dimension, then positions
     /// before their derivatives, then by name, then SI units before others.
-    fn score(&self, heading: &Heading) -> Option<(bool, usize, usize, bool)> {
+    fn score(&self, heading: &Heading) -> Option<Score> {
         if drives(heading) {
             return None;
         }

@@ -278,6 +278,18 @@ fn columns_that_tie_are_listed() {
 }
 
 #[test]
+fn another_column_that_could_be_observed_is_told() {
+    let findings = |header| read(&file(header, |_, t, a| format!("{t},{a},{a}"))).1.findings;
+    assert_eq!(
+        findings("time_s,roll_rad,pitch_rad"),
+        ["`roll_rad` was taken and not `pitch_rad`; name another with `data.value`"]
+    );
+    // A rate of it and the same in another unit are no other motion.
+    assert!(findings("time_s,angle_rad,velocity").is_empty());
+    assert!(findings("time_s,angle_rad,angle_deg").is_empty());
+}
+
+#[test]
 fn the_nominal_coordinate_chooses_among_columns() {
     let text = file("time_s,angle_rad,displacement_mm,command", |_, t, a| format!("{t},{a},{},{a}", 2e3 * a));
     let options =

@@ -28,7 +28,7 @@ const NEAR: f64 = 1.5;
 const POLISHED: usize = 6;
 
 /// Score behind the best from which on a set is not gone on from.
-const FAR_BEHIND: f64 = 60.0;
+const FAR_BEHIND: f64 = 30.0;
 
 /// Proposals at a fit: what to add.
 fn around(asked: &Asked<'_>, base: &Fit, best: bool) -> Vec<Proposal> {

@@ -305,6 +305,7 @@ impl Found {
         read.chain(bias(&self.surest.look.record))
             .chain(apart(&self.each))
             .chain(self.few_cycles())
+            .chain(self.hardly_known())
             .chain(self.growth())
             .collect()
     }
@@ -314,6 +315,19 @@ impl Found {
         let damping = self.surest.oscillator.damping;
         (damping.value < 0.0 && is_significant(damping)).then(|| {
             "the swing grows: something feeds it, which no passive simulator does; its damping is written as 0".to_owned()
+        })
+    }
+
+    /// A warning where the frequency is so uncertain that the record may hold no swing.
+    fn hardly_known(&self) -> Option<String> {
+        let frequency = self.surest.oscillator.natural_frequency_hz()?;
+        let part = frequency.std_error / frequency.value;
+        (part > HARDLY_KNOWN).then(|| {
+            format!(
+                "the natural frequency is known to {:.0} % only: the record may hold noise and no swing, or a swing that \
+                 hardly oscillates",
+                100.0 * part
+            )
         })
     }
 
@@ -329,6 +343,10 @@ impl Found {
         })
     }
 }
+
+/// Relative error of a natural frequency from which on it is doubtful whether anything swings: 24 made records of noise, white
+/// or red, have 5 to 15 % or no frequency.
+const HARDLY_KNOWN: f64 = 0.04;
 
 /// Cycles below which a record says little of a decay: a diagnosis needs segments of them to hold out.
 const FEW_CYCLES: f64 = 3.0;
