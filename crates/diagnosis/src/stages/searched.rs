@@ -27,9 +27,6 @@ const MOST_INTERVALS: usize = 3;
 /// Sets of one effect that are asked under another belief, beside the best set.
 const SINGLES: usize = 3;
 
-/// Log evidence for which a belief about the input is given up.
-const ANOTHER_BELIEF: f64 = 10.0;
-
 /// A set that a search goes on from, on segments joined by so many.
 pub(crate) struct Known {
     pub(crate) by: usize,
@@ -81,17 +78,27 @@ impl Searched {
         self.found.ranked(self.found.autocorrelation_time()).into_iter().next()
     }
 
-    /// The set that comes closest on every sample of another question, which differs from `own` by a belief, where it comes closer there
-    /// than any does on those of `own`: asked are the best set and the best [`SINGLES`] of one effect.
+    /// The set with the most evidence on every sample of another question, which differs from `own` by a belief, where it has more
+    /// than any has on those of `own`: asked are the best set, what is left of it without each member, for which the belief may have
+    /// to answer, and the best [`SINGLES`] of one effect.
     pub(crate) fn better_on(&self, own: &Question, other: &Question) -> Option<Known> {
         let time = self.found.autocorrelation_time();
         let ranked = self.found.ranked(time);
-        let singles = ranked.iter().skip(1).filter(|set| set.hypothesis.counted().count() == 1);
-        let asked: Vec<&&Fit> = ranked.iter().take(1).chain(singles.take(SINGLES)).collect();
+        let best = ranked.first()?;
+        let members = &best.hypothesis.candidates;
+        let is_smaller = |set: &Fit| {
+            let less = &set.hypothesis.candidates;
+            less.len() + 1 == members.len() && less.iter().all(|one| members.contains(one))
+        };
+        let others = || ranked.iter().skip(1);
+        let smaller = others().filter(|set| is_smaller(set));
+        let singles = others().filter(|set| set.hypothesis.counted().count() == 1 && !is_smaller(set));
+        let asked: Vec<&&Fit> = ranked.iter().take(1).chain(smaller).chain(singles.take(SINGLES)).collect();
         let again = |set: &&&Fit| {
             let short = shortened(&own.coarse, &self.interval.data, set).ok()?;
             let on = |data: &Data| {
-                fit(data, &short.hypothesis, short.point.clone(), Moving::All, Stopping::SEARCH).ok()
+                let data = data.with_fewer_knots(data.spare_knots(&short));
+                fit(&data, &short.hypothesis, short.point.clone(), Moving::All, Stopping::SEARCH).ok()
             };
             Some((on(&own.data)?, on(&other.data)?))
         };
@@ -99,10 +106,10 @@ impl Searched {
         let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, **set)));
         let closest = both().min_by(|a, b| a.0.0.squares.total_cmp(&b.0.0.squares))?;
         let time = closest.0.0.autocorrelation_time();
-        let best = both().map(|(fits, _)| score(&fits.0, time)).fold(f64::NEG_INFINITY, f64::max);
-        let (fits, set) = both().max_by(|a, b| score(&a.0.1, time).total_cmp(&score(&b.0.1, time)))?;
-        let is_better = score(&fits.1, time) > best + ANOTHER_BELIEF;
-        is_better.then(|| Known { by: self.interval.by, set: set.clone() })
+        let evidence = |set: &Fit| score(set, time) - price(&own.data, set, own.candidates.len(), 0.0);
+        let most = both().map(|(fits, _)| evidence(&fits.0)).fold(f64::NEG_INFINITY, f64::max);
+        let (fits, set) = both().max_by(|a, b| evidence(&a.0.1).total_cmp(&evidence(&b.0.1)))?;
+        (evidence(&fits.1) > most).then(|| Known { by: self.interval.by, set: set.clone() })
     }
 
     /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
