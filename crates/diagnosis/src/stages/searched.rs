@@ -9,12 +9,14 @@ use crate::evidence::weights::{acts, price};
 use crate::fit::fitted::Fit;
 use crate::fit::levenberg_marquardt::{Moving, fit};
 use crate::fit::stopping::Stopping;
+use crate::model::candidate::Candidate;
 use crate::search::archive::Archive;
 use crate::search::asked::{Asked, Breadth};
 use crate::search::beam::{Explored, go_on, search};
 use crate::search::chains::chains;
 use crate::search::gains::WHITE;
 use crate::search::plain::plain_family;
+use crate::search::proposals::proposal;
 use rayon::prelude::*;
 use std::cmp::Ordering;
 
@@ -85,16 +87,13 @@ impl Searched {
         let time = self.found.autocorrelation_time();
         let ranked = self.found.ranked(time);
         let best = ranked.first()?;
-        let members = &best.hypothesis.candidates;
-        let is_smaller = |set: &Fit| {
-            let less = &set.hypothesis.candidates;
-            less.len() + 1 == members.len() && less.iter().all(|one| members.contains(one))
-        };
-        let others = || ranked.iter().skip(1);
-        let smaller = others().filter(|set| is_smaller(set));
-        let singles = others().filter(|set| set.hypothesis.counted().count() == 1 && !is_smaller(set));
-        let asked: Vec<&&Fit> = ranked.iter().take(1).chain(smaller).chain(singles.take(SINGLES)).collect();
-        let again = |set: &&&Fit| {
+        let smaller: Vec<Fit> =
+            best.hypothesis.candidates.iter().filter_map(|member| self.without(best, *member)).collect();
+        let singles = ranked.iter().skip(1).filter(|set| set.hypothesis.counted().count() == 1);
+        let singles = singles.filter(|set| smaller.iter().all(|one| one.hypothesis != set.hypothesis));
+        let asked: Vec<&Fit> =
+            std::iter::once(*best).chain(singles.take(SINGLES).copied()).chain(&smaller).collect();
+        let again = |set: &&Fit| {
             let short = shortened(&own.coarse, &self.interval.data, set).ok()?;
             let on = |data: &Data| {
                 let data = data.with_fewer_knots(data.spare_knots(&short));
@@ -103,13 +102,21 @@ impl Searched {
             Some((on(&own.data)?, on(&other.data)?))
         };
         let fits: Vec<Option<(Fit, Fit)>> = asked.par_iter().map(again).collect();
-        let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, **set)));
+        let both = || fits.iter().zip(&asked).filter_map(|(fits, set)| Some((fits.as_ref()?, *set)));
         let closest = both().min_by(|a, b| a.0.0.squares.total_cmp(&b.0.0.squares))?;
         let time = closest.0.0.autocorrelation_time();
         let evidence = |set: &Fit| score(set, time) - price(&own.data, set, own.candidates.len(), 0.0);
         let most = both().map(|(fits, _)| evidence(&fits.0)).fold(f64::NEG_INFINITY, f64::max);
         let (fits, set) = both().max_by(|a, b| evidence(&a.0.1).total_cmp(&evidence(&b.0.1)))?;
         (evidence(&fits.1) > most).then(|| Known { by: self.interval.by, set: set.clone() })
+    }
+
+    /// A set without one of its members, as it is known or fitted from there.
+    fn without(&self, set: &Fit, member: Candidate) -> Option<Fit> {
+        let data = &self.interval.data;
+        let less = proposal(data, set, &[member], &[]);
+        let known = self.found.find(&less.hypothesis.candidates).cloned();
+        known.or_else(|| fit(data, &less.hypothesis, less.point, Moving::All, Stopping::SEARCH).ok())
     }
 
     /// Log evidence of the best set beside what its effects have to bring, out of a vocabulary of so many.
